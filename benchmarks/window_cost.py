@@ -1,4 +1,4 @@
-"""What an update costs counts, durations and extremes, by how many updates lie in the window."""
+"""What an update costs counts, sums and extremes, by how many updates lie in the window."""
 
 from __future__ import annotations
 
@@ -11,6 +11,11 @@ FORMS = {
     "duration": "upon duration(a, {d} s) >= {d} s then e",
     "share": "upon share(a, {d} s) >= 100 % then e",
     "max": "upon max(x, {d} s) <= 0 then e",
+    "sum": "upon sum(x, {d} s) < 0 then e",
+    "mean": "upon mean(x, {d} s) > 3.5 then e",
+    "integral": "upon integral(x, {d} s) < 0 s then e",
+    "mean, moving": "upon mean(x, {d} s) > x then e",
+    "integral()": "upon integral(x) < 0 s then e",
 }
 WINDOWS = (10, 1_000, 100_000)
 UPDATES = 200_000

@@ -21,6 +21,7 @@ _MADE: dict[str, Callable[[], str]] = {
     "codes": codes.codes,
     "grammar": specification_language.grammar,
     "operations": specification_language.operations,
+    "windows": specification_language.windows,
     "grammar-of-models": specification_language.model_grammar,
     "patterns": pattern_library.patterns,
     "words": specification_language.reserved_words,

@@ -11,6 +11,7 @@ from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, String, Whitespace
 
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import Measured
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
 
@@ -57,6 +58,15 @@ def operations() -> str:
         if op is not NumericOp.NEG
     ]
     return "\n".join(("| | takes; gives | result |", "|---|---|---|", *rows))
+
+
+def windows() -> str:
+    """What is measured over the last D, from its table."""
+    rows = [
+        f"| `{one}` | {one.takes} | {one.doc} | {one.unknown} | {one.memory} |" for one in Measured
+    ]
+    heads = "| | takes; gives | | if something is unknown | memory |"
+    return "\n".join((heads, "|---|---|---|---|---|", *rows))
 
 
 def reserved_words() -> str:

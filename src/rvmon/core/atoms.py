@@ -19,6 +19,7 @@ from rvmon.spec.checked.formula import (
     CompareOp,
     EventAtom,
     Literal,
+    Numeric,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -111,6 +112,11 @@ class Atoms:
     def number(self, leaf: Leaf) -> int:
         """The number of the atom that a leaf shows."""
         return self._numbers.setdefault(self._atom(leaf), len(self._numbers))
+
+    def itself(self, number: Numeric) -> int:
+        """The number of the atom that is unknown where a number is; its programs are of that."""
+        same = self._comparison(Compare(CompareOp.EQ, number, number))
+        return self._numbers.setdefault(same, len(self._numbers))
 
     def _atom(self, leaf: Leaf) -> Atom:
         names = self._names

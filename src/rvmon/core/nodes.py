@@ -49,13 +49,20 @@ class NodeOp(IntEnum):
     EDGE = auto()
     STRETCH = auto()
     AMOUNT = auto()
+    SUM = auto()
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
 """The nodes that remember a truth."""
 
-TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, NodeOp.STRETCH, NodeOp.AMOUNT)
+STRETCHED = (NodeOp.STRETCH, NodeOp.AMOUNT, NodeOp.SUM)
+"""The nodes that remember stretches of time."""
+
+TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, *STRETCHED)
 """The nodes that time alone can change."""
+
+_SUMS = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL)
+"""What adds up numbers, in the order of plan.h."""
 
 _PLAIN = {
     StateOp.NOT: NodeOp.NOT,
@@ -74,6 +81,8 @@ class Node:
         op: what kind of node it is.
         operands: places of nodes; of a leaf and of what is not born, signals times 2, plus 1 if an
             update after the first value is asked for.
+        sum: of what adds up numbers, the number of its sum.
+        reads: the atoms of which it reads the numbers, and not the truths alone.
     """
 
     op: NodeOp
@@ -84,6 +93,8 @@ class Node:
     operands: Sequence[int] = ()
     slot: int = -1
     timer: int = -1
+    sum: int = 0
+    reads: tuple[int, ...] = ()
 
 
 class Nodes:
@@ -99,6 +110,7 @@ class Nodes:
         seen: how many remember a truth.
         edges: how many remember an instant.
         stretches: how many remember stretches of time.
+        sums: how many of these add up numbers.
         timers: how many time alone can change.
         needed: those that matter once all is born and determined.
     """
@@ -113,7 +125,11 @@ class Nodes:
         ]
         self.seen = _count_slots(self.all, SEEN)
         self.edges = _count_slots(self.all, [NodeOp.EDGE])
-        self.stretches = _count_slots(self.all, [NodeOp.STRETCH, NodeOp.AMOUNT])
+        self.stretches = _count_slots(self.all, STRETCHED)
+        sums = [node for node in self.all if node.op is NodeOp.SUM]
+        for number, node in enumerate(sums):
+            node.sum = number
+        self.sums = len(sums)
         timed = [node for node in self.all if node.op in TIMED]
         for number, node in enumerate(timed):
             node.timer = number
@@ -121,16 +137,22 @@ class Nodes:
         self.needed = _needed(plan)
 
     def leaves(self, live: bool) -> list[list[int]]:
-        """Per atom, the leaves that show it.
+        """Per atom, the leaves that show it, and what adds up its numbers.
 
         Args:
             live: those only that matter once all is born and determined.
         """
         found: list[list[int]] = [[] for _ in self._atoms.all]
         for place, node in enumerate(self.all):
-            if node.op is NodeOp.LEAF and (not live or place in self.needed):
-                found[node.a].append(place)
+            if not live or place in self.needed:
+                for atom in (node.a,) if node.op is NodeOp.LEAF else node.reads:
+                    found[atom].append(place)
         return found
+
+    @property
+    def read_as_numbers(self) -> frozenset[int]:
+        """The atoms of which somebody reads the numbers."""
+        return frozenset(atom for node in self.all for atom in node.reads)
 
     def parents(self, place: int) -> tuple[Sequence[int], Sequence[int]]:
         """Of which nodes a node is an operand: at first, and once all is born and determined."""
@@ -164,11 +186,22 @@ class Nodes:
                 high = NEVER if state.high is None else state.high
                 return Node(_since(state), low=state.low, high=high, operands=operands)
             case StateOp.AMOUNT:
-                lasting = state.measured is Measured.DURATION
-                bounds = {"low": state.least, "high": state.high or 0}
-                return Node(NodeOp.AMOUNT, lasting, operands=operands, **bounds)
+                return self._amount(state, operands)
             case _:
                 return Node(_PLAIN[state.op], operands=operands)
+
+    def _amount(self, state: State, operands: Sequence[int]) -> Node:
+        amount = state.amount
+        if amount is None:
+            raise AssertionError("it says what is measured")
+        high = NEVER if amount.window is None else amount.window
+        if amount.value is None or amount.limit is None:
+            lasting = amount.measured is Measured.DURATION
+            return Node(NodeOp.AMOUNT, lasting, low=amount.least, high=high, operands=operands)
+        value, limit = self._atoms.itself(amount.value), self._atoms.itself(amount.limit)
+        kind = _SUMS.index(amount.measured) + len(_SUMS) * amount.strict
+        place = self._atoms.all[limit].left
+        return Node(NodeOp.SUM, value, kind, place, high, operands, reads=(value, limit))
 
     def _leaf(self, state: State) -> Node:
         leaf = state.leaf

@@ -117,6 +117,7 @@ class Part:
             truths,
             *added(Section.WATCHES),
             *added(Section.GROUPS),
+            nodes.sums,
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
@@ -161,12 +162,13 @@ class Part:
                 *sections.listed(node.operands),
                 *self._phased(*self._nodes.parents(place)),
                 *((links[0], len(links)) if links else (0, 0)),
-                0,
+                node.sum,
             )
 
     def _add_atoms(self) -> None:
         sections = self._sections
         shown, live = self._nodes.leaves(live=False), self._nodes.leaves(live=True)
+        as_numbers = self._nodes.read_as_numbers
         for number, atom in enumerate(self._atoms.all):
             sections.add(
                 Section.ATOMS,
@@ -174,7 +176,7 @@ class Part:
                 atom.momentary,
                 *sections.listed(atom.events),
                 *self._phased(shown[number], live[number]),
-                0,
+                number in as_numbers,
             )
 
     def _readers(self, count: int, read: Callable[[Atom], Iterable[int]]) -> list[list[int]]:

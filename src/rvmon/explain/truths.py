@@ -352,7 +352,10 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     """The formula, then what it is made of; a negation of an atom is not taken apart."""
     yield depth, formula
     match formula:
-        case Amount(operand=operand) | Unary(operand=Unary() | Binary() | Amount() as operand):
+        case (
+            Amount(value=None, operand=operand)
+            | Unary(operand=Unary() | Binary() | Amount() as operand)
+        ):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
             yield from subformulas(operand, depth + 1)

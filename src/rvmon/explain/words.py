@@ -18,6 +18,7 @@ from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
     Compare,
+    CompareOp,
     Constant,
     EventAtom,
     Formula,
@@ -29,6 +30,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.formula import Literal as NumericLiteral
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.spec.checked.tense import has_future
@@ -129,14 +131,27 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return _listed([_clause(part, positive) for part in _chain(formula, op)], word)
         case Unary() | Binary():
             return _by_entry(formula, positive)
-        case Amount(measured=measured, operand=operand, window=window, least=least):
-            known = "" if positive else "not "
-            back = f"in the last {format_duration(window)}"
-            if measured is Measured.COUNT:
-                return f"{known}{least} times or more {back}, {_clause(operand, True)}"
-            return f"for {known}{format_duration(least)} or more {back}, {_clause(operand, True)}"
+        case Amount():
+            return _amount(formula, positive)
         case _:
             assert_never(formula)
+
+
+def _amount(formula: Amount, positive: bool) -> str:
+    operand, least = formula.operand, formula.least
+    back = "so far" if formula.window is None else f"in the last {format_duration(formula.window)}"
+    if formula.value is not None and formula.limit is not None:
+        op = CompareOp.GT if formula.strict else CompareOp.GE
+        verb = (op if positive else op.denied).said
+        what = f"the {formula.measured} of {format_numeric(formula.value)} {back}"
+        if isinstance(formula.value, NumericLiteral):  # so many times 1
+            often = "how often" if formula.measured is Measured.SUM else "for how long"
+            what = f"{often} {_clause(operand, True)} {back}"
+        return f"{what} {verb} {format_numeric(formula.limit)}"
+    known = "" if positive else "not "
+    if formula.measured is Measured.COUNT:
+        return f"{known}{least} times or more {back}, {_clause(operand, True)}"
+    return f"for {known}{format_duration(least)} or more {back}, {_clause(operand, True)}"
 
 
 def _by_entry(formula: Unary | Binary, positive: bool) -> str:

@@ -8,6 +8,7 @@ those of distributive lattices and of constants. `p or not p` stays (Kleene), an
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, cast
 
 from rvmon.formula.core import (
@@ -24,8 +25,8 @@ from rvmon.formula.core import (
     Until,
 )
 from rvmon.formula.state import UNKNOWN, Leaf, Lost, State, StateOp
+from rvmon.spec.checked.formula import Amount
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
-from rvmon.spec.checked.formula import Measured
 
 
 class Factory:
@@ -98,9 +99,10 @@ class Factory:
         """`left S[low, high] right`."""
         return self._state(StateOp.SINCE, (left, right), low=low, high=high)
 
-    def amount(self, measured: Measured, arg: State, window: int, least: int) -> State:
-        """So much of `arg` in the last `window` ticks; of constants too, for what was lost."""
-        return self._state(StateOp.AMOUNT, (arg,), high=window, measured=measured, least=least)
+    def amount(self, amount: Amount, *args: State) -> State:
+        """So much of the first of `args`; of constants too, for what was lost."""
+        own = replace(amount, operand=ConstantLeaf(True), known=None, span=None)
+        return self._state(StateOp.AMOUNT, args, amount=own)
 
     def sure(self, arg: State) -> State:
         """`arg` is TRUE, two-valued."""

@@ -26,6 +26,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Measured,
     ProbeAtom,
     SignalAtom,
     Unary,
@@ -152,14 +153,38 @@ class Reader(Reading[Four]):
                 return self._held(self.four(operand), interval)
             case Unary() | Binary():
                 return read(formula, self.four, self)
-            case Amount(operand=operand, measured=measured, window=window, least=least):
-                counted = self.four(operand).read(FALSE)
-                value = self.factory.amount(measured, counted, window, least)
-                return Four(self.factory, _same(value), mortal=False)
+            case Amount():
+                return self._amount(formula)
             case Constant(value=value):
                 return self.constant(value)
             case _:
                 return self._atom(formula)
+
+    def _amount(self, formula: Amount) -> Four:
+        """What is not born adds nothing; a limit, and what a mean is of, are born first."""
+        factory = self.factory
+        states = [self.four(part).read(FALSE) for part in formula.operands[:1]]
+        states += [self.four(part).read(UNKNOWN) for part in formula.operands[1:]]
+        value = factory.amount(formula, *states)
+        asked = formula.operands[formula.measured is not Measured.MEAN :]
+        signals = {
+            name: moved
+            for part in asked
+            if isinstance(part, Compare)
+            for name, moved in signals_of(part).items()
+        }
+        if not formula.measured.of_numbers or not signals:
+            return Four(factory, _same(value), mortal=False)
+        unborn = factory.leaf(Unborn(tuple(sorted(signals.items()))))
+
+        def read(reading: int) -> State:
+            if reading == UNKNOWN:
+                return value
+            if reading == TRUE:
+                return factory.state_any([value, unborn])
+            return factory.state_all([value, factory.negation(unborn)])
+
+        return Four(factory, read, fades=True, unborn=unborn)
 
     def _atom(self, atom: Atom) -> Four:
         factory = self.factory

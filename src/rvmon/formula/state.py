@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rvmon.spec.checked.formula import (
+    Amount,
     BoundAtom,
     Compare,
     Constant,
     EventAtom,
-    Measured,
     ProbeAtom,
     SignalAtom,
 )
@@ -85,8 +85,7 @@ class State:
         leaf: what a `LEAF` reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
-        measured: of `AMOUNT`, what is counted from `high` ticks ago on.
-        least: of `AMOUNT`, how much is enough.
+        amount: of `AMOUNT`, what is measured; its operands are those of the state.
         unborn: of a `LEAF` over signals, the truth that it has before their birth.
         pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
         every: of `DOUBT`, whether no trigger is sure.
@@ -98,8 +97,7 @@ class State:
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
-    measured: Measured = Measured.COUNT
-    least: int = 0
+    amount: Amount | None = None
     unborn: int = UNKNOWN
     pulse: bool = False
     every: bool = False

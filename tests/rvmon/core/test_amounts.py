@@ -79,6 +79,48 @@ CASES = {
         [(0.0, {"c": 19}), (30.0, {"c": 21}), (91.0, {"c": 24})],
         [(0.0, {"c": 19}), (30.0, {"c": 21}), (89.0, {"c": 24})],
     ),
+    "a drone flies at 2 m/s on the mean of 10 s": (
+        "signal v : real [m/s]",
+        "always mean(v, 10 s) <= 2 m/s",
+        [(0.0, {"v": 1.0}), (9.0, {"v": 3.0}), (14.0, {"v": 1.0}), (30.0, {})],
+        [(0.0, {"v": 1.0}), (9.0, {"v": 3.0}), (14.1, {"v": 1.0}), (30.0, {})],
+    ),
+    "a load is at most 20 % above the mean of an hour": (
+        "signal load : real",
+        "always mean(load, 1 h) >= load / 1.2",
+        ticks([{"load": 10.0}, *[{}] * 9, {"load": 12.0}]),
+        ticks([{"load": 10.0}, *[{}] * 9, {"load": 12.5}]),
+    ),
+    "a flight from take-off on is at most 100 m long": (
+        "signal v : real [m/s]\nsignal flying : bool",
+        "always integral(if flying then v else 0) <= 100 m",
+        ticks([{"v": 9.0, "flying": True}, *[{}] * 9, {"v": 10.0}, {"flying": False}, {}]),
+        ticks([{"v": 9.0, "flying": True}, *[{}] * 9, {"v": 10.0}, {}, {"flying": False}]),
+    ),
+    "a battery gives at most 5 Wh": (
+        "signal u : real [V]\nsignal i : real [A]",
+        "always integral(u * i) <= 5 Wh",
+        [(0.0, {"u": 10.0, "i": 5.0}), (360.0, {"i": 0.0}), (500.0, {})],
+        [(0.0, {"u": 10.0, "i": 5.0}), (361.0, {"i": 0.0})],
+    ),
+    "at most 500 are withdrawn in 31 days": (
+        "event withdrawn(sum: int)",
+        "always sum(withdrawn.sum, 744 h) <= 500",
+        [(t * 86400.0, {"withdrawn": {"sum": s}}) for t, s in ((0, 300), (20, 200), (32, 200))],
+        [(t * 86400.0, {"withdrawn": {"sum": s}}) for t, s in ((0, 300), (20, 200), (31, 1))],
+    ),
+    "as many beats come before the last as the head said": (
+        "event head(beats: int), beat, last",
+        "upon head then (not last) until (last and count(beat, 1 h) >= n) let n = head.beats",
+        ticks([{"head": {"beats": 2}}, {"beat": True}, {"beat": True}, {"last": True}]),
+        ticks([{"head": {"beats": 3}}, {"beat": True}, {"beat": True}, {"last": True}]),
+    ),
+    "a value is no more than 2 off from what it was a minute ago": (
+        "signal x : real\nevent asked",
+        "upon asked then immediately (ago(x, 60 s) >= v - 2 and ago(x, 60 s) <= v + 2) let v = x",
+        [(0.0, {"x": 1.0}), (50.0, {"x": 4.0}), (109.0, {"asked": True, "x": 3.0})],
+        [(0.0, {"x": 1.0}), (50.0, {"x": 4.0}), (110.0, {"asked": True, "x": 1.0})],
+    ),
     "the rotation of a frame is that of its angle": (
         "signal yaw : real [deg]\nsignal m : real",
         "always abs(m - cos(yaw)) <= 1e-6",
@@ -157,6 +199,58 @@ def test_an_amount_is_due_between_samples():
     assert monitor.next_due == 4_000_000_001
     (failed,) = monitor.advance(5.0)
     assert failed.decided == 4_000_000_001
+
+
+@pytest.mark.parametrize(
+    ("owed", "due"),
+    [
+        ("mean(x, 10 s) <= 3", 6_000_000_000),
+        ("mean(x, 4 s) <= 3", 4_666_666_667),
+        ("integral(x) <= 9 s", 3_750_000_001),
+        ("integral(x, 4 s) <= 9 s", 3_750_000_001),
+        ("duration(x > 2) <= 2 s", 4_000_000_001),
+    ],
+)
+def test_what_moves_between_samples_is_due_when_it_crosses(owed, due):
+    """Worked out ahead, to the tick."""
+    spec = rvmon.loads(f"spec s\nsignal x : real\nrequirement R\n  always {owed}\n")
+    monitor = spec.monitor()
+    monitor.step(0.0, {"x": 1.0})
+    monitor.step(2.0, {"x": 4.0})
+    found = monitor.next_due
+    while found < due:
+        assert not monitor.advance(found / 1e9)
+        found = monitor.next_due
+    assert found == due
+    (failed,) = monitor.advance(20.0)
+    assert failed.decided == due
+
+
+def test_sums_are_those_of_the_numbers_that_there_are():
+    """No order makes another, and nothing is left of what has gone."""
+    spec = rvmon.loads(
+        "spec s\nevent e(x: real)\nrequirement R\n  upon e then immediately "
+        "(sum(e.x, 3 s) == 1 or sum(e.x, 3 s) < 0)\n"
+    )
+    for values in ([1e300, 1.0, -1e300], [1.0, 1e300, -1e300], [1e16, -1e16, 0.1, 0.9]):
+        samples = [(float(t), {"e": {"x": x}}) for t, x in enumerate([*values])]
+        last = spec.evaluate(samples).attempts[-1]
+        assert last.verdict.value == "P" if len(values) == 3 else "F"
+
+
+def test_a_sum_goes_on_from_a_snapshot():
+    """At every sample, as if nothing had been."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nrequirement R1\n  always mean(x, 3 s) <= 2\n"
+        "requirement R2\n  always integral(x) <= 7 s\n"
+    )
+    samples = [(0.0, {"x": 1.0}), (1.0, {"x": None}), (2.5, {"x": 2.5}), (4.0, {"x": 1e300})]
+    whole = spec.monitor()
+    other = spec.monitor()
+    for t, sample in samples:
+        assert whole.step(t, sample) == other.step(t, sample)
+        other = spec.restore(other.snapshot())
+    assert whole.finish(9.0).verdicts == other.finish(9.0).verdicts
 
 
 def test_a_loss_leaves_open_what_it_may_have_held():

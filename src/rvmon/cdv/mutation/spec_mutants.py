@@ -200,7 +200,7 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
         for changed in operator.changes(formula):
             yield operator.name, changed
     match formula:
-        case Unary(operand=operand) | Amount(operand=operand):
+        case Unary(operand=operand) | Amount(value=None, operand=operand):
             for name, changed in changes(operand):
                 yield name, replace(formula, operand=changed)
         case Binary(left=left, right=right):

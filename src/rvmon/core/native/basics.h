@@ -77,6 +77,12 @@ static inline int64_t sum(int64_t t, int64_t duration)
     return (duration >= LIMIT) ? NEVER : t + duration;
 }
 
+/* The first instant at which another is no longer in a window of the past. */
+static inline int64_t gone_from(int64_t at, int64_t window)
+{
+    return (window >= LIMIT) ? NEVER : at + window + 1;
+}
+
 /* A position so far ahead of another, or behind it; none is farther than the bounds of time. */
 static inline int64_t moved(int64_t position, int64_t distance)
 {

@@ -87,6 +87,15 @@ typedef struct {
     bool apart;
 } edge;
 
+/* A sum of numbers, exactly: a number in two's complement of 32 bits a limb, the lowest worth
+ * 2^-1088. The largest double times the longest duration, added up for as long, has bit 2240. */
+#define SUM_LIMBS 71
+typedef struct {
+    int64_t lost;              /* members that are not known */
+    uint32_t limb[SUM_LIMBS];
+    uint32_t filling;
+} exact_sum;
+
 /* A node that notes tell of: since when it has its truth, and the last positions at which it was false
  * and true before; RV_NO_TIME: there is none. */
 typedef struct {
@@ -211,6 +220,7 @@ struct run {
     int32_t *chosen;           /* by event, the occurrence that a comparison looks at */
     stretches *past;
     edge *edges;
+    exact_sum *sums;
     timers wake;               /* nodes, then perishable signals */
     uint64_t *dirty;           /* nodes to be worked out, as bits */
     uint64_t *dirty_words;     /* words of that which are not 0, as bits */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
 
@@ -9,8 +10,19 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.choices import decided, spread
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.quantities import Placed, compare
-from rvmon.spec.check.values import Age, AmountOf, Beside, Extreme, Now, Quantity, Scope, Value
+from rvmon.spec.check.quantities import Placed, arithmetic, compare, node_of
+from rvmon.spec.check.values import (
+    Age,
+    Ago,
+    AmountOf,
+    Beside,
+    Extreme,
+    Now,
+    Quantity,
+    Scope,
+    Value,
+)
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
@@ -28,14 +40,17 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     Unary,
     UnaryOp,
+    itself,
 )
 from rvmon.spec.checked.reads import names_in
+from rvmon.spec.checked.tense import reads_field
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
+from rvmon.units import parse_unit, product
 
 _SECOND = (("s", 1),)
 
@@ -94,27 +109,23 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
 
 
 def _compared(node: Comparison, left: Value, right: Value) -> Formula:
-    if isinstance(left, Age):
-        limit = _comparable(right, node.right.span)
-        return _age(left, node.op, limit, node.span)
-    if isinstance(right, Age):
-        limit = _comparable(left, node.left.span)
-        return _age(right, node.op.mirrored, limit, node.span)
-    if isinstance(left, AmountOf):
-        return _amount(left, node.op, _comparable(right, node.right.span), node.span)
-    if isinstance(right, AmountOf):
-        return _amount(right, node.op.mirrored, _comparable(left, node.left.span), node.span)
-    if isinstance(left, Now):
-        return _now(node.op, _comparable(right, node.right.span), node.span)
-    if isinstance(right, Now):
-        return _now(node.op.mirrored, _comparable(left, node.left.span), node.span)
-    if isinstance(left, Extreme):
-        return _extreme(left, node.op, _comparable(right, node.right.span), node.span)
-    if isinstance(right, Extreme):
-        return _extreme(right, node.op.mirrored, _comparable(left, node.left.span), node.span)
-    first = _comparable(left, node.left.span)
-    second = _comparable(right, node.right.span)
-    return _quantities(node.op, first, second, node.span)
+    op, places = node.op, (node.left.span, node.right.span)
+    if isinstance(right, Beside) and not isinstance(left, Beside):
+        left, right, op, places = right, left, op.mirrored, places[::-1]
+    limit = _comparable(right, places[1])
+    match left:
+        case Age():
+            return _age(left, op, limit, node.span)
+        case Now():
+            return _now(op, limit, node.span)
+        case AmountOf():
+            return _amount(left, op, limit, node.span)
+        case Extreme():
+            return _extreme(left, op, limit, node.span)
+        case Ago():
+            return _ago(left, op, limit, node.span)
+        case _:
+            return _quantities(op, _comparable(left, places[0]), limit, node.span)
 
 
 def _sides(operands: Operands, node: Comparison, scope: Scope) -> list[Value]:
@@ -141,24 +152,10 @@ def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> 
 
 
 def _amount(amount: AmountOf, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """All comparisons are made of `>= n`, which grows with what there is."""
-    value, place = limit
-    if value.constant is None:
-        raise Refusal(rules.amount_alone(span))
-    exact = value.constant * value.unit.factor
-    if amount.share or amount.measured is Measured.COUNT:
-        if value.unit.dimension:
-            raise Refusal(rules.mismatch(span, "no unit", value.unit.symbol, "compared with"))
-        exact *= amount.window if amount.share else 1
-    else:
-        exact = Fraction(ticks_of(value, place))
-
-    def at_least(least: int) -> Formula:
-        if least <= 0:
-            return Constant(True, span)
-        return Amount(amount.measured, amount.operand, amount.window, least, span)
-
-    up, above = at_least(ceil(exact)), at_least(floor(exact) + 1)
+    """All comparisons are made of `>= c` and `> c`."""
+    counted = amount.added is None and limit[0].constant is not None
+    make = _counted if counted else _added
+    up, above = (make(amount, limit, strict, span) for strict in (False, True))
     match op:
         case CompareOp.GE:
             return up
@@ -170,6 +167,64 @@ def _amount(amount: AmountOf, op: CompareOp, limit: Placed, span: Span) -> Formu
             return Unary(UnaryOp.NOT, above, None, span)
     same = Binary(BinaryOp.AND, up, Unary(UnaryOp.NOT, above, None, span), None, span)
     return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
+
+
+def _counted(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
+    """A count or duration beside a constant, in whole numbers: `> c` is `>= floor(c) + 1`."""
+    value, place = limit
+    exact = (value.constant or 0) * value.unit.factor
+    if amount.share or amount.measured is Measured.COUNT:
+        if value.unit.dimension:
+            raise Refusal(rules.mismatch(span, "no unit", value.unit.symbol, "compared with"))
+        exact *= amount.window or 1 if amount.share else 1
+    else:
+        exact = Fraction(ticks_of(value, place))
+    least = floor(exact) + 1 if strict else ceil(exact)
+    if least <= 0:
+        return Constant(True, span)
+    return Amount(amount.measured, amount.operand, amount.window, least, span)
+
+
+_SECONDS = parse_unit("s")
+
+
+def _added(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
+    """Numbers that are added up, beside any number that does not move between samples.
+
+    A count beside one is a sum of as many 1, and a duration the integral of 1.
+    """
+    value, place = limit
+    if value.node is not None and reads_field(value.node):
+        raise Refusal(rules.limit_of_event(place))
+    added = amount.added or Quantity(constant=Fraction(1))
+    measured = {Measured.COUNT: Measured.SUM, Measured.DURATION: Measured.INTEGRAL}.get(
+        amount.measured, amount.measured
+    )
+    of_ticks = measured is Measured.INTEGRAL
+    unit = product(added.unit, _SECONDS) if of_ticks else added.unit
+    if amount.share:
+        window = Quantity(constant=Fraction(amount.window or 0, TICKS_PER_SECOND), unit=_SECONDS)
+        limit = arithmetic(NumericOp.MUL, (limit, (window, place)), span), place
+    node = node_of((added, span))
+    beside = compare(
+        CompareOp.GE, (replace(added, node=node, constant=None, unit=unit), span), limit, span
+    )
+    if not isinstance(beside, Compare):
+        raise AssertionError("one side varies")
+    bound = beside.right
+    known = None if isinstance(bound, Literal) else itself(bound, place)
+    return Amount(
+        *(measured, amount.operand, amount.window, 1, span, node, bound, strict, known),
+    )
+
+
+def _ago(ago: Ago, op: CompareOp, limit: Placed, span: Span) -> Formula:
+    """It is that comparison D ago: false where there was no such instant."""
+    bound = limit[0].node
+    if bound is not None and any(names_in(bound)):
+        raise Refusal(rules.extreme_alone(span))
+    then = compare(op, (ago.quantity, ago.span), limit, span)
+    return Unary(UnaryOp.ONCE, then, Interval(ago.window, ago.window), span)
 
 
 def _extreme(extreme: Extreme, op: CompareOp, limit: Placed, span: Span) -> Formula:
@@ -199,7 +254,7 @@ def alone(value: Beside, span: Span) -> Diagnostic:
             return rules.now_alone(span)
         case AmountOf():
             return rules.amount_alone(span)
-        case Extreme():
+        case Extreme() | Ago():
             return rules.extreme_alone(span)
 
 

@@ -6,21 +6,29 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.values import Age, AmountOf, Extreme, Quantity, Scope, Value
+from rvmon.spec.check.read_as import number_of
+from rvmon.spec.check.values import Age, Ago, AmountOf, Chosen, Extreme, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Formula,
     Interval,
     Measured,
+    Numeric,
     Probe,
     ProbeAtom,
+    SignalValue,
     Unary,
     UnaryOp,
     UpdateFunction,
     UpdateValue,
+    itself,
 )
-from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function
+from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function, Recall
+from rvmon.spec.checked.reads import names_in
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.checked.tense import future_part, is_pulse
+from rvmon.spec.checked.tense import fields_in, future_part, is_pulse, reads_field
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
@@ -32,13 +40,10 @@ from rvmon.units import PLAIN, parse_unit, quotient
 
 _INSTEAD = {
     **dict.fromkeys(
-        ("mean", "average", "avg", "median", "percentile"),
+        ("median", "percentile"),
         "bound the share that is off: `share(x > 2, 10 s) <= 10 %`, or all: `max(x, 10 s) <= 2`",
     ),
-    **dict.fromkeys(
-        ("sum", "integral"),
-        "bound what adds up, `count(e, D)`, `duration(φ, D)`, or publish the sum as a signal",
-    ),
+    **dict.fromkeys(("average", "avg"), "write `mean(x, 10 s)`"),
     **dict.fromkeys(
         ("variance", "stddev"), "bound the spread: `max(x, D) <= 2 and min(x, D) >= 1`"
     ),
@@ -71,13 +76,17 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
             return ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
         case UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
-        case NumericOp() as op if op in _EXTREMES and len(call.args) == 2:
+        case NumericOp() as op if op in _EXTREMES and len(call.args) <= 2:
             extreme = _extreme(operands, op, call, scope)
             return extreme or operands.calculated(op, call.args, scope, call.span)
         case NumericOp() as op:
             return operands.calculated(op, call.args, scope, call.span)
+        case Measured() as measured if measured.of_numbers:
+            return _added(operands, measured, call, scope)
         case Measured() as measured:
             return _amount(operands, measured, call, scope)
+        case Recall():
+            return _ago(operands, call, scope)
         case None:
             return Age(_named(operands, call, scope, function)[0])
 
@@ -90,14 +99,81 @@ def _amount(operands: Operands, measured: Measured, call: Call, scope: Scope) ->
     held = operands.table.time is TimeModel.HELD
     if measured is Measured.COUNT and held and not is_pulse(formula):
         raise Refusal(rules.count_of_state(call.args[0].span))
+    window = _window(operands, call, scope)
+    share = call.function.text == "share"
+    if share and window is None:
+        raise Refusal(rules.argument_count(call.span, "share", "two arguments", 1))
+    return AmountOf(measured, formula, window, share)
+
+
+def _window(operands: Operands, call: Call, scope: Scope) -> int | None:
+    """The duration behind the first argument, longer than 0; `None`: since the first instant."""
+    if len(call.args) == 1:
+        return None
     window = operands.duration(call.args[1], scope)
     if window == 0:
         raise Refusal(time_rules.no_duration(call.args[1].span))
-    return AmountOf(measured, formula, window, call.function.text == "share")
+    return window
+
+
+def _added(operands: Operands, measured: Measured, call: Call, scope: Scope) -> AmountOf:
+    """The numbers that are added up: those of occurrences, of updates, or what is held."""
+    place = call.args[0].span
+    (value,) = operands.values(call.args[:1], scope)
+    condition: Formula | None = None
+    if isinstance(value, Chosen) and measured is not Measured.MEAN and _is_nothing(value.otherwise):
+        condition, value = value.condition, value.chosen
+    quantity = number_of(value, place)
+    node = quantity.node
+    fields, signals = node is not None and reads_field(node), False
+    if node is not None:
+        signals = len({*names_in(node)} - {*(one.event for one in fields_in(node))}) > 0
+    if node is None or not _can_be_added(measured, node, fields=fields, signals=signals):
+        raise Refusal(rules.not_added(place, measured))
+    member: Formula = itself(node, place)
+    if measured is Measured.SUM and isinstance(node, SignalValue):
+        updated = ProbeAtom(Probe.UPDATED, node.name, place)
+        condition = updated if condition is None else _both(updated, condition, place)
+    if condition is not None:
+        if (ahead := future_part(condition)) is not None:
+            raise Refusal(rules.amount_of_future(ahead.span or call.span, measured))
+        member = _both(condition, member, place)
+    return AmountOf(measured, member, _window(operands, call, scope), added=quantity)
+
+
+def _both(left: Formula, right: Formula, span: Span) -> Formula:
+    return Binary(BinaryOp.AND, left, right, None, span)
+
+
+def _is_nothing(value: Value) -> bool:
+    return isinstance(value, Quantity) and value.constant == 0
+
+
+def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:
+    """A sum is of what occurs, an integral of what is held, a mean of either."""
+    match measured:
+        case Measured.SUM:
+            return fields or isinstance(node, SignalValue)
+        case Measured.INTEGRAL:
+            return signals and not fields
+        case _:
+            return fields is not signals
+
+
+def _ago(operands: Operands, call: Call, scope: Scope) -> Ago:
+    (quantity,) = operands.quantities(call.args[:1], scope)
+    if quantity.node is None or reads_field(quantity.node):
+        raise Refusal(rules.argument_kind(call.args[0].span, "ago", "a number of signals"))
+    if operands.table.time is not TimeModel.HELD:
+        raise Refusal(time_rules.ago_of_samples(call.span))
+    return Ago(quantity, call.args[0].span, operands.duration(call.args[1], scope))
 
 
 def _extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Extreme | None:
     """That of a window, if the second argument is a duration and the first is no time."""
+    if len(call.args) == 1:
+        (number,) = operands.quantities(call.args, scope)
+        return Extreme(op is NumericOp.MAX, number, call.args[0].span, None)
     first, second = operands.values(call.args, scope)
     if not isinstance(first, Quantity) or not isinstance(second, Quantity):
         return None
@@ -111,7 +187,7 @@ def _extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Ext
 
 def _check_count(call: Call, function: Function) -> None:
     wanted, given = len(function.arguments), len(call.args)
-    if given < wanted or (given > wanted and not function.more):
+    if given < wanted - function.optional or (given > wanted and not function.more):
         takes = _COUNTS[wanted] if wanted < len(_COUNTS) else f"{wanted} arguments"
         takes = f"{takes.removesuffix(' arguments')} or more arguments" if function.more else takes
         raise Refusal(rules.argument_count(call.span, function.name, takes, given))

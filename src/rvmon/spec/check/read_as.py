@@ -5,7 +5,7 @@ from __future__ import annotations
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.choices import either
 from rvmon.spec.check.comparisons import alone
-from rvmon.spec.check.values import Age, AmountOf, Chosen, Extreme, Now, Quantity, Value
+from rvmon.spec.check.values import Beside, Chosen, Quantity, Value
 from rvmon.spec.checked.formula import (
     Compare,
     CompareOp,
@@ -24,6 +24,8 @@ def formula_of(value: Value, span: Span) -> Formula:
     Raises:
         Refusal: it is a number or label.
     """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
     match value:
         case Quantity(node=SignalValue(name=name), truth=True):
             return SignalAtom(name, span)
@@ -31,8 +33,6 @@ def formula_of(value: Value, span: Span) -> Formula:
             return Compare(CompareOp.EQ, node, Literal(True), span)
         case Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
-        case Age() | Now() | AmountOf() | Extreme():
-            raise Refusal(alone(value, span))
         case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
             return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
@@ -45,13 +45,13 @@ def number_of(value: Value, span: Span) -> Quantity:
     Raises:
         Refusal: it is a formula or label.
     """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
     match value:
         case Quantity(truth=False, labels=()):
             return value
         case Quantity(truth=False):
             raise Refusal(rules.label_use(span))
-        case Age() | Now() | AmountOf() | Extreme():
-            raise Refusal(alone(value, span))
         case Chosen():
             raise Refusal(rules.choice_alone(span))
         case _:

@@ -21,7 +21,7 @@ from rvmon.spec.check.quantities import node_of
 from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigger
 from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
 from rvmon.spec.checked.ctl import Property
-from rvmon.spec.checked.formula import Bound, BoundAtom, Captured, FieldValue, Formula
+from rvmon.spec.checked.formula import Amount, Bound, BoundAtom, Captured, FieldValue, Formula
 from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     Capture,
@@ -37,6 +37,7 @@ from rvmon.spec.checked.tense import (
     is_pulse,
     is_timeless,
     mixed_disjunction,
+    reads_field,
     subformulas,
 )
 from rvmon.spec.rules import names as name_rules
@@ -81,6 +82,8 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         ctl = _property(checker, item)
         parts = _parts(checker, item, outer, inner, ctl)
         mode, trigger, consequent = _scoped(checker, item, outer, parts)
+        if for_each is not None:
+            _refuse_fields_in_sums((trigger, consequent), item.span)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
@@ -108,6 +111,13 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         scope=scopes[0] if scopes else "",
         run_share=share,
     )
+
+
+def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
+    """Several instances may have an occurrence each at one instant."""
+    for part in (part for formula in formulas for part in subformulas(formula)):
+        if isinstance(part, Amount) and part.value is not None and reads_field(part.value):
+            raise Refusal(type_rules.sum_of_instances(part.operand.span or place))
 
 
 def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover | None:

@@ -58,19 +58,21 @@ class Now:
 
 @dataclass(frozen=True, slots=True)
 class AmountOf:
-    """`count(φ, D)`, `duration(φ, D)`, `share(φ, D)`; only compared with constants.
+    """`count(φ, D)`, `sum(x, D)` and their kin; only compared.
 
     Attributes:
         measured: a share is the duration, divided by D.
-        operand: φ.
-        window: D, ticks.
+        operand: φ, or where x is added.
+        window: D, ticks; `None`: since the first instant.
         share: whether it is one.
+        added: x, of numbers.
     """
 
     measured: Measured
     operand: Formula
-    window: int
+    window: int | None
     share: bool = False
+    added: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,16 +83,31 @@ class Extreme:
         greatest: whether it is the greatest value of the last D, and not the least.
         quantity: x.
         span: of x.
-        window: D, ticks.
+        window: D, ticks; `None`: since the first instant.
     """
 
     greatest: bool
     quantity: Quantity
     span: Span
+    window: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Ago:
+    """`ago(x, D)`; only compared with what stays as it is, as an extreme is.
+
+    Attributes:
+        quantity: x.
+        span: of x.
+        window: D, ticks.
+    """
+
+    quantity: Quantity
+    span: Span
     window: int
 
 
-Beside = Age | Now | AmountOf | Extreme
+Beside = Age | Now | AmountOf | Extreme | Ago
 """What only stands beside something else in a comparison."""
 
 Value = Formula | Quantity | Beside | Chosen

@@ -222,31 +222,99 @@ class Binary:
 
 
 class Measured(StrEnum):
-    """What is measured of a formula over the last D."""
+    """What is measured of a formula, or of a number, over the last D.
 
-    COUNT = "count"
-    """The positions at which it holds, of those that `once[0, D]` looks at."""
+    Attributes:
+        takes: what it is of, and its unit.
+        doc: its value in a few words.
+        unknown: what becomes of it where something in the window is not known.
+        memory: that it takes.
+    """
 
-    DURATION = "duration"
-    """The ticks at which it holds, of those up to the one before this instant."""
+    COUNT = (
+        *("count", "a formula that is true at single instants; a plain number"),
+        "how often φ was true in the last D",
+        *("between what it may be", "16 bytes a stretch of instants, 32 once one was unknown"),
+    )
+    DURATION = (
+        *("duration", "a formula; a duration"),
+        "for how long φ was true in the last D, up to this instant",
+        *("between what it may be", "16 bytes a stretch of time, 32 once one was unknown"),
+    )
+    SUM = (
+        *("sum", "fields of events, or a signal at its updates; their unit"),
+        "what x came to in the last D, together",
+        *("unknown", "32 bytes a value, and 296"),
+    )
+    MEAN = (
+        *("mean", "signals, or fields of events; their unit"),
+        "the mean of x at all instants of the last D, of a field at its occurrences",
+        *("unknown, as of nothing", "32 bytes a stretch of one value, and 296"),
+    )
+    INTEGRAL = (
+        *("integral", "signals; their unit times s"),
+        "x times the time for which it was held, in the last D, up to this instant",
+        *("unknown", "32 bytes a stretch of one value, and 296"),
+    )
+
+    takes: str
+    doc: str
+    unknown: str
+    memory: str
+
+    def __new__(
+        cls, name: str, takes: str = "", doc: str = "", unknown: str = "", memory: str = ""
+    ) -> Measured:
+        """A member: the name that it is called by, with the rest of its entry."""
+        made = str.__new__(cls, name)
+        made._value_ = name
+        made.takes, made.doc, made.unknown, made.memory = takes, doc, unknown, memory
+        return made
+
+    @property
+    def of_numbers(self) -> bool:
+        """Whether numbers are added up, exactly."""
+        return self not in (Measured.COUNT, Measured.DURATION)
 
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """`count(φ, D) >= n`, `duration(φ, D) >= n ticks`; where φ is not born it does not hold.
+    """`count(φ, D) >= n`, `sum(x, D) >= c` and their kin; where φ is not born it does not hold.
+
+    Of numbers, φ says at which positions there is one: a comparison of x with itself is unknown
+    where that is, and FALSE where its event does not occur. Any that is unknown within the last D
+    leaves the whole unknown. A mean of signals is not born before these are.
 
     Attributes:
-        measured: which of the two.
+        measured: what of it.
         operand: φ, of the present and past.
-        window: D, ticks.
-        least: n, 1 or more.
+        window: D, ticks; `None`: since the first instant.
+        least: of a count or duration, n, 1 or more.
+        value: of numbers, x.
+        limit: of numbers, c, in the unit of x; of an integral in that times seconds.
+        strict: whether it is `> c`.
+        known: a comparison of c with itself, if it may change.
     """
 
     measured: Measured
     operand: Formula
-    window: int
-    least: int
+    window: int | None
+    least: int = 1
     span: Span | None = None
+    value: Numeric | None = None
+    limit: Numeric | None = None
+    strict: bool = False
+    known: Compare | None = None
+
+    @property
+    def operands(self) -> tuple[Formula, ...]:
+        """φ, and what says whether c is known."""
+        return (self.operand,) if self.known is None else (self.operand, self.known)
+
+
+def itself(value: Numeric, span: Span | None = None) -> Compare:
+    """A comparison of a number with itself: unknown where that is, else true."""
+    return Compare(CompareOp.EQ, value, value, span)
 
 
 Atom = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom

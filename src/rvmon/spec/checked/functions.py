@@ -24,6 +24,12 @@ class Argument(Enum):
     SOURCE = "the name of a signal or event"
 
 
+class Recall(Enum):
+    """Of a value that was held before."""
+
+    AGO = "ago"
+
+
 @dataclass(frozen=True, slots=True)
 class Function:
     """A function.
@@ -32,15 +38,17 @@ class Function:
         name: of it.
         means: what a call becomes; `None`: an age, which stands in comparisons only.
         arguments: of a call.
-        more: whether further arguments like the last may follow.
         doc: its value in a few words.
+        more: whether further arguments like the last may follow.
+        optional: how many of the last may be left out.
     """
 
     name: str
-    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
+    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | Recall | None
     arguments: tuple[Argument, ...]
     doc: str
     more: bool = False
+    optional: int = 0
 
 
 _OF_UPDATES = (
@@ -62,19 +70,19 @@ _OF_UPDATES = (
 )
 
 
+_COUNTED = (Argument.FORMULA, Argument.DURATION)
+_ADDED = (Argument.NUMBER, Argument.DURATION)
+
 _AMOUNTS = (
-    Function(
-        *("count", Measured.COUNT, (Argument.FORMULA, Argument.DURATION)),
-        "how often φ was true in the last D, beside a number",
+    *(
+        Function(one.value, one, _ADDED if one.of_numbers else _COUNTED, one.doc, optional=1)
+        for one in Measured
     ),
     Function(
-        *("duration", Measured.DURATION, (Argument.FORMULA, Argument.DURATION)),
-        "for how long φ was true in the last D, beside a duration",
-    ),
-    Function(
-        *("share", Measured.DURATION, (Argument.FORMULA, Argument.DURATION)),
+        *("share", Measured.DURATION, _COUNTED),
         "that duration divided by D, beside a number or `%`",
     ),
+    Function("ago", Recall.AGO, _ADDED, "the value that x had D ago; in `time held`"),
 )
 
 
@@ -89,7 +97,8 @@ def _all() -> Iterator[Function]:
         if operation.is_function:
             entry = operation.entry
             numbers = (Argument.NUMBER,) * entry.least
-            yield Function(operation.value, operation, numbers, entry.doc, entry.most is None)
+            many = entry.most is None
+            yield Function(operation.value, operation, numbers, entry.doc, many, int(many))
 
 
 FUNCTIONS = {function.name: function for function in _all()}

@@ -44,8 +44,10 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         seen.add(id(node))
         yield node
         match node:
-            case Unary(operand=operand) | Amount(operand=operand):
+            case Unary(operand=operand):
                 waiting.append(operand)
+            case Amount():
+                waiting += reversed(node.operands)
             case Binary(left=left, right=right):
                 waiting += (right, left)
 

@@ -22,6 +22,7 @@ from rvmon.spec.checked.formula import (
     Literal,
     Measured,
     Numeric,
+    Probe,
     ProbeAtom,
     SignalAtom,
     SignalValue,
@@ -93,14 +94,40 @@ def _formula(formula: Formula, level: int) -> str:
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
         case Unary():
             return _unary(formula)
-        case Amount(measured=measured, operand=operand, window=window, least=least):
-            enough = str(least) if measured is Measured.COUNT else format_duration(least)
-            return f"{measured}({_formula(operand, 0)}, {format_duration(window)}) >= {enough}"
+        case Amount():
+            return _amount(formula)
         case Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text
         case _:
             assert_never(formula)
+
+
+def _amount(formula: Amount) -> str:
+    window = "" if formula.window is None else f", {format_duration(formula.window)}"
+    if formula.value is None or formula.limit is None:
+        least = formula.least
+        enough = str(least) if formula.measured is Measured.COUNT else format_duration(least)
+        return f"{formula.measured}({_formula(formula.operand, 0)}{window}) >= {enough}"
+    sign = ">" if formula.strict else ">="
+    word, what = str(formula.measured), format_numeric(formula.value)
+    if isinstance(formula.value, Literal):  # so many times 1
+        word = "count" if formula.measured is Measured.SUM else "duration"
+        what = _formula(formula.operand, 0)
+    elif conditions := [_formula(one, 4) for one in _conditions(formula)]:
+        what = f"if {' and '.join(conditions)} then {what} else 0"
+    return f"{word}({what}{window}) {sign} {format_numeric(formula.limit)}"
+
+
+def _conditions(formula: Amount) -> list[Formula]:
+    """Where a number is added, but for that it is there, and that a signal is updated."""
+    *conditions, _ = _chain(formula.operand, BinaryOp.AND)
+    match conditions, formula.value:
+        case [ProbeAtom(probe=Probe.UPDATED, name=name), *rest], SignalValue(name=own) if (
+            name == own
+        ):
+            return rest
+    return conditions
 
 
 def _unary(formula: Unary) -> str:

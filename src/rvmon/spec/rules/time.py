@@ -95,6 +95,13 @@ def step_in_held_time(operator: str, span: Span) -> Diagnostic:
     )
 
 
+ago_of_samples = Breach(
+    STEP_IN_HELD_TIME,
+    "`{}` asks for an instant at which there may be no sample",
+    "use `prev(x)`, `once[D, D] φ`, or `time held`",
+)
+
+
 def no_window(operator: str, span: Span) -> Diagnostic:
     """An interval at an operator that takes none."""
     return finding(

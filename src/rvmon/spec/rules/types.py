@@ -83,9 +83,31 @@ now_alone = Breach(
 )
 amount_alone = Breach(
     WRONG_TYPE,
-    "`{}` can only be compared with a constant",
-    "write `count(e, 5 s) >= 3`, `duration(φ, 60 s) <= 4 s`, `share(φ, 1 h) >= 70 %`",
+    "`{}` can only be compared, with what does not move between samples",
+    "write `count(e, 5 s) >= 3`, `duration(φ, 60 s) <= 4 s`, `mean(x, 1 h) >= x / 1.2`",
 )
+limit_of_event = Breach(
+    WRONG_TYPE,
+    "`{}` is there only while its event occurs, and what adds up goes on",
+    "capture it: `let limit = e.x`",
+)
+sum_of_instances = Breach(
+    WRONG_TYPE,
+    "`{}` has a field of an event, of which `for each` may see several at one instant",
+    "count them, `count(e.k == k, D)`, or publish the sum of each as a signal",
+)
+_ADDED = {
+    "sum": "a field of an event, or one signal, which is added at its updates",
+    "integral": "signals: what they hold is multiplied by time",
+    "mean": "signals, or fields of an event, but not of both",
+}
+
+
+def not_added(span: Span, name: str) -> Diagnostic:
+    """Numbers that are not added up by that function."""
+    fix = "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`"
+    message = f"`{name}` is of {_ADDED[name]}, and `{short(span.text)}` is not"
+    return finding(WRONG_ARGUMENTS, message, span, fix=fix)
 
 
 extreme_alone = Breach(

@@ -32,6 +32,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     UpdateFunction,
     UpdateValue,
+    itself,
 )
 from rvmon.spec.checked.operators import Tense, Window
 from rvmon.testing.generate.choices import (
@@ -268,13 +269,39 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
         case "past unary":
             return past_unary(rng, below, depth)
         case "amount":
-            measured = pick(rng, tuple(Measured))
-            counted = formula(rng, replace(shape, future=False), depth - 1)
-            return Amount(measured, counted, rng.randint(1, shape.longest), rng.randint(1, 4))
+            return _amount(rng, shape, depth)
         case "since":
             return _binary(rng, below, depth, Tense.PAST)
         case _:
             return Unary(UnaryOp.PREVIOUS, formula(rng, below, depth - 1))
+
+
+def _amount(rng: Rng, shape: Shape, depth: int) -> Formula:
+    """So much of a formula, or of a number, in a window, or since the first instant."""
+    measured = pick(rng, tuple(Measured))
+    window = None if chance(rng, 15) else rng.randint(1, shape.longest)
+    below = replace(shape, future=False)
+    if not measured.of_numbers or not shape.numbers or shape.wide:
+        counted = formula(rng, below, depth - 1)
+        if measured.of_numbers:
+            measured = Measured.COUNT
+        return Amount(measured, counted, window, rng.randint(1, 4))
+    fields = shape.events and "each" not in shape.captured and measured is not Measured.INTEGRAL
+    plain = replace(shape, events=False)
+    value = arithmetic(rng, plain) if chance(rng, 30) else _input(rng, plain)
+    if fields and chance(rng, 40):
+        value = field_value(rng)
+    member: Formula = itself(value)
+    if measured is not Measured.MEAN and chance(rng, 40):
+        member = Binary(BinaryOp.AND, formula(rng, below, depth - 1), member)
+    limit: Numeric = Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
+    if measured is Measured.INTEGRAL:
+        limit = Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
+    if chance(rng, 20):
+        limit = _input(rng, plain)
+    known = None if isinstance(limit, Literal) else itself(limit)
+    strict = chance(rng, 50)
+    return Amount(measured, member, window, 1, None, value, limit, strict, known)
 
 
 def _future_unary(rng: Rng, shape: Shape, depth: int) -> Formula:

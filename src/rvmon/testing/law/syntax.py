@@ -24,8 +24,11 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
     """The formula and all below it, from the top."""
     yield formula
     match formula:
-        case Unary(operand=operand) | Amount(operand=operand):
+        case Unary(operand=operand):
             yield from subformulas(operand)
+        case Amount():
+            for part in formula.operands:
+                yield from subformulas(part)
         case Binary(left=left, right=right):
             yield from subformulas(left)
             yield from subformulas(right)

@@ -21,13 +21,15 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Measured,
+    Numeric,
     Probe,
     ProbeAtom,
     SignalAtom,
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.numbers import compare
+from rvmon.testing.law.numbers import compare, events_of, number
 from rvmon.testing.law.past import (
     Operand,
     always_true,
@@ -37,6 +39,7 @@ from rvmon.testing.law.past import (
     inverted,
     is_within,
     since,
+    total,
 )
 from rvmon.testing.law.syntax import constant_value, is_proposition, speaks_of_future
 from rvmon.testing.law.word import (
@@ -189,10 +192,37 @@ class Truths:
                 return self._is_first(i)
             case Unary() | Binary():
                 return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
-            case Amount(operand=operand):
+            case Amount(value=None, operand=operand):
                 return amount(self._letters, lambda k: self.state(operand, k), i, formula)
+            case Amount():
+                return self._total(formula, i)
             case _:
                 assert_never(formula)
+
+    def _total(self, formula: Amount, i: int) -> Truth:
+        """A sum, mean or integral: unborn as its limit is, and a mean as what it is of."""
+        asked = formula.operands[formula.measured is not Measured.MEAN :]
+        if any(self.state(part, i) is Truth.UNBORN for part in asked):
+            return Truth.UNBORN
+
+        value, limit, operand = formula.value, formula.limit, formula.operand
+        if value is None or limit is None:
+            raise AssertionError("numbers are added up")
+        return total(
+            self._letters,
+            lambda k: self.state(operand, k),
+            lambda k: self._number(value, k),
+            *(self._number(limit, i), i, formula),
+        )
+
+    def _number(self, expression: Numeric, i: int) -> Scalar:
+        """A number at a position; unknown where an event that it reads occurs several times."""
+        letter = self._letters[i]
+        events = {event: letter.events[event].occurrences for event in events_of(expression)}
+        if any(len(found) > 1 for found in events.values()):
+            return None
+        payloads = {event: found[0].payload for event, found in events.items() if found}
+        return number(expression, letter, payloads, self._captured)
 
     def _is_first(self, i: int) -> Truth:
         """Whether no position is before this one."""

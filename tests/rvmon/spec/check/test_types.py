@@ -23,7 +23,7 @@ from rvmon.units import UnknownUnitError, parse_unit
         ("always age(d) == 2 s", "RV020"),
         ("always age(d) > x", "RV030"),
         ("always sqrt(x, y) < 3", "RV021"),
-        ("always max(x) < 3", "RV021"),
+        ("always hypot(x) < 3", "RV021"),
         ("always known(a and b)", "RV021"),
         ("always known(e)", "RV021"),
         ("always prev(x + 1) < 2", "RV021"),

@@ -44,16 +44,16 @@ static int64_t next_flip(const stretches *s, const node_plan *n, int64_t t, int6
     }
     if (holds) {
         const bool within = (first->end - first->begin) / unit >= -missing;
-        return sum(sum(within ? first->begin - missing * unit : first->end, n->high), 1);
+        return gone_from(within ? first->begin - missing * unit : first->end, n->high);
     }
     grown = (missing > LIMIT / unit) ? NEVER : t + missing * unit;
     if (s->count == 1) {
         return (grown <= sum(first->begin, n->high)) ? grown : NEVER;
     }
     if (t + unit > sum(first->begin, n->high)) {
-        return sum(sum(first->end, n->high), 1);
+        return gone_from(first->end, n->high);
     }
-    return least(grown, sum(sum(first->begin, n->high), 1));
+    return least(grown, gone_from(first->begin, n->high));
 }
 
 /* One reading: whether there is enough. */
@@ -74,6 +74,7 @@ static bool step_amount(run *r, stretches *s, const node_plan *n, int64_t t, boo
     if (now) {
         stretch *last = (s->count > 0) ? amount_stretch(s, s->count - 1) : NULL;
         if ((last == NULL) || (last->end + unit != t)) {
+            s->count = (n->high == NEVER) ? 0 : s->count; /* nothing is ever taken off */
             last = next_stretch_of(r->home->monitor, s, s->count, true);
             if (last == NULL) {
                 return false; /* the run is spoilt */
@@ -87,7 +88,9 @@ static bool step_amount(run *r, stretches *s, const node_plan *n, int64_t t, boo
         }
         s->growing = true;
     }
-    leave_before(s, t - n->high, unit);
+    if (n->high < NEVER) {
+        leave_before(s, t - n->high, unit);
+    }
     holds = s->total >= n->low;
     *due = next_flip(s, n, t, unit, holds);
     return holds;

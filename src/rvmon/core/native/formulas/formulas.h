@@ -18,10 +18,13 @@ int32_t timers_due(const timers *h, int64_t t, int32_t *found);
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
 void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
 /* ---- amounts.c */
 uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand);
-uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
+
+/* ---- sums.c */
+uint8_t node_sum(run *r, const node_plan *n, int64_t t, uint8_t operand);
 
 /* ---- graph.c: the nodes of a part */
 void mark_dirty(run *r, int32_t node);

@@ -81,6 +81,7 @@ void remember_unknown(run *r, int64_t t)
         case NODE_EDGE:
         case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
         case NODE_AMOUNT: (void)node_amount(r, n, t, IS_UNKNOWN); break;
+        case NODE_SUM: (void)node_sum(r, n, t, IS_UNKNOWN); break;
         default: break;
         }
     }
@@ -104,6 +105,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
     case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
+    case NODE_SUM: return node_sum(r, n, t, r->truth[operands[0]]);
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }

@@ -175,7 +175,7 @@ bool recheck(run *r, int32_t atom)
                                              : atom_now(r, a);
     const bool changed = now != r->atom[atom];
     /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
-    if (changed || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
+    if (changed || (a->tells != 0) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
         const int32_t *node = LIST(PLAN(r), nodes);
         int32_t i;

@@ -107,6 +107,7 @@ typedef struct {
     int32_t truths;            /* the form of whose operators it is kept where they are known; -1 */
     list watches;              /* records of SEC_WATCHES; so with what follows */
     list groups;
+    int32_t sums;              /* so many nodes SUM */
 } part_plan;
 
 /* Lists for the two phases: until all is born and determined, and from then on. */
@@ -168,7 +169,8 @@ typedef struct {
     int32_t momentary;         /* how many names with a source make it speak of one position only */
     list events;               /* of ATOM_PAYLOAD */
     phased nodes;              /* leaves that show it */
-    int64_t spare;
+    int64_t tells;             /* 1: somebody reads its numbers, which may be others though its truth
+                                * is the same */
 } atom_plan;
 
 enum {
@@ -178,23 +180,28 @@ enum {
     NODE_EDGE,                 /* since from 0 on, or without an end */
     NODE_STRETCH,              /* since in bounds */
     NODE_AMOUNT,               /* so much in the last `high` ticks: amounts.c */
+    NODE_SUM,                  /* numbers of the last `high` ticks, added up: sums.c */
     NODES
 };
 
 typedef struct {
-    int64_t low;               /* of a `since`; of ELAPSED, how long */
+    int64_t low;               /* of a `since`; of ELAPSED, how long; of SUM, the program of its limit */
     int64_t high;              /* RV_NEVER: none */
     int32_t op;
-    int32_t a;                 /* of a leaf, the atom; of a constant, the truth; DOUBT: pulse */
-    int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure */
+    int32_t a;                 /* of a leaf, or SUM, the atom; of a constant, the truth; DOUBT: pulse */
+    int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of SUM,
+                                * what is added up, and SUM_STRICT if the limit is not enough */
     int32_t slot;              /* its memory; -1: it has none */
     int32_t timer;             /* -1: time alone does not change it */
     list operands;             /* of a leaf and UNBORN: signals times 2, plus 1 if an update after the
                                 * first value is asked for */
     phased parents;
     list links;                /* records of SEC_LINKS */
-    int32_t spare;
+    int32_t sum;               /* of SUM, the number of its sum */
 } node_plan;
+
+/* What is added up: numbers where they are, with how many these are, or times ticks. */
+enum { SUM_PLAIN, SUM_MEAN, SUM_INTEGRAL, SUM_STRICT };
 
 /* WATCH alone: the number is that of a watch, and weights mean nothing. */
 enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };

@@ -128,6 +128,7 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
     case NODE_EVER:
     case NODE_EDGE:
     case NODE_STRETCH: return (n->operands.count == 2) && lists(p, n->operands, 0, place);
+    case NODE_SUM: return is_within(n->operands.count, 1, 3) && lists(p, n->operands, 0, place);
     default: return (n->operands.count == 1) && lists(p, n->operands, 0, place);
     }
 }
@@ -146,7 +147,8 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
         break;
     case NODE_EDGE: slots = x->edges; break;
     case NODE_STRETCH:
-    case NODE_AMOUNT: slots = x->stretches; break;
+    case NODE_AMOUNT:
+    case NODE_SUM: slots = x->stretches; break;
     case NODE_ELAPSED: break;
     default: timed = false; break;
     }
@@ -192,6 +194,19 @@ static bool check_links(const plan *p, const part_plan *x, list links)
     return true;
 }
 
+/* What is added up, and the program of the limit. */
+static bool check_sum(const plan *p, const part_plan *x, const node_plan *n)
+{
+    const atom_plan *a;
+    if (!is_within(n->a, 0, x->atoms.count)) {
+        return false;
+    }
+    a = &p->atoms[x->atoms.first + n->a];
+    return ((a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD))
+           && is_within(n->b, 0, 2 * SUM_STRICT) && is_within(n->sum, 0, x->sums)
+           && check_program(p, x, n->low);
+}
+
 bool check_nodes(const plan *p, const part_plan *x)
 {
     int32_t timed_nodes = 0;
@@ -203,7 +218,8 @@ bool check_nodes(const plan *p, const part_plan *x)
             || !check_links(p, x, n->links) || (n->low < 0) || (n->high < 0)
             || ((n->op == NODE_LEAF)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
-            || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))) {
+            || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))
+            || ((n->op == NODE_SUM) && !check_sum(p, x, n))) {
             return false;
         }
     }

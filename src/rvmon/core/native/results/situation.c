@@ -82,6 +82,23 @@ static void put_amount(telling *s, const stretches *own)
     put_word(s, own->growing ? 1 : 0);
 }
 
+/* Of what goes back to the first instant, the sum; else what it is made of. */
+static void put_sum(telling *s, const stretches *own, const exact_sum *x, bool ever)
+{
+    int32_t i;
+    put_amount(s, own);
+    for (i = 0; i < own->count; i++) {
+        const stretch *value = &own[1].at[(own[1].head + i) & (own[1].room - 1)];
+        put_word(s, value->begin);
+        put_word(s, value->end);
+    }
+    for (i = 0; ever && (i < SUM_LIMBS); i++) {
+        put_word(s, x->limb[i]);
+    }
+    put_word(s, ever ? x->lost : 0);
+    put_word(s, ever ? own->total : 0);
+}
+
 /* What formulas are, and remember. */
 static void put_formulas(telling *s, const run *r)
 {
@@ -123,6 +140,8 @@ static void put_formulas(telling *s, const run *r)
             if (worse->apart) {
                 put_amount(s, worse + 1);
             }
+        } else if (n->op == NODE_SUM) {
+            put_sum(s, &r->past[2 * n->slot], &r->sums[n->sum], n->high == NEVER);
         } else {
             /* It remembers no more than a truth. */
         }

@@ -355,6 +355,11 @@ bool is_over(const run *r)
             return false;
         }
     }
+    for (i = 0; i < p->sums; i++) {
+        if (memcmp(&r->sums[i], &root->sums[i], sizeof *r->sums) != 0) {
+            return false;
+        }
+    }
     return true;
 }
 

@@ -128,6 +128,15 @@ static void carry_stretches(carrier *c, stretches *s)
     carry_long(c, &s->total, 0, NEVER);
 }
 
+static void carry_sum(carrier *c, exact_sum *x)
+{
+    int32_t i;
+    carry_long(c, &x->lost, 0, NEVER);
+    for (i = 0; i < SUM_LIMBS; i++) {
+        carry_count(c, &x->limb[i]);
+    }
+}
+
 /* What looks back; a second reading is there only if it is another. */
 static void carry_past(carrier *c, run *r)
 {
@@ -139,6 +148,9 @@ static void carry_past(carrier *c, run *r)
         if (r->edges[2 * i].apart) {
             carry_edge(c, &r->edges[2 * i + 1]);
         }
+    }
+    for (i = 0; (i < p->sums) && !is_lost(c); i++) {
+        carry_sum(c, &r->sums[i]);
     }
     for (i = 0; (i < p->stretches) && !is_lost(c); i++) {
         carry_stretches(c, &r->past[2 * i]);
