@@ -14,6 +14,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Passed,
     ProbeAtom,
     SignalAtom,
     SignalValue,
@@ -70,5 +71,5 @@ def to_core(formula: Formula) -> Formula:
             return replace(formula, operand=to_core(formula.operand))
         case Unary() | Binary():
             return read(formula, to_core, Formulas())
-        case Amount():
+        case Amount() | Passed():
             raise ValueError("it counts")

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.spec.checked.formula import BoundAtom, Compare, EventAtom, Formula, ProbeAtom, SignalAtom
+from rvmon.spec.checked.formula import (
+    Arithmetic,
+    BoundAtom,
+    Captured,
+    Compare,
+    CompareOp,
+    EventAtom,
+    Formula,
+    Literal,
+    NowValue,
+    ProbeAtom,
+    SignalAtom,
+)
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print.printer import format_formula, format_numeric
 from rvmon.testing.law.attempts import Start
-from rvmon.testing.law.syntax import subformulas
+from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Scalar
@@ -78,10 +90,11 @@ class _Values:
     def __init__(self, requirement: Requirement, start: Start) -> None:
         self.truths = Truths(start.word, start.captured)
         self.atoms: dict[str, Formula] = {
-            format_formula(part): part
+            _shown(part): part
             for formula in (requirement.trigger, requirement.consequent)
             for part in subformulas(formula)
             if isinstance(part, SignalAtom | EventAtom | ProbeAtom | Compare | BoundAtom)
+            and not (isinstance(part, Compare) and _reads_nothing(part))
         }
 
     def agree(self, seen: Mapping[str, Scalar], position: int) -> bool:
@@ -90,3 +103,17 @@ class _Values:
             text in self.atoms and value in _SCALARS[self.truths.state(self.atoms[text], position)]
             for text, value in seen.items()
         )
+
+
+def _reads_nothing(part: Compare) -> bool:
+    """Whether it is of captured values and constants alone."""
+    parts = [one for side in (part.left, part.right) for one in parts_of(side)]
+    return all(isinstance(one, Captured | Literal | Arithmetic | NowValue) for one in parts)
+
+
+def _shown(part: Formula) -> str:
+    """A proposition as records tell of it; of what asks whether a number is known, that."""
+    match part:
+        case Compare(op=CompareOp.EQ, left=left, right=right) if left == right:
+            return f"known({format_numeric(left)})"
+    return format_formula(part)

@@ -218,7 +218,13 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 def _is_free(node: State) -> bool:
     """Whether a node is a leaf or remembers."""
-    return node.op in (StateOp.LEAF, StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT)
+    return node.op in (
+        StateOp.LEAF,
+        StateOp.PREVIOUS,
+        StateOp.SINCE,
+        StateOp.AMOUNT,
+        StateOp.PASSED,
+    )
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
@@ -256,7 +262,14 @@ def _value(node: State, values: Mapping[State, bool]) -> bool:
             return values[node.args[0]]
         case StateOp.OR:
             return any(values[arg] for arg in node.args)
-        case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
+        case (
+            StateOp.LEAF
+            | StateOp.PREVIOUS
+            | StateOp.SINCE
+            | StateOp.AMOUNT
+            | StateOp.PASSED
+            | StateOp.DOUBT
+        ):
             raise AssertionError("leaves and what remembers have a value already")
         case _:
             assert_never(node.op)

@@ -18,6 +18,7 @@ from rvmon.spec.checked.formula import (
     Compare,
     FieldValue,
     Literal,
+    NowValue,
     Numeric,
     SignalValue,
     UpdateValue,
@@ -116,7 +117,7 @@ def _with(numeric: Numeric, variable: Variable, value: float) -> Scalar:
     match numeric:
         case Literal(value=constant):
             return constant
-        case SignalValue() | FieldValue() | Captured():
+        case SignalValue() | FieldValue() | Captured() | NowValue():
             return value if numeric == variable else 0.0
         case UpdateValue(name=name):
             same = isinstance(variable, SignalValue) and variable.name == name

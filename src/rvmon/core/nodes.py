@@ -25,7 +25,15 @@ from rvmon.formula.state import (
 )
 from rvmon.plan.graph import lasting
 from rvmon.plan.plan import Plan, PlannedRule
-from rvmon.spec.checked.formula import Compare, Constant, Measured, SignalAtom
+from rvmon.spec.checked.formula import (
+    Captured,
+    Compare,
+    Constant,
+    Measured,
+    Passed,
+    SignalAtom,
+)
+from rvmon.spec.checked.formula import Literal as Number
 
 NEVER = (1 << 63) - 1
 """No instant, or no bound."""
@@ -50,6 +58,7 @@ class NodeOp(IntEnum):
     STRETCH = auto()
     AMOUNT = auto()
     SUM = auto()
+    PASSED = auto()
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
@@ -58,7 +67,10 @@ SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
 STRETCHED = (NodeOp.STRETCH, NodeOp.AMOUNT, NodeOp.SUM)
 """The nodes that remember stretches of time."""
 
-TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, *STRETCHED)
+TIMED = (
+    *(NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE),
+    *(*STRETCHED, NodeOp.PASSED),
+)
 """The nodes that time alone can change."""
 
 _SUMS = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL)
@@ -187,6 +199,8 @@ class Nodes:
                 return Node(_since(state), low=state.low, high=high, operands=operands)
             case StateOp.AMOUNT:
                 return self._amount(state, operands)
+            case StateOp.PASSED if state.passed is not None:
+                return self._passed(state.passed, operands)
             case _:
                 return Node(_PLAIN[state.op], operands=operands)
 
@@ -202,6 +216,14 @@ class Nodes:
         kind = _SUMS.index(amount.measured) + len(_SUMS) * amount.strict
         place = self._atoms.all[limit].left
         return Node(NodeOp.SUM, value, kind, place, high, operands, reads=(value, limit))
+
+    def _passed(self, passed: Passed, operands: Sequence[int]) -> Node:
+        after = self._atoms.itself(passed.after)
+        since = self._atoms.itself(Captured(passed.since) if passed.since else Number(0))
+        place = self._atoms.all[since].left
+        return Node(
+            NodeOp.PASSED, after, passed.strict, place, operands=operands, reads=(after, since)
+        )
 
     def _leaf(self, state: State) -> Node:
         leaf = state.leaf

@@ -17,6 +17,7 @@ from rvmon.spec.checked.formula import (
     Captured,
     FieldValue,
     Literal,
+    NowValue,
     Numeric,
     SignalValue,
     UpdateFunction,
@@ -45,6 +46,9 @@ class Code(IntEnum):
 
 OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
 """Their numbers, which go on from there in the order of their table."""
+
+OPERATIONS_END = len(Code) + len(OPERATIONS)
+"""The word for `now`, behind all operations."""
 
 _UPDATES = {
     UpdateFunction.PREV: Code.PREV,
@@ -120,6 +124,8 @@ class Programs:
         match expression:
             case Literal(value=value):
                 words.append(_word(Code.NUMBER, self._number(value)))
+            case NowValue():
+                words.append(_word(OPERATIONS_END, 0))
             case SignalValue(name=name):
                 words.append(_word(Code.SIGNAL, names.signals[name]))
             case FieldValue(event=event, field=field):

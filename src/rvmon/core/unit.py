@@ -14,7 +14,7 @@ from rvmon.core.nodes import NodeOp, Nodes
 from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Sections
 from rvmon.dataflow.network_plan import plan_of
-from rvmon.formula.state import State
+from rvmon.formula.state import State, StateOp
 from rvmon.plan.graph import graph_of
 from rvmon.plan.instances import Reach, reach_of, varying
 from rvmon.plan.plan import Plan, PlannedRule
@@ -58,7 +58,7 @@ class Unit:
         lists: Sequence[Sequence[int]] = (
             [programs.place(capture.value) for capture in self._requirement.captures],
             [number for number, atom in enumerate(atoms.all) if atom.captured],
-            [place for place in vary if place not in graph.stateful],
+            [one for one in vary if one not in graph.stateful or _forgets(graph.nodes[one])],
             vary,
             lapsed,
         )
@@ -131,6 +131,11 @@ class Unit:
         if doubted is not None and self._requirement.mode is Mode.UPON:
             return bits[doubted], known
         return known, known
+
+
+def _forgets(state: State) -> bool:
+    """Whether a node that time changes remembers nothing."""
+    return state.op is StateOp.PASSED
 
 
 def _consequent(rule: PlannedRule) -> Iterator[State]:

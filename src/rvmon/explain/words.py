@@ -24,6 +24,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Measured,
+    Passed,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -133,6 +134,10 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return _by_entry(formula, positive)
         case Amount():
             return _amount(formula, positive)
+        case Passed(since=since, after=after, strict=strict):
+            op = CompareOp.GT if strict else CompareOp.GE
+            verb = (op if positive else op.denied).said
+            return f"the time since {since or 'the first instant'} {verb} {format_numeric(after)}"
         case _:
             assert_never(formula)
 

@@ -104,7 +104,14 @@ class Duals:
                 return self._state(state.args[0], positive)
             case StateOp.LEAF if isinstance(state.leaf, Unborn | Lapsed):
                 return self._factory.constant(not positive)
-            case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
+            case (
+                StateOp.LEAF
+                | StateOp.PREVIOUS
+                | StateOp.SINCE
+                | StateOp.AMOUNT
+                | StateOp.PASSED
+                | StateOp.DOUBT
+            ):
                 return self._factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case _:
                 assert_never(state.op)

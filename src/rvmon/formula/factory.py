@@ -25,8 +25,9 @@ from rvmon.formula.core import (
     Until,
 )
 from rvmon.formula.state import UNKNOWN, Leaf, Lost, State, StateOp
-from rvmon.spec.checked.formula import Amount
+from rvmon.spec.checked.formula import Amount, Passed
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
+from rvmon.spec.checked.formula import Literal as Zero
 
 
 class Factory:
@@ -102,7 +103,14 @@ class Factory:
     def amount(self, amount: Amount, *args: State) -> State:
         """So much of the first of `args`; of constants too, for what was lost."""
         own = replace(amount, operand=ConstantLeaf(True), known=None, span=None)
+        if args[0] is self.state_false and own.value is not None:
+            own = replace(own, value=Zero(0))  # what it reads is no part of any formula
         return self._state(StateOp.AMOUNT, args, amount=own)
+
+    def passed(self, passed: Passed, known: State) -> State:
+        """So long has passed since an instant; unknown where `known` is."""
+        own = replace(passed, span=None, known=replace(passed.known, span=None))
+        return self._state(StateOp.PASSED, (known,), passed=own)
 
     def sure(self, arg: State) -> State:
         """`arg` is TRUE, two-valued."""

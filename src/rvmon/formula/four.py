@@ -27,6 +27,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Measured,
+    Passed,
     ProbeAtom,
     SignalAtom,
     Unary,
@@ -155,6 +156,9 @@ class Reader(Reading[Four]):
                 return read(formula, self.four, self)
             case Amount():
                 return self._amount(formula)
+            case Passed(known=known):
+                value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
+                return self._born_with(value, (known,))
             case Constant(value=value):
                 return self.constant(value)
             case _:
@@ -167,13 +171,17 @@ class Reader(Reading[Four]):
         states += [self.four(part).read(UNKNOWN) for part in formula.operands[1:]]
         value = factory.amount(formula, *states)
         asked = formula.operands[formula.measured is not Measured.MEAN :]
-        signals = {
-            name: moved
-            for part in asked
-            if isinstance(part, Compare)
-            for name, moved in signals_of(part).items()
-        }
-        if not formula.measured.of_numbers or not signals:
+        return self._born_with(value, asked if formula.measured.of_numbers else ())
+
+    def _born_with(self, value: State, asked: Sequence[Formula]) -> Four:
+        """What is unknown until the signals of comparisons are born, and is not born till then."""
+        factory = self.factory
+        signals: dict[str, bool] = {}
+        for part in asked:
+            if isinstance(part, Compare):
+                for name, moved in signals_of(part).items():
+                    signals[name] = signals.get(name, False) or moved
+        if not signals:
             return Four(factory, _same(value), mortal=False)
         unborn = factory.leaf(Unborn(tuple(sorted(signals.items()))))
 

@@ -11,6 +11,7 @@ from rvmon.spec.checked.formula import (
     Compare,
     Constant,
     EventAtom,
+    Passed,
     ProbeAtom,
     SignalAtom,
 )
@@ -67,6 +68,7 @@ class StateOp(Enum):
     PREVIOUS = "previous"
     SINCE = "since"
     AMOUNT = "amount"
+    PASSED = "passed"
     SURE = "sure"
     """Two-valued: the operand is TRUE."""
     DOUBT = "doubt"
@@ -86,6 +88,7 @@ class State:
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
         amount: of `AMOUNT`, what is measured; its operands are those of the state.
+        passed: of `PASSED`, what time is asked for; the operand says whether it is known.
         unborn: of a `LEAF` over signals, the truth that it has before their birth.
         pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
         every: of `DOUBT`, whether no trigger is sure.
@@ -98,6 +101,7 @@ class State:
     low: int = 0
     high: int | None = None
     amount: Amount | None = None
+    passed: Passed | None = None
     unborn: int = UNKNOWN
     pulse: bool = False
     every: bool = False

@@ -23,12 +23,13 @@ from rvmon.formula.state import (
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
+    CompareOp,
     Constant,
     EventAtom,
     ProbeAtom,
     SignalAtom,
 )
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print.printer import format_formula, format_numeric
 
 
 def names_of(leaf: Leaf) -> frozenset[str]:
@@ -92,11 +93,25 @@ def leaf_texts(
     last = lasting(graph, roots, determined)
     found: dict[str, State] = {}
     for place, state in enumerate(graph.nodes):
-        if isinstance(state.leaf, Shown):
-            text = format_formula(state.leaf)
+        if isinstance(state.leaf, Shown) and not _is_captured(state.leaf):
+            text = _text_of(state.leaf)
             if text not in found or place in last:
                 found[text] = state
     return tuple((state, text) for text, state in found.items())
+
+
+def _is_captured(leaf: Shown) -> bool:
+    """Whether it reads nothing but captured values."""
+    return isinstance(leaf, Compare) and not inputs_of(leaf.left, leaf.right)
+
+
+def _text_of(leaf: Shown) -> str:
+    """A leaf in the language; what compares a number with itself asks whether that is known."""
+    match leaf:
+        case Compare(op=CompareOp.EQ, left=left, right=right) if left == right:
+            return f"known({format_numeric(left)})"
+        case _:
+            return format_formula(leaf)
 
 
 def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State]) -> frozenset[int]:
@@ -182,7 +197,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
         if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT, StateOp.DOUBT):
             remembers |= place in varies
             stateful.append(place)
-        elif isinstance(state.leaf, Elapsed):
+        elif isinstance(state.leaf, Elapsed) or state.op is StateOp.PASSED:
             stateful.append(place)
     return Graph(
         nodes,

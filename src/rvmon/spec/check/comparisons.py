@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
@@ -17,6 +18,7 @@ from rvmon.spec.check.values import (
     AmountOf,
     Beside,
     Extreme,
+    Moment,
     Now,
     Quantity,
     Scope,
@@ -36,11 +38,14 @@ from rvmon.spec.checked.formula import (
     Interval,
     Literal,
     Measured,
+    Numeric,
     Probe,
     ProbeAtom,
+    SignalValue,
     Unary,
     UnaryOp,
     itself,
+    passed,
 )
 from rvmon.spec.checked.reads import names_in
 from rvmon.spec.checked.tense import reads_field
@@ -62,8 +67,9 @@ def ticks_of(value: Value, span: Span) -> int:
         Refusal: it is no such constant, no whole number of ticks, negative, or too long.
     """
     if not isinstance(value, Quantity) or value.constant is None:
-        raise Refusal(time_rules.no_duration(span))
-    if value.unit.dimension != _SECOND and value.constant != 0:
+        moves = isinstance(value, Quantity) and is_time(value)
+        raise Refusal((time_rules.moving if moves else time_rules.no_duration)(span))
+    if not is_time(value) and value.constant != 0:
         raise Refusal(time_rules.no_duration(span, plain=not value.unit.symbol))
     ticks: Fraction = value.constant * value.unit.factor * TICKS_PER_SECOND
     if ticks.denominator != 1:
@@ -73,6 +79,11 @@ def ticks_of(value: Value, span: Span) -> int:
     if ticks >= TIME_LIMIT:
         raise Refusal(time_rules.too_long(span))
     return int(ticks)
+
+
+def is_time(value: Quantity) -> bool:
+    """Whether it has a unit of time."""
+    return value.unit.dimension == _SECOND
 
 
 def closed_interval(
@@ -112,12 +123,14 @@ def _compared(node: Comparison, left: Value, right: Value) -> Formula:
     op, places = node.op, (node.left.span, node.right.span)
     if isinstance(right, Beside) and not isinstance(left, Beside):
         left, right, op, places = right, left, op.mirrored, places[::-1]
+    if isinstance(left, Moment) and isinstance(right, Now):
+        left, right, op, places = right, left, op.mirrored, places[::-1]
+    if isinstance(left, Now):
+        return _now(left, op, right, places[1], node.span)
     limit = _comparable(right, places[1])
     match left:
         case Age():
             return _age(left, op, limit, node.span)
-        case Now():
-            return _now(op, limit, node.span)
         case AmountOf():
             return _amount(left, op, limit, node.span)
         case Extreme():
@@ -250,7 +263,7 @@ def alone(value: Beside, span: Span) -> Diagnostic:
     match value:
         case Age():
             return rules.age_alone(span)
-        case Now():
+        case Now() | Moment():
             return rules.now_alone(span)
         case AmountOf():
             return rules.amount_alone(span)
@@ -277,14 +290,52 @@ def _quantities(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compa
     return Compare(op, first.node, second.node, span)
 
 
-def _now(op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """`now >= D` is: there was an instant D ago, or earlier."""
-    if op in _EQUALITY or limit[0].constant is None:
+def moved(op: NumericOp, values: Sequence[Value]) -> Now | Moment | None:
+    """`now - t0`, `t0 + x`, `x + t0`, `t0 - x`; `None`: something else."""
+    match op, values:
+        case NumericOp.SUB, [Now(since=None), Moment(name=name, later=None)]:
+            return Now(name)
+        case NumericOp.ADD, [Moment(name=name, later=None), Quantity() as later]:
+            return Moment(name, later)
+        case NumericOp.ADD, [Quantity() as later, Moment(name=name, later=None)]:
+            return Moment(name, later)
+    return None
+
+
+def _now(now: Now, op: CompareOp, limit: Value, place: Span, span: Span) -> Formula:
+    """`now >= D` is: there was an instant D ago, or earlier; others look at data for how long."""
+    if isinstance(limit, Moment) and now.since is None:
+        later = Quantity(constant=Fraction(0)) if limit.later is None else limit.later
+        now, limit = Now(limit.name), later
+    value, _ = _comparable(limit, place)
+    if value.node is not None and reads_field(value.node):
+        raise Refusal(rules.limit_of_event(place))
+    if op in _EQUALITY:
         raise Refusal(rules.now_alone(span))
-    ticks = ticks_of(*limit) + (op in (CompareOp.GT, CompareOp.LE))
-    begun = Unary(UnaryOp.ONCE, Constant(True, span), Interval(ticks), span)
+    strict = op in (CompareOp.GT, CompareOp.LE)
     late = op in (CompareOp.GT, CompareOp.GE)
+    if now.since is None and value.constant is not None:
+        ticks = ticks_of(value, place) + strict
+        begun: Formula = Unary(UnaryOp.ONCE, Constant(True, span), Interval(ticks), span)
+    else:
+        begun = passed(now.since, seconds_of((value, place)), strict, span)
     return begun if late else Unary(UnaryOp.NOT, begun, None, span)
+
+
+def seconds_of(duration: Placed) -> Numeric:
+    """A duration of data, in seconds.
+
+    Raises:
+        Refusal: it is none.
+    """
+    value, place = duration
+    if value.constant is not None:
+        ticks_of(value, place)
+    whole = Quantity(SignalValue(""), unit=_SECONDS)
+    beside = compare(CompareOp.GE, (whole, place), duration, place)
+    if not isinstance(beside, Compare):
+        raise AssertionError("one side varies")
+    return beside.right
 
 
 def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:

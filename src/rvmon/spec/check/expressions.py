@@ -8,7 +8,7 @@ from typing import assert_never
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.choices import spread
-from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
+from rvmon.spec.check.comparisons import closed_interval, compared, moved, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.read_as import formula_of, number_of
@@ -17,6 +17,7 @@ from rvmon.spec.check.values import (
     EVERYWHERE,
     Chosen,
     Closure,
+    Moment,
     Now,
     Quantity,
     Scope,
@@ -130,7 +131,9 @@ class Checker:
     ) -> Value:
         """An operation on numbers, or on choices between them."""
 
-        def made(values: Sequence[Value]) -> Quantity:
+        def made(values: Sequence[Value]) -> Value:
+            if (instant := moved(op, values)) is not None:
+                return instant
             pairs = zip(values, args, strict=True)
             return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
 
@@ -227,7 +230,7 @@ class Checker:
     def _name(self, name: Name, scope: Scope) -> Value:
         local = scope.names.get(name.text)
         match local:
-            case Quantity():
+            case Quantity() | Moment():
                 return local
             case Closure(expression=expression, scope=outer):
                 return self.values((expression,), outer)[0]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from rvmon.diagnostics.span import Span
+from rvmon.spec.check.comparisons import is_time, seconds_of
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.expressions import Checker
 from rvmon.spec.check.linear import linear_form, shown_form
@@ -19,9 +20,23 @@ from rvmon.spec.check.normalise import (
 from rvmon.spec.check.properties import checked_property
 from rvmon.spec.check.quantities import node_of
 from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigger
-from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
+from rvmon.spec.check.values import EVERYWHERE, Closure, Moment, Now, Quantity, Scope
 from rvmon.spec.checked.ctl import Property
-from rvmon.spec.checked.formula import Amount, Bound, BoundAtom, Captured, FieldValue, Formula
+from rvmon.spec.checked.formula import (
+    Amount,
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Captured,
+    FieldValue,
+    Formula,
+    Interval,
+    NowValue,
+    Unary,
+    UnaryOp,
+    passed,
+)
 from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     Capture,
@@ -45,7 +60,14 @@ from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import triggers as rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
-from rvmon.spec.syntax.expressions import Expression, Group, Ident, Immediately
+from rvmon.spec.syntax.expressions import (
+    Expression,
+    Group,
+    Ident,
+    Immediately,
+    Prefix,
+    Window,
+)
 from rvmon.spec.syntax.items import (
     AtEndClause,
     Bare,
@@ -80,7 +102,8 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
         ctl = _property(checker, item)
-        parts = _parts(checker, item, outer, inner, ctl)
+        bounded = _bounded(checker, item, outer)
+        parts = _parts(checker, item, outer, inner, ctl, bounded)
         mode, trigger, consequent = _scoped(checker, item, outer, parts)
         if for_each is not None:
             _refuse_fields_in_sums((trigger, consequent), item.span)
@@ -100,7 +123,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         item.text,
         at_end=policy,
         pulse=is_pulse(trigger),
-        captures=captures,
+        captures=captures if bounded is None else (*captures, *bounded.captures),
         for_each=for_each,
         source=texts.get("source", ""),
         rationale=texts.get("rationale", ""),
@@ -161,7 +184,12 @@ def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
 
 
 def _parts(
-    checker: Checker, item: RequirementItem, outer: Scope, inner: Scope, ctl: Property | None
+    checker: Checker,
+    item: RequirementItem,
+    outer: Scope,
+    inner: Scope,
+    ctl: Property | None,
+    bounded: _Bounded | None,
 ) -> Parts:
     match item.body:
         case Bare(formula=expression):
@@ -174,7 +202,7 @@ def _parts(
                 checker.report(rules.bare_instant(_ungrouped(expression).span))
             return normalised(formula)
         case Triggered():
-            return _triggered(checker, item.body, outer, inner)
+            return _triggered(checker, item.body, outer, inner, bounded)
         case ResponseMonitor(within=within, span=span):
             ticks = checker.duration(within, EVERYWHERE)
             if ctl is None:
@@ -212,9 +240,66 @@ def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts)
     return parts
 
 
-def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
+@dataclass(frozen=True, slots=True)
+class _Bounded:
+    """`within (x) φ`, `for (x) φ` behind `upon … then`, x from data: counted from the trigger.
+
+    Attributes:
+        op: which of the two.
+        within: φ.
+        captures: the trigger's instant, and x, seconds.
+        span: of the whole.
+    """
+
+    op: UnaryOp
+    within: Expression
+    captures: tuple[Capture, Capture]
+    span: Span
+
+    def owed(self, operand: Formula) -> Formula:
+        """φ before it is too late, or until it is."""
+        begun, bound = self.captures
+        late = passed(begun.name, Captured(bound.name), True, self.span)
+        if self.op is UnaryOp.ALWAYS:
+            excused = Binary(BinaryOp.OR, operand, late, None, self.span)
+            return Binary(BinaryOp.RELEASE, late, excused, Interval(), self.span)
+        early = Unary(UnaryOp.NOT, late, None, self.span)
+        reached = Binary(BinaryOp.AND, operand, early, None, self.span)
+        return Binary(BinaryOp.UNTIL, early, reached, Interval(), self.span)
+
+
+def _bounded(checker: Checker, item: RequirementItem, outer: Scope) -> _Bounded | None:
+    """What a requirement owes within, or for, a time that comes from data; `None`: another."""
+    if not isinstance(item.body, Triggered) or item.body.mode is not Mode.UPON:
+        return None
+    match _ungrouped(item.body.consequent):
+        case Prefix(
+            op=UnaryOp.EVENTUALLY | UnaryOp.ALWAYS as op,
+            operand=operand,
+            window=Window(low=None, high=high, high_open=False),
+            span=span,
+        ) if high is not None:
+            pass
+        case _:
+            return None
+    names = dict(outer.names)
+    for clause in _clauses(item, LetClause):  # it is captured where they are
+        names[clause.name.text] = Closure(clause.value, Scope(dict(names)))
+    value = checker.value(high, Scope(names))
+    if not isinstance(value, Quantity) or value.node is None or not is_time(value):
+        return None
+    word = "within" if op is UnaryOp.EVENTUALLY else "for"
+    bound = Capture(word, seconds_of((value, high.span)))
+    return _Bounded(op, operand, (Capture("upon", NowValue()), bound), span)
+
+
+def _triggered(
+    checker: Checker, body: Triggered, outer: Scope, inner: Scope, bounded: _Bounded | None
+) -> Parts:
     trigger = checker.top(body.trigger, outer)
-    consequent = checker.top(body.consequent, inner)
+    consequent = checker.top(bounded.within if bounded else body.consequent, inner)
+    if bounded and consequent is not None:
+        consequent = bounded.owed(consequent)
     if trigger and (ahead := future_part(trigger)):
         checker.report(rules.future_trigger(ahead.span or body.trigger.span))
         raise Reported
@@ -316,6 +401,10 @@ def _captures(
     values, names = dict(outer.names), dict(outer.names)
     for clause in _clauses(item, LetClause):
         (value,) = checker.values((clause.value,), Scope(values))
+        if value == Now():
+            captures.append(Capture(clause.name.text, NowValue()))
+            names[clause.name.text] = Moment(clause.name.text)
+            continue
         if not isinstance(value, Quantity):
             raise Refusal(type_rules.needs_number(clause.value.span))
         node = node_of((value, clause.value.span))

@@ -53,7 +53,26 @@ class Chosen:
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """`now`: the time since the first instant; only compared with durations."""
+    """`now`, `now - t0`: the time since an instant; only compared, or captured by `let`.
+
+    Attributes:
+        since: the name of a captured instant; `None`: the first one.
+    """
+
+    since: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """An instant that was captured, or some time behind it; `now` is compared with it.
+
+    Attributes:
+        name: that it was captured by.
+        later: so much time behind it; `None`: none.
+    """
+
+    name: str
+    later: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +126,7 @@ class Ago:
     window: int
 
 
-Beside = Age | Now | AmountOf | Extreme | Ago
+Beside = Age | Now | Moment | AmountOf | Extreme | Ago
 """What only stands beside something else in a comparison."""
 
 Value = Formula | Quantity | Beside | Chosen
@@ -125,7 +144,7 @@ class Closure:
 class Scope:
     """The names that hold inside a macro or requirement, besides those of the file."""
 
-    names: Mapping[str, Closure | Quantity] = field(default_factory=dict)
+    names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)
 
 
 EVERYWHERE = Scope()

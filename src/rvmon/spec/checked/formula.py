@@ -81,7 +81,12 @@ class Arithmetic:
     args: tuple[Numeric, ...]
 
 
-Numeric = Literal | SignalValue | FieldValue | Captured | UpdateValue | Arithmetic
+@dataclass(frozen=True, slots=True)
+class NowValue:
+    """`now`: ticks since the first instant; unknown if an outage hides which that was."""
+
+
+Numeric = Literal | NowValue | SignalValue | FieldValue | Captured | UpdateValue | Arithmetic
 
 
 class CompareOp(StrEnum):
@@ -312,10 +317,34 @@ class Amount:
         return (self.operand,) if self.known is None else (self.operand, self.known)
 
 
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """`now - t0 >= x`: at least so long has passed since an instant that was captured.
+
+    Attributes:
+        since: the name of that instant; `None`: since the first.
+        after: x, seconds, rounded to whole ticks; halves to even ones.
+        strict: whether it is `> x`.
+        known: a comparison with itself of what it reads: where that is known.
+    """
+
+    since: str | None
+    after: Numeric
+    strict: bool
+    known: Compare
+    span: Span | None = None
+
+
 def itself(value: Numeric, span: Span | None = None) -> Compare:
     """A comparison of a number with itself: unknown where that is, else true."""
     return Compare(CompareOp.EQ, value, value, span)
 
 
+def passed(since: str | None, after: Numeric, strict: bool, span: Span | None = None) -> Passed:
+    """That so many seconds have passed since an instant that was captured, or the first."""
+    read = after if since is None else Arithmetic(NumericOp.ADD, (Captured(since), after))
+    return Passed(since, after, strict, itself(read), span)
+
+
 Atom = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
-Formula = Atom | Unary | Binary | Amount
+Formula = Atom | Unary | Binary | Amount | Passed

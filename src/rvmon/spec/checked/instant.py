@@ -15,6 +15,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Passed,
     ProbeAtom,
     SignalAtom,
     Unary,
@@ -79,7 +80,7 @@ def _both_facts(formula: Formula) -> Both:
             return _both_facts(operand)[0], {}
         case Unary() | Binary():
             return read(formula, _both_facts, _Facts())
-        case Amount():
+        case Amount() | Passed():
             return {}, {}
         case Compare():
             key, same = _compared(formula)
@@ -109,7 +110,7 @@ def truth_at(formula: Formula, facts: Facts) -> bool | None:
             return facts.get(_key(formula))
         case Unary() | Binary():
             return read(formula, lambda part: truth_at(part, facts), _Here(facts))
-        case Amount():
+        case Amount() | Passed():
             return None
 
 

@@ -18,6 +18,7 @@ from rvmon.spec.checked.formula import (
     FieldValue,
     Formula,
     Numeric,
+    Passed,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -48,6 +49,8 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
                 waiting.append(operand)
             case Amount():
                 waiting += reversed(node.operands)
+            case Passed(known=known):
+                waiting.append(known)
             case Binary(left=left, right=right):
                 waiting += (right, left)
 
@@ -124,7 +127,7 @@ def _pulses(formula: Formula) -> Pulses:
             return reads_field(left) or reads_field(right), False
         case ProbeAtom(probe=probe):
             return probe is not Probe.KNOWN, False
-        case SignalAtom() | BoundAtom() | Amount():
+        case SignalAtom() | BoundAtom() | Amount() | Passed():
             return False, False
         case Unary(op=op) | Binary(op=op) if op.entry.tense is not Tense.PRESENT:
             return op.entry.pulse, False

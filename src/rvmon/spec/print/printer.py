@@ -21,7 +21,9 @@ from rvmon.spec.checked.formula import (
     Interval,
     Literal,
     Measured,
+    NowValue,
     Numeric,
+    Passed,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -96,6 +98,9 @@ def _formula(formula: Formula, level: int) -> str:
             return _unary(formula)
         case Amount():
             return _amount(formula)
+        case Passed(since=since, after=after, strict=strict):
+            begin = "" if since is None else f" - {_name(since)}"
+            return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
         case Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text
@@ -212,6 +217,8 @@ def _numeric(numeric: Numeric, level: int) -> str:
     match numeric:
         case Literal():
             return _literal(numeric, level)
+        case NowValue():
+            return "now"
         case SignalValue(name=name) | Captured(name=name):
             return _name(name)
         case FieldValue(event=event, field=field):

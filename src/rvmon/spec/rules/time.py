@@ -39,6 +39,12 @@ def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
     return finding(NO_DURATION, f"`{text}` is no duration", span, fix=fix)
 
 
+moving = Breach(
+    NO_DURATION,
+    "`{}` comes from data, and is no constant duration",
+    "it is counted from a trigger, right behind that: `upon e then within (x) φ`; elsewhere "
+    "compare with `let t0 = now`: `φ until now >= t0 + x`",
+)
 part_of_tick = Breach(
     PART_OF_TICK,
     "`{}` is no whole number of nanoseconds",

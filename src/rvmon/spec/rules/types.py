@@ -78,8 +78,9 @@ def age_alone(span: Span) -> Diagnostic:
 
 now_alone = Breach(
     WRONG_TYPE,
-    "`{}` is not what `now` is for: it is compared with a constant duration, by < <= > >=",
-    "the time since an event is its age: `age(e) > 3 s`; a time ahead is `within D`",
+    "`{}` is not what `now` is for: it is compared with a duration, by < <= > >=",
+    "with `let t0 = now` write `now - t0 <= x` or `now <= t0 + x`; the time since an event is "
+    "its age: `age(e) > 3 s`",
 )
 amount_alone = Breach(
     WRONG_TYPE,

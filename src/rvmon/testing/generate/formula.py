@@ -33,6 +33,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
     itself,
+    passed,
 )
 from rvmon.spec.checked.operators import Tense, Window
 from rvmon.testing.generate.choices import (
@@ -68,6 +69,7 @@ class Shape:
         wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
         longest: the greatest bound of an interval, ticks.
         amounts: how often counts and durations come, beside about 120 of all others.
+        instants: names of captured instants.
     """
 
     step: bool = False
@@ -80,6 +82,7 @@ class Shape:
     wide: bool = False
     longest: int = 6
     amounts: int = 0
+    instants: tuple[str, ...] = ()
 
 
 _RADIAN = Literal(1, "rad")
@@ -268,12 +271,25 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
             return Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))
         case "past unary":
             return past_unary(rng, below, depth)
+        case "amount" if shape.numbers and not shape.wide and chance(rng, 20):
+            return _passed(rng, shape)
         case "amount":
             return _amount(rng, shape, depth)
         case "since":
             return _binary(rng, below, depth, Tense.PAST)
         case _:
             return Unary(UnaryOp.PREVIOUS, formula(rng, below, depth - 1))
+
+
+def _passed(rng: Rng, shape: Shape) -> Formula:
+    """So long since an instant, with or without data in the duration."""
+    after: Numeric = Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
+    if chance(rng, 60):
+        after = Arithmetic(
+            NumericOp.MUL, (_input(rng, replace(shape, events=False)), Literal(1e-9))
+        )
+    since = pick(rng, shape.instants) if shape.instants and chance(rng, 85) else None
+    return passed(since, after, chance(rng, 50))
 
 
 def _amount(rng: Rng, shape: Shape, depth: int) -> Formula:

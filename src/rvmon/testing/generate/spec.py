@@ -15,6 +15,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     FieldValue,
     Formula,
+    NowValue,
     Numeric,
     SignalAtom,
     SignalValue,
@@ -145,6 +146,8 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
     if profile.for_each and chance(rng, 12):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
+    instants = ("t0",) if captures and profile.amounts and chance(rng, 50) else ()
+    captures += tuple(Capture(name, NowValue()) for name in instants)
     shape = Shape(
         step=time is not TimeModel.HELD,
         past=profile.past,
@@ -152,9 +155,10 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         mixed=profile.mixed,
         numbers=profile.numbers,
         events=profile.events,
-        captured=(*instance, *(capture.name for capture in captures)),
+        captured=(*instance, *(one.name for one in captures if one.name not in instants)),
         wide=profile.wide > 0,
         amounts=profile.amounts,
+        instants=instants,
     )
     seen = Shape(
         step=shape.step,

@@ -18,6 +18,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     FieldValue,
     Formula,
+    Passed,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -59,7 +60,7 @@ def is_pulse(formula: Formula, *, negated: bool = False) -> bool:
             return not negated and bool([*events_of(left), *events_of(right)])
         case ProbeAtom(probe=probe):
             return not negated and probe is not Probe.KNOWN
-        case SignalAtom() | BoundAtom() | Amount():
+        case SignalAtom() | BoundAtom() | Amount() | Passed():
             return False
         case Unary(op=UnaryOp.NOT, operand=operand):
             return is_pulse(operand, negated=not negated)

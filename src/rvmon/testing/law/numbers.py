@@ -15,6 +15,7 @@ from rvmon.spec.checked.formula import (
     CompareOp,
     FieldValue,
     Literal,
+    NowValue,
     Numeric,
     SignalValue,
     UpdateFunction,
@@ -24,7 +25,7 @@ from rvmon.testing.law.syntax import parts_of
 from rvmon.testing.law.word import Letter, Truth, conjunction, disjunction, truth_of
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
-from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 
 def compare(
@@ -108,6 +109,8 @@ def number(
             return letter.signals[name].value
         case FieldValue(event=event, field=field):
             return known_scalar(payloads.get(event, {}).get(field))
+        case NowValue():
+            return None if letter.since is None else letter.instant - letter.since
         case Captured(name=name):
             return captured[name]
         case UpdateValue(function=function, name=name):
@@ -172,6 +175,16 @@ def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
     if whole and isinstance(result, int):
         return at_edge(result, Kind.INT)
     return float(result) if math.isfinite(result) else None
+
+
+def as_ticks(seconds: float) -> int:
+    """A duration of data in ticks, rounded as the stamps of data are; at most the bounds of time.
+
+    >>> as_ticks(0.3), as_ticks(2)
+    (300000000, 2000000000)
+    """
+    ticks = seconds * TICKS_PER_SECOND
+    return round(max(-TIME_LIMIT, min(ticks, TIME_LIMIT)))
 
 
 _WHOLE = range(-(2**63), 2**63)

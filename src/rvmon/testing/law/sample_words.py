@@ -77,12 +77,14 @@ def word_of(
         name: _said_of(name, samples, outages, has_source=names is None or name in names)
         for name in (*spec.signals, *spec.events)
     }
-    letters = []
+    letters: list[Letter] = []
     for index, instant in enumerate(instants):
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
             told = {name: one.by(before, instant) for name, one in said.items()}
-            letters.append(_letter(spec, instant, told))
+            begins = letters[0] if letters else None
+            since = instant if begins is None else begins.since
+            letters.append(replace(_letter(spec, instant, told), since=since))
         else:
             letters.append(_blank(spec, instant))
     return Word(tuple(letters), known_to, reached)

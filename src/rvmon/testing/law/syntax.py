@@ -14,6 +14,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Numeric,
+    Passed,
     Unary,
     UnaryOp,
 )
@@ -29,6 +30,8 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         case Amount():
             for part in formula.operands:
                 yield from subformulas(part)
+        case Passed(known=known):
+            yield known
         case Binary(left=left, right=right):
             yield from subformulas(left)
             yield from subformulas(right)

@@ -23,13 +23,14 @@ from rvmon.spec.checked.formula import (
     Interval,
     Measured,
     Numeric,
+    Passed,
     Probe,
     ProbeAtom,
     SignalAtom,
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.numbers import compare, events_of, number
+from rvmon.testing.law.numbers import as_ticks, compare, events_of, number
 from rvmon.testing.law.past import (
     Operand,
     always_true,
@@ -196,8 +197,23 @@ class Truths:
                 return amount(self._letters, lambda k: self.state(operand, k), i, formula)
             case Amount():
                 return self._total(formula, i)
+            case Passed():
+                return self._passed(formula, i)
             case _:
                 assert_never(formula)
+
+    def _passed(self, formula: Passed, i: int) -> Truth:
+        """A first instant that may have been earlier leaves unknown what is since then."""
+        after = self._number(formula.after, i)
+        since = 0 if formula.since is None else self._captured[formula.since]
+        if not isinstance(after, int | float) or not isinstance(since, int):
+            unborn = self.state(formula.known, i) is Truth.UNBORN
+            return Truth.UNBORN if unborn else Truth.UNKNOWN
+        ticks = since + as_ticks(after) + formula.strict
+        firsts = [letter.instant for letter in self._letters if letter.sure][:1]
+        firsts += [self._letters[0].instant] if not self._letters[0].sure else []
+        late = {self._letters[i].instant - first >= ticks for first in firsts}
+        return truth_of(late.pop()) if len(late) == 1 else Truth.UNKNOWN
 
     def _total(self, formula: Amount, i: int) -> Truth:
         """A sum, mean or integral: unborn as its limit is, and a mean as what it is of."""

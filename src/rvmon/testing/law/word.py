@@ -134,12 +134,14 @@ class Letter:
         events: the state of each.
         sure: whether there is such a position; in an outage of sampled time, and before the first
             sample that was read, there may be none.
+        since: the first position; `None` if it is not known.
     """
 
     instant: int
     signals: Mapping[str, SignalState]
     events: Mapping[str, EventState]
     sure: bool = True
+    since: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,6 +44,25 @@ static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
+/* The same of an instant that was captured, or of the first, and of a number of seconds. */
+static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
+{
+    const rv_number after = program_value(r, r->part->atoms[n->a].left, NULL);
+    const rv_number since = program_value(r, (int32_t)n->low, NULL);
+    int64_t asked;
+    int64_t due;
+    int64_t may_be_due;
+    if ((known != IS_TRUE) || (after.kind == RV_UNKNOWN) || (since.kind != RV_WHOLE)) {
+        timers_set(&r->wake, n->timer, NEVER);
+        return IS_UNKNOWN;
+    }
+    asked = since.as.whole + seconds_in_ticks(&after) + n->b;
+    due = (asked >= LIMIT) ? NEVER : r->at.begun + asked;
+    may_be_due = (asked >= LIMIT) ? NEVER : r->at.origin + asked;
+    timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
+    return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
+}
+
 static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
 {
     const uint8_t value = r->seen[n->slot];
@@ -106,6 +125,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
     case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
     case NODE_SUM: return node_sum(r, n, t, r->truth[operands[0]]);
+    case NODE_PASSED: return passed(r, n, t, r->truth[operands[0]]);
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }

@@ -29,7 +29,7 @@ int32_t arguments_of(int32_t op)
     case CODE_CLAMP:
     case CODE_ANGLE_BETWEEN: return 3;
     case CODE_DISTANCE_ON_EARTH: return 4;
-    default: return is_within(op, CODE_ADD, CODES) ? 2 : 0;
+    default: return is_within(op, CODE_ADD, CODE_NOW) ? 2 : 0;
     }
 }
 

@@ -301,6 +301,25 @@ static rv_number field_value(const run *r, int32_t event, int32_t field, const i
     return o->fields[one * r->part->events[event].fields + field];
 }
 
+/* The time since the first position; unknown if that may have been another, or if this may be none. */
+static rv_number time_now(const run *r)
+{
+    const bool known = (r->at.begun == r->at.origin) && !r->at.dense && (r->at.presence == ARE_THERE);
+    return known ? whole(r->at.position - r->at.begun) : UNKNOWN_NUMBER;
+}
+
+/* A number of seconds in ticks, halves to even ones; within the bounds of time. */
+int64_t seconds_in_ticks(const rv_number *seconds)
+{
+    const double ticks = as_double(seconds) * 1e9;
+    if (seconds->kind == RV_WHOLE) {
+        const int64_t most = LIMIT / 1000000000;
+        return (seconds->as.whole > most) ? LIMIT : ((seconds->as.whole < -most) ? -LIMIT
+                                                     : seconds->as.whole * 1000000000);
+    }
+    return (ticks >= 0x1p62) ? LIMIT : ((ticks <= -0x1p62) ? -LIMIT : (int64_t)rint(ticks));
+}
+
 rv_number program_value(const run *r, int32_t place, const int32_t *at)
 {
     rv_number stack[PROGRAM_DEPTH];
@@ -319,6 +338,7 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
             }
             n++;
             break;
+        case CODE_NOW: stack[n++] = time_now(r); break;
         case CODE_SIGNAL: stack[n++] = r->value[arg]; break;
         case CODE_CAPTURED: stack[n++] = r->captured[arg]; break;
         case CODE_FIELD:

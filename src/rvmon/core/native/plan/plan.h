@@ -181,16 +181,18 @@ enum {
     NODE_STRETCH,              /* since in bounds */
     NODE_AMOUNT,               /* so much in the last `high` ticks: amounts.c */
     NODE_SUM,                  /* numbers of the last `high` ticks, added up: sums.c */
+    NODE_PASSED,               /* so long has passed as a number says */
     NODES
 };
 
 typedef struct {
-    int64_t low;               /* of a `since`; of ELAPSED, how long; of SUM, the program of its limit */
+    int64_t low;               /* of a `since`; of ELAPSED, how long; of SUM, the program of its
+                                * limit; of PASSED, that of the instant, in ticks */
     int64_t high;              /* RV_NEVER: none */
     int32_t op;
-    int32_t a;                 /* of a leaf, or SUM, the atom; of a constant, the truth; DOUBT: pulse */
+    int32_t a;                 /* of a leaf, SUM or PASSED, the atom; of a constant, the truth; DOUBT: pulse */
     int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of SUM,
-                                * what is added up, and SUM_STRICT if the limit is not enough */
+                                * what is added up, and SUM_STRICT if the limit is not enough; of PASSED, a tick more */
     int32_t slot;              /* its memory; -1: it has none */
     int32_t timer;             /* -1: time alone does not change it */
     list operands;             /* of a leaf and UNBORN: signals times 2, plus 1 if an update after the
@@ -355,6 +357,7 @@ enum {
     CODE_SIN, CODE_COS, CODE_TAN, CODE_ASIN, CODE_ACOS, CODE_ATAN2, CODE_EXP, CODE_LOG, CODE_LOG10,
     CODE_POW, CODE_ANGLE_BETWEEN, CODE_DISTANCE_ON_EARTH,
     CODE_BIT_AND, CODE_BIT_OR, CODE_BIT_XOR, CODE_SHIFT_LEFT, CODE_SHIFT_RIGHT, CODE_BIT,
+    CODE_NOW,                  /* ticks since the first position */
     CODES
 };
 #define PROGRAM_DEPTH 32

@@ -57,6 +57,7 @@ static bool check_program(const plan *p, const part_plan *x, int64_t place)
             }
             depth++;
             break;
+        case CODE_NOW: depth++; break;
         case CODE_CAPTURED:
             if (!is_within(arg, 0, x->captured)) {
                 return false;
@@ -72,7 +73,7 @@ static bool check_program(const plan *p, const part_plan *x, int64_t place)
             depth++;
             break;
         default:
-            if (!is_within(op, CODE_ADD, CODES) || (depth < arguments_of(op))) {
+            if (!is_within(op, CODE_ADD, CODE_NOW) || (depth < arguments_of(op))) {
                 return false;
             }
             depth -= arguments_of(op) - 1;
@@ -149,10 +150,11 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
     case NODE_STRETCH:
     case NODE_AMOUNT:
     case NODE_SUM: slots = x->stretches; break;
-    case NODE_ELAPSED: break;
+    case NODE_ELAPSED:
+    case NODE_PASSED: break;
     default: timed = false; break;
     }
-    if ((slots > 0) ? !is_within(n->slot, 0, slots) : (n->op == NODE_DOUBT) || (n->op > NODE_DOUBT)) {
+    if ((slots > 0) ? !is_within(n->slot, 0, slots) : (n->op >= NODE_DOUBT) && (n->op != NODE_PASSED)) {
         return false;
     }
     if (!timed) {
@@ -194,7 +196,7 @@ static bool check_links(const plan *p, const part_plan *x, list links)
     return true;
 }
 
-/* What is added up, and the program of the limit. */
+/* What is added up, and the program of the limit; or how much time, and that of the instant. */
 static bool check_sum(const plan *p, const part_plan *x, const node_plan *n)
 {
     const atom_plan *a;
@@ -203,7 +205,8 @@ static bool check_sum(const plan *p, const part_plan *x, const node_plan *n)
     }
     a = &p->atoms[x->atoms.first + n->a];
     return ((a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD))
-           && is_within(n->b, 0, 2 * SUM_STRICT) && is_within(n->sum, 0, x->sums)
+           && ((n->op == NODE_PASSED) ? is_within(n->b, 0, 2)
+                                      : is_within(n->b, 0, 2 * SUM_STRICT) && is_within(n->sum, 0, x->sums))
            && check_program(p, x, n->low);
 }
 
@@ -219,7 +222,7 @@ bool check_nodes(const plan *p, const part_plan *x)
             || ((n->op == NODE_LEAF)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
             || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))
-            || ((n->op == NODE_SUM) && !check_sum(p, x, n))) {
+            || (((n->op == NODE_SUM) || (n->op == NODE_PASSED)) && !check_sum(p, x, n))) {
             return false;
         }
     }
