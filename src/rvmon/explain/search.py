@@ -199,10 +199,20 @@ class _Search:
 
     def first(self) -> Iterator[_Node]:
         """The runs of one sample; signals have a value from the start."""
+        some: dict[str, Value] = {}
         for valuation in self.choices.valuations:
-            if SILENT not in valuation.values():
-                changes = self._changes(valuation, {})
-                yield _Node((Sample(0, changes),), 0, valuation, _stir(changes))
+            for name, value in valuation.items():
+                if not isinstance(value, Silence):
+                    some.setdefault(name, value)
+        tried: dict[str, Valuation] = {}
+        for valuation in self.choices.valuations:
+            # Of several names whose updates matter, few combinations are kept in which all speak.
+            whole = {n: some[n] if v is SILENT else v for n, v in valuation.items() if n in some}
+            tried.setdefault(repr(whole), whole)
+        for whole in tried.values():
+            if len(whole) == len(some):
+                changes = self._changes(whole, {})
+                yield _Node((Sample(0, changes),), 0, whole, _stir(changes))
 
     def after(self, node: _Node, cut: int) -> Iterator[_Node]:
         """The runs that go on from one: by waiting, or by a sample."""

@@ -104,7 +104,7 @@ class Joined:
 
     def stamp_doubts(self) -> list[Health]:
         """What is odd about each file."""
-        return [one for file in self._files for one in (*file.rows.conflicts(), *file.doubts())]
+        return [one for file in self._files for one in (*file.rows.doubts(), *file.doubts())]
 
 
 def _samples_of(part: File) -> Iterator[Sample]:

@@ -252,7 +252,7 @@ class FileRecording:
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self.rows.conflicts() + self.doubts()
+        return ignored + self.rows.doubts() + self.doubts()
 
     def doubts(self) -> list[Health]:
         """What is odd about its stamps and its end."""

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.alternation import Alternations
 from rvmon.readers.coalesce import Conflicts, merged, updates_in
 from rvmon.readers.doubtful_unit import LOOKED_AT
-from rvmon.trace.health import Health
+from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
 
 ROOM = 65_536
 """So many rows wait at most for those that are late."""
+
+LEAP = 365 * 86_400 * TICKS_PER_SECOND
+"""Ticks of a year, for which no recording is silent: one of the two stamps is of another clock."""
 
 Row = tuple[int, int, Mapping[str, Value]]
 """Number, ticks, what it updates."""
@@ -52,6 +56,7 @@ class Rows:
         self.first: list[int] = []
         self.alternations = Alternations()
         self._last: int | None = None
+        self._leaps: list[tuple[int, int]] = []
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
         """The samples of a source that is read from its start.
@@ -110,6 +115,7 @@ class Rows:
         self.count, self.first = 0, []
         self.lateness = 0
         self._last = None
+        self._leaps = []
 
     def _noted(self, sample: Sample) -> Sample:
         self.alternations.note(sample.values)
@@ -129,7 +135,11 @@ class Rows:
         if back.any():
             batch = batch.cut(0, int(back.argmax()) + 1)
             times = batch.times
-        self._last = int(times[-1])
+        ends = self._last if self._last is not None else int(times[0]), int(times[-1])
+        if ends[1] - ends[0] > LEAP:
+            every = [ends[0], *times.tolist()]
+            self._leaps += [one for one in pairwise(every) if one[1] - one[0] > LEAP]
+        self._last = ends[1]
         self.count += len(times)
         if len(self.first) < LOOKED_AT:
             self.first += times[: LOOKED_AT - len(self.first)].tolist()
@@ -151,8 +161,10 @@ class Rows:
 
     def _in_order(self, rows: Iterable[Row]) -> Iterator[Sample]:
         for number, t, values in rows if self.ordered else self._sorted(rows):
-            if self._last is not None and t < self._last:
-                raise self._backwards(number, self._last, t)
+            if self._last is not None and not 0 <= t - self._last <= LEAP:
+                if t < self._last:
+                    raise self._backwards(number, self._last, t)
+                self._leaps.append((self._last, t))
             self._last = t
             self.count += 1
             if len(self.first) < LOOKED_AT:
@@ -185,10 +197,18 @@ class Rows:
         if fault is not None:
             raise fault
 
-    def conflicts(self) -> list[Health]:
-        """The signals that got two values at one stamp."""
-        return self._conflicts.health()
+    def doubts(self) -> list[Health]:
+        """What is odd: signals that got two values at one stamp, stamps of another clock."""
+        found = self._conflicts.health()
+        if self._leaps:
+            last, t = self._leaps[0]
+            remark = (
+                f"from {format_ticks(last)} to {format_ticks(t)} there are "
+                f"{(t - last) / LEAP:.1f} years: is one of them of another clock?"
+            )
+            found.append(Health(HealthKind.CLOCK, "stamps", len(self._leaps), t, remark=remark))
+        return found
 
     def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:
         """What a monitor found about these samples, with what was noted here."""
-        return (*self.alternations.remarked(health), *self.conflicts())
+        return (*self.alternations.remarked(health), *self.doubts())

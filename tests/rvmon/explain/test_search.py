@@ -129,6 +129,18 @@ def test_captured_values_and_instances():
         assert set(found) == set(KINDS), name
 
 
+def test_a_trigger_beside_signals_that_go_stale_need_not_come():
+    """However many of them there are: the shortest run is one in which they all speak."""
+    spec = rvmon.loads(
+        "signal mode : {hold, rtl}\nsignal north, east, height : real [m] stale after 200 ms\n"
+        "requirement Q\n upon mode == rtl\n"
+        " then hypot(north, east) >= d - 1 m until height > 30 m\n let d = hypot(north, east)\n"
+    )
+    found = examples_of(spec.checked, "Q").examples
+    assert set(found) == set(KINDS)
+    assert len(found["NT"].samples) == 1
+
+
 def test_what_cannot_be_is_not_shown():
     """No example where there is none, and no run beyond the budget."""
     spec = build.spec_of(build.requirement(build.eventually(build.f), upon=build.start))
