@@ -42,6 +42,23 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
             yield from _some(sorted(found), path)
 
 
+def one_recording(path: str) -> str:
+    """The recording at a path, or the only one in a folder, as of a bag that was not closed.
+
+    Raises:
+        TraceError: there are several.
+    """
+    if is_address(path) or not os.path.isdir(path) or form_of_folder(path):
+        return path
+    found = list(found_recordings([path]))
+    if len(found) > 1:
+        raise TraceError(
+            f"{path}: holds {len(found)} recordings: evaluate each, or give a list of "
+            "those that are one"
+        )
+    return found[0]
+
+
 def _some(found: list[str], path: str) -> list[str]:
     if not found:
         raise TraceError(f"{path}: there is no recording: one ends in {', '.join(FORMATS)}")

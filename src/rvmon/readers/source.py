@@ -155,9 +155,10 @@ def _of_columns_or_lines(
     if all(isinstance(one, str | Path) for one in listed):
         trace = JOINT.join(map(str, listed))
     if isinstance(trace, str | Path):
+        from rvmon.readers.found import one_recording
         from rvmon.readers.recording import FileRecording
 
-        return FileRecording(trace, schema, ordered=ordered)
+        return FileRecording(one_recording(str(trace)), schema, ordered=ordered)
     from rvmon.readers.columns import TableRecording
 
     if columns_by_name(listed[0]) is not None:

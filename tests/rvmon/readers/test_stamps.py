@@ -163,3 +163,35 @@ def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
     shown = capsys.readouterr()
     assert "warning" not in shown.out + shown.err
     assert "to 0.98 s" in shown.out
+
+
+def of_clocks(report):
+    """What is said of stamps."""
+    return [one.remark for one in report.health if one.kind == "clock"]
+
+
+def test_one_stamp_of_another_clock_is_a_finding(spec, tmp_path):
+    """Of 1970, as messages have it that nobody stamped: whatever holds them, wherever it comes."""
+    since_1970 = 1_700_000_000
+    for stamps in ([5, since_1970, since_1970 + 1], [since_1970, since_1970 + 2**30]):
+        table = {"t": stamps, "x": [1.0] * len(stamps)}
+        path = tmp_path / "a.csv"
+        path.write_text("t,x\n" + "".join(f"{t},1\n" for t in stamps))
+        pairs = [(t, {"x": 1.0}) for t in stamps]
+        for trace in (table, path, pairs):
+            [remark] = of_clocks(spec.evaluate(trace))
+            assert "years: is one of them of another clock?" in remark
+    assert (
+        f"from 5 s to {since_1970} s there are 53.9 years"
+        in of_clocks(spec.evaluate([(5, {"x": 1.0}), (since_1970, {"x": 1.0})]))[0]
+    )
+    assert not of_clocks(spec.evaluate({"t": [0, 86_400 * 300], "x": [1.0, 1.0]}))
+
+
+def test_a_message_of_1970_in_a_bag_is_a_finding(spec, tmp_path):
+    """As the recorder stamped it."""
+    bags = pytest.importorskip("tests.tools.bags")
+    pytest.importorskip("rosbags")
+    sent = [("/temp", t, {"data": 1.0}) for t in (7, bags.START, bags.START + 5)]
+    path = bags.write_ros1(tmp_path / "a.bag", sent)
+    assert "53.9 years" in of_clocks(spec.evaluate(path, columns={"x": "/temp"}))[0]

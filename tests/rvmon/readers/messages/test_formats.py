@@ -1,6 +1,7 @@
 """The same data in every format of messages, written by the libraries of that format."""
 
 import gc
+import json
 import random
 
 import pytest
@@ -17,6 +18,7 @@ from tests.tools.bags import (
 )
 
 import rvmon
+from rvmon.cli import main
 
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap_protobuf")
@@ -103,3 +105,24 @@ def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
         report = spec.evaluate(path)
         assert report.verdicts["R"] == "F"
         assert report.end == START + 8 * 10**7
+
+
+@pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
+def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
+    """Of a bag of ROS 2, also of one that was not closed; several recordings are not one."""
+    sent = sent_at_random(random.Random(1), 60)
+    (tmp_path / "shop.rv").write_text(SHOP)
+    spec = rvmon.load(tmp_path / "shop.rv")
+    folder = write_ros2(tmp_path / "bag", sent, plugin)
+    for is_closed in (True, False):
+        if not is_closed:
+            (folder / "metadata.yaml").unlink()
+        report = spec.evaluate(folder)
+        assert main(["run", str(tmp_path / "shop.rv"), str(folder), "--format", "json"]) == 1
+        [told] = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        verdicts = {name: one["verdict"] for name, one in told["requirements"].items()}
+        assert verdicts == {name: one.value for name, one in report.verdicts.items()}
+        assert (told["origin"], told["end"]) == (report.origin, report.end)
+    write_ros2(folder / "more", sent, plugin)
+    with pytest.raises(rvmon.TraceError, match="holds 2 recordings"):
+        spec.evaluate(folder)
