@@ -209,10 +209,10 @@ class _Search:
             # Of several names whose updates matter, few combinations are kept in which all speak.
             whole = {n: some[n] if v is SILENT else v for n, v in valuation.items() if n in some}
             tried.setdefault(repr(whole), whole)
-        for whole in tried.values():
-            if len(whole) == len(some):
-                changes = self._changes(whole, {})
-                yield _Node((Sample(0, changes),), 0, whole, _stir(changes))
+        for valuation in tried.values():
+            if len(valuation) == len(some):
+                changes = self._changes(valuation, {})
+                yield _Node((Sample(0, changes),), 0, valuation, _stir(changes))
 
     def after(self, node: _Node, cut: int) -> Iterator[_Node]:
         """The runs that go on from one: by waiting, or by a sample."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,18 @@ from rvmon.trace.schema import Kind
 from rvmon.trace.time import ticks_of_seconds
 
 _Key = tuple[int, bool]
+_UNREAD = "there is a line that cannot be read"
+_NO_FRAMES = {
+    ".asc": re.compile(
+        r"\s*($|//|(date|base|internal|no|previous|begin|end)\b|"
+        r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe)[a-z]*[g-z]))",
+        re.IGNORECASE,
+    ),
+    ".trc": re.compile(r"\s*($|;)|.*\b(Warng|Error|ST|EC|ER|EV|FFFFFFFF)\b"),
+}
+"""Lines of text that say something else than a frame; the library passes over what it cannot read,
+too."""
+
 _PDU_2 = 240
 """From this format on the second byte of an identifier of J1939 is no address."""
 
@@ -33,7 +46,7 @@ class FrameMessages:
             where a message comes on several.
         end: the last stamp.
         count: of the frames of these topics.
-        outages: that it was cut off.
+        outages: where lines cannot be read, and that it was cut off.
 
     Raises:
         RvmonError: what reads it is not installed.
@@ -49,7 +62,7 @@ class FrameMessages:
         self.count, self.end = 0, None
         channels: dict[Any, set[Any]] = {}
         others = 0
-        for t, key, channel, _ in self._frames():
+        for t, key, channel, _ in self._frames(self.outages):
             self.end = t if self.end is None else max(self.end, t)
             message = self._message(key)
             if message is None:
@@ -69,9 +82,11 @@ class FrameMessages:
             for message, found in channels.items()
             for channel in sorted(found, key=str)
         }
-        if self.end is not None and self._is_cut:
-            self.end += 1
-            self.outages.append(Outage(self.end, self.end, "it was cut off, or not closed"))
+        if self.end is not None:
+            self.end = max([self.end, *(one.until for one in self.outages)])
+            if self._is_cut:
+                self.end += 1
+                self.outages.append(Outage(self.end, self.end, "it was cut off, or not closed"))
 
     def _name(self, message: str, channel: Any) -> str:
         return f"/can{channel}/{message}" if message in self._several else f"/{message}"
@@ -82,24 +97,34 @@ class FrameMessages:
             self._seen[key] = self._known.get(_group(key)) if found is None and key[1] else found
         return self._seen[key]
 
-    def _frames(self) -> Iterator[tuple[int, _Key, Any, bytes]]:
-        """Ticks, identifier, channel and data of each frame of data."""
-        if self._path.suffix.lower() == ".mf4":
+    def _frames(
+        self, outages: list[Outage] | None = None
+    ) -> Iterator[tuple[int, _Key, Any, bytes]]:
+        """Ticks, identifier, channel and data of each frame of data; stretches that were lost."""
+        ending = self._path.suffix.lower()
+        if ending == ".mf4":
             from rvmon.readers.messages.mdf import mdf_frames
 
             yield from mdf_frames(self._path)
             return
-        held = None
+        held, last = None, None
         with open(self._path, **_opening(self._path)) as file, errors_as_damage("a log of CAN"):
-            for frame in _reader_of(self._path)(file):
+            lines = _Lines(file, _NO_FRAMES[ending]) if ending in _NO_FRAMES else None
+            for frame in _reader_of(self._path)(lines or file):
+                t = ticks_of_seconds(frame.timestamp)
+                if lines is not None and lines.take_unread() and outages is not None:
+                    # What was lost may have had the stamp of its neighbour.
+                    outages.append(Outage(t - 1 if last is None else min(last, t), t, _UNREAD))
+                last = t
                 if frame.is_error_frame or frame.is_remote_frame:
                     continue
                 if held is not None:
                     yield held
                 key = (frame.arbitration_id, frame.is_extended_id)
-                t = ticks_of_seconds(frame.timestamp)
                 held = t, key, frame.channel, bytes(frame.data)
-        if held is not None and not (self._is_cut and self._path.suffix.lower() != ".blf"):
+            if lines is not None and lines.is_unread and outages is not None and last is not None:
+                outages.append(Outage(last, last + 1, _UNREAD))
+        if held is not None and not (self._is_cut and ending != ".blf"):
             yield held  # of a line that is cut off nobody knows what it held
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
@@ -120,6 +145,40 @@ class FrameMessages:
 
     def close(self) -> None:
         """Nothing is open."""
+
+
+class _Lines:
+    """The lines of a text, with whether some that should be frames were passed over.
+
+    Args:
+        file: the open text.
+        others: what lines that are no frames are like.
+    """
+
+    def __init__(self, file: Any, others: re.Pattern[str]) -> None:
+        self._file = file
+        self._others = others
+        self._line = ""
+        self.is_unread = False
+
+    def __iter__(self) -> _Lines:
+        return self
+
+    def __next__(self) -> str:
+        if not self._others.match(self._line):
+            self.is_unread = True
+        self._line = next(self._file, "")
+        if not self._line:
+            raise StopIteration
+        return self._line
+
+    def take_unread(self) -> bool:
+        """Whether some were, before the line that was read last, which is a frame."""
+        found, self.is_unread, self._line = self.is_unread, False, ""
+        return found
+
+    def close(self) -> None:
+        """The reader closes what it was given; the file is closed by who opened it."""
 
 
 def _is_cut(path: Path) -> bool:

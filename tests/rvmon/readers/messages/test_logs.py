@@ -1,6 +1,7 @@
 """Logs of vehicles and measurements: the records of CSV, and never green where they are damaged."""
 
 import random
+import re
 
 import pytest
 from tests.tools.logs import (
@@ -189,6 +190,48 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
         spec.evaluate(path)
     (tmp_path / "b.toml").write_text('definitions = ["elsewhere/car.dbc"]\n')
     assert spec.evaluate(path, binding=tmp_path / "b.toml").attempts
+
+
+@pytest.mark.parametrize("ending", ["asc", "trc"])
+def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
+    """The library passes over it; what it said may have failed, and at its neighbours' stamps."""
+    pytest.importorskip("can")
+    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+    path = write_can(tmp_path / f"a.{ending}", rows)
+    spec, text = spec_of("Drive", "a.asc"), path.read_text()
+    frames = [line for line in text.splitlines() if re.search(r" 0*64 .*3F", line)]
+    assert len(frames) == 6
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    damaged = frames[3].replace("Rx", "Rq", 1).replace(" DT ", " D\u00a7 ", 1)
+    for broken in (damaged, "\0\0\0" + frames[3][5:], frames[3][:12]):
+        path.write_text(text.replace(frames[3], broken))
+        report = spec.evaluate(path)
+        assert report.verdicts["R1"] == "I"
+        assert any("a line that cannot be read" in one.remark for one in report.health)
+    whole = path.read_text().replace(broken, frames[3])
+    path.write_text(whole.replace(frames[5], damaged))
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+    path.write_text(whole.replace(frames[0], damaged))
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+
+
+def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
+    """Comments, statistics, the state of the chip; an error frame says that nothing came."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(3)])
+    *head, first, second, third, end = path.read_text().splitlines()
+    others = [
+        "// a comment",
+        "   0.0005 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
+        "   0.0005 CAN 1 Status:chip status error active",
+        "   0.0005 1  ErrorFrame",
+        "   0.0006 log trigger event",
+        "",
+    ]
+    path.write_text("\n".join([*head, first, *others, second, third, end]) + "\n")
+    report = spec_of("Drive", "a.asc").evaluate(path)
+    assert report.verdicts["R1"] == "P"
+    assert not any("cannot be read" in one.remark for one in report.health)
 
 
 def test_states_have_their_names_and_named_values_of_a_number_are_unknown(tmp_path):
