@@ -85,8 +85,8 @@ class FrameMessages:
         if self.end is not None:
             self.end = max([self.end, *(one.until for one in self.outages)])
             if self._is_cut:
+                self.outages.append(Outage(self.end, self.end + 1, "it was cut off, or not closed"))
                 self.end += 1
-                self.outages.append(Outage(self.end, self.end, "it was cut off, or not closed"))
 
     def _name(self, message: str, channel: Any) -> str:
         return f"/can{channel}/{message}" if message in self._several else f"/{message}"

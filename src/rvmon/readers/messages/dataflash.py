@@ -167,15 +167,15 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     found = []
     for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]
-        since = int(before.max()) + 1
+        since = int(before.max())  # what was lost may have had the stamp of its neighbour
         known = after[after >= 0]
-        until = int(known[0]) - 1 if len(known) else max(end, since)
+        until = int(known[0]) if len(known) else max(end, since)
         why = f"there is no message at byte {int(behind[gap]):,}"
         found.append(Outage(since, max(since, until), why))
     rest = data[int(behind[-1]) :] if len(behind) else data
     is_filling = len(rest) < _PAGE and bool((rest == 0).all() or (rest == _ERASED).all())
     if len(places) and (behind[-1] > len(data) or not is_filling):
-        found.append(Outage(end + 1, end + 1, "it ends within a message"))
+        found.append(Outage(end, end + 1, "it ends within a message"))
     return sorted(found, key=lambda one: one.since)
 
 

@@ -119,7 +119,7 @@ class _OtherMessages:
         statistics = None if summary is None else summary.statistics
         self.end: int | None = None
         self.count = 0
-        self._counted: Mapping[int, int] = {}
+        self._counted: Counter[str] = Counter()  # by topic, as the file says itself
         if summary is not None and statistics is not None:
             channels = [
                 (summary.schemas.get(channel.schema_id), channel)
@@ -127,7 +127,8 @@ class _OtherMessages:
             ]
             self.count = statistics.message_count
             self.end = statistics.message_end_time if self.count else None
-            self._counted = statistics.channel_message_counts
+            for _, channel in channels:
+                self._counted[channel.topic] += statistics.channel_message_counts.get(channel.id, 0)
         else:
             found = {}
             for schema, channel, message in self._reader.iter_messages(log_time_order=False):
@@ -182,10 +183,10 @@ class _OtherMessages:
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
-        found: Counter[int] = Counter()
+        found = 0
         with mcap_errors():
             for _, channel, message in self._reader.iter_messages(topics=list(topics)):
-                found[channel.id] += 1
+                found += 1
                 try:
                     content = self._decoders[channel.id](message.data)
                 except MemoryError:
@@ -196,8 +197,7 @@ class _OtherMessages:
                         f"({first_line(error)})"
                     ) from None
                 yield channel.topic, message.log_time, content
-        counted = Counter({one: self._counted.get(one, 0) for one in found})
-        refuse_fewer(found.total(), counted.total())
+        refuse_fewer(found, sum(self._counted[topic] for topic in topics))
 
     def close(self) -> None:
         """Close the file."""

@@ -88,11 +88,12 @@ class TelemetryMessages:
             place += _STAMP + size
         if self._times and (lost >= 0 or place < len(data)):
             end = max(self._times)
-            self.outages.append(Outage(end + 1, end + 1, "it ends within a packet"))
+            self.outages.append(Outage(end, end + 1, "it ends within a packet"))
 
     def _lose(self, place: int, last: int, micros: int) -> None:
-        since = last * 1_000 + 1 if last >= 0 else micros * 1_000 - 1
-        until = max(since, micros * 1_000 - 1)
+        # What was lost may have had the stamp of its neighbour.
+        since = last * 1_000 if last >= 0 else micros * 1_000 - 1
+        until = max(since, micros * 1_000)
         self.outages.append(Outage(since, until, f"there is no packet at byte {place:,}"))
 
     def _packet_at(self, place: int) -> tuple[int, tuple[int, int, int]] | None:

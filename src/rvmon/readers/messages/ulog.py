@@ -71,14 +71,14 @@ def ulog_messages(path: Path) -> ColumnMessages:
     outages = [outage for _, outage in read if outage is not None]
     outages += [
         Outage(
-            one.timestamp * _PER_STAMP + 1,
+            one.timestamp * _PER_STAMP,
             one.timestamp * _PER_STAMP + max(1, one.duration) * _PER_DURATION,
             "the logger dropped messages",
         )
         for one in log.dropouts
     ]
     if watched.is_cut:
-        outages.append(Outage(end + 1, end + 1, "it ends within a message"))
+        outages.append(Outage(end, end + 1, "it ends within a message"))
     return ColumnMessages([topic for topic, _ in read], end + watched.is_cut, outages)
 
 

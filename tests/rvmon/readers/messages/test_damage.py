@@ -237,3 +237,33 @@ def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
         database.execute("delete from messages where id > 1500")
     with pytest.raises(rvmon.TraceError, match=r"holds 7\d\d messages of .* that it has 800: copy"):
         spec.evaluate(path)
+
+
+@pytest.mark.parametrize("lost", ["/stop", "/temp"])
+def test_a_topic_whose_messages_are_all_gone_is_told(tmp_path, monkeypatch, lost):
+    """An index of MCAP without the chunks of a topic: as many are counted as were written."""
+    from mcap.writer import Writer
+
+    sent = [
+        (topic, START + 1000 * n, {"data": value})
+        for n in range(5)
+        for topic, value in (("/stop", True), ("/temp", 1.0))
+    ]
+    finish = Writer.finish
+
+    def without_chunks(writer):
+        writer._Writer__finalize_chunk()
+        numbers = {one.topic: one.id for one in writer._Writer__channels.values()}
+        chunks = writer._Writer__chunk_indices
+        chunks[:] = [one for one in chunks if numbers[lost] not in one.message_index_offsets]
+        finish(writer)
+
+    spec = rvmon.loads(
+        "event stop\nsignal temp : real\nrequirement R\n  always (stop -> temp > 2)\n"
+    )
+    path = write_json_mcap(tmp_path / "a.mcap", sent, chunk_size=1)
+    assert spec.evaluate(path).verdicts["R"] == "F"
+    monkeypatch.setattr(Writer, "finish", without_chunks)
+    path = write_json_mcap(tmp_path / "a.mcap", sent, chunk_size=1)
+    with pytest.raises(rvmon.TraceError, match=r"holds 5 messages of .* that it has 10: copy"):
+        spec.evaluate(path)
