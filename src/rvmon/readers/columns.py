@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rvmon.errors import TraceError
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
@@ -61,8 +63,13 @@ class TableRecording:
         self.columns = columns
         header = list(columns)
         stamps = stamps_among(header, schema)
-        if not stamps.is_stated and is_of_dates(columns[stamps.column]):
+        given = columns[stamps.column]
+        if not stamps.is_stated and is_of_dates(given):
             stamps = Stamps(stamps.column, "iso", is_stated=True)
+        elif getattr(getattr(given, "dtype", None), "kind", "") == "m":  # durations since a start
+            whole = np.asarray(given, "timedelta64[ns]").astype(np.int64)
+            self.columns = {**columns, stamps.column: whole}
+            stamps = Stamps(stamps.column, "ns", is_stated=True)
         self.layout: Layout = layout_of(header, stamps, schema)
         self.names: frozenset[str] | None = self.layout.names
         self.ignored = Counter(self.layout.ignored)

@@ -43,7 +43,7 @@ def _frame_columns(frame: Any) -> dict[str, Any]:
     index: Any = getattr(frame, "index", None)  # of pandas
     if getattr(index, "name", None) is not None:
         found.setdefault(str(index.name), index)
-    elif is_of_dates(index) and "t_ns" not in found:
+    elif getattr(getattr(index, "dtype", None), "kind", "") in ("m", "M") and "t_ns" not in found:
         found.setdefault("t", index)
     return found
 

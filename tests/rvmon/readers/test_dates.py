@@ -50,6 +50,16 @@ def test_dates_of_polars_arrow_and_parquet(tmp_path):
     assert decided(path) == EXPECTED
 
 
+def test_durations_count_from_their_start():
+    """In a column, and as an index of pandas."""
+    since = (NS - START).astype("timedelta64[ns]")
+    expected = (EXPECTED[0] - START, EXPECTED[1] - START, EXPECTED[2])
+    assert decided({"t": since, "x": X}) == expected
+    pandas = pytest.importorskip("pandas")
+    assert decided(pandas.DataFrame({"t": pandas.to_timedelta(since), "x": X})) == expected
+    assert decided(pandas.DataFrame({"x": X}, index=pandas.to_timedelta(since))) == expected
+
+
 def test_a_date_that_is_none_is_told():
     """With its row."""
     with pytest.raises(rvmon.TraceError, match="row 1: time `NaT`"):
