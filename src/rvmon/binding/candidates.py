@@ -10,6 +10,7 @@ from rvmon.binding.functions import number
 from rvmon.binding.words import (
     EMPTY,
     MODIFIERS,
+    OF_TOPICS,
     Dimension,
     dimensions_of,
     unit_in_name,
@@ -184,5 +185,6 @@ def foreign_words(candidate: Candidate) -> list[str]:
 def modifiers_of(candidate: Candidate) -> set[str]:
     """The words that make another quantity of it: of its field, of a number alone of its topic."""
     is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
-    words = [*candidate.own, *(words_of(candidate.topic.name) if is_alone else ())]
-    return {word for word in words if word in MODIFIERS}
+    words = words_of(candidate.topic.name)
+    found = {word for word in words if word in (MODIFIERS if is_alone else OF_TOPICS)}
+    return found | {word for word in candidate.own if word in MODIFIERS}

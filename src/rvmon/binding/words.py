@@ -38,6 +38,10 @@ _SAME = {
     "rear": "back",
     "status": "state",
     "estop": "emergencystop estopped",
+    "barometer": "baro barometric",
+    "innovation": "innovations innov",
+    "integral": "integ",
+    "variance": "var variances",
 }
 """Words that people use for the same, by the one that stands for them."""
 
@@ -75,9 +79,12 @@ MODIFIERS = _set(
     "command error tolerance limit minimum maximum offset bias variance accuracy delta",
     "reset counter design time timestamp stamp increment last home initial origin average",
     "mean derivative integral raw scaling covariance confidence quality valid health",
-    "fault",
+    "fault innovation drift index id device",
 )
 """Words that make another quantity of what they stand beside."""
+
+OF_TOPICS = _set("innovation variance bias error drift")
+"""Of these words those that make another quantity of all that a topic says."""
 
 SUBJECTS = _set(
     "wind water air person pedestrian human people obstacle object ball door target lead other",

@@ -21,6 +21,23 @@ from tests.rvmon.binding.robots import (
 )
 
 TRAPS = {
+    "estimator": Robot(
+        {
+            "/estimator_innovations": ("flight_msgs/msg/Innovations", {"airspeed": 0.5}),
+            "/rate_ctrl_status": ("flight_msgs/msg/RateControl", {"yawspeed_integ": 0.1}),
+            "/airspeed_validated": (
+                "flight_msgs/msg/Airspeed",
+                {"true_airspeed_m_s": 12.0, "selected_airspeed_index": 1},
+            ),
+        },
+        "signal airspeed : real [m/s]\nsignal yaw_rate : real [rad/s]",
+        {"airspeed": ("/airspeed_validated true_airspeed_m_s",), "yaw_rate": OPEN},
+        {
+            "flight_msgs/msg/Innovations": "float32 airspeed\n",
+            "flight_msgs/msg/RateControl": "float32 yawspeed_integ\n",
+            "flight_msgs/msg/Airspeed": "float32 true_airspeed_m_s\nint8 selected_airspeed_index\n",
+        },
+    ),
     "weather": Robot(
         {"/wind/speed": FLOAT, "/fan/rpm": FLOAT, "/launch_time": FLOAT, "/go_home": BOOL},
         "signal speed : real [m/s]\nsignal wind_speed : real [m/s]\nsignal motor_rpm : real [rpm]\n"
