@@ -139,7 +139,7 @@ def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
     (tmp_path / "s.rv").write_text("signal a : real\nrequirement R\n  always a < 9\n")
     both = f"{tmp_path / 'a.csv'} + {tmp_path / 'b.csv'}"
     spec, piece = str(tmp_path / "s.rv"), str(tmp_path / "c.csv")
-    words = ["clip", both, "--spec", spec, "--from", "0", "--to", "1", "-o", piece]
+    words = ["clip", spec, both, "--from", "0", "--to", "1", "-o", piece]
     assert main(words) == 2
     assert "clip each of them" in capsys.readouterr().err
 
