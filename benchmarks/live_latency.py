@@ -35,8 +35,7 @@ from pathlib import Path
 from tests.tools.servers import LOOPBACK, SYSTEM, Broker, master_of_ros1, mosquitto
 
 import rvmon
-from rvmon.adapters.json_lines import feed_lines, read_lines
-from rvmon.adapters.json_objects import JsonObjects
+from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines
 from rvmon.adapters.messages import MessageFeed
 from rvmon.live import Judgement, Live, LiveTasks
 

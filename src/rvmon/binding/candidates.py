@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rvmon.binding.functions import number
+from rvmon.binding.expression import number
 from rvmon.binding.words import (
     EMPTY,
     MODIFIERS,

@@ -136,7 +136,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
-    from rvmon.adapters.json_lines import read_lines
+    from rvmon.adapters.json_objects import read_lines
     from rvmon.cli.watch_output import refuse_others, watch_kept
 
     refuse_others(arguments)
@@ -148,8 +148,7 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.json_lines import feed_lines, read_lines
-    from rvmon.adapters.json_objects import JsonObjects, stamp_of
+    from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
     from rvmon.live import SimulatedClock
 
     with _opened(arguments.source) as file:

@@ -11,13 +11,12 @@ import numpy as np
 from rvmon.errors import TraceError
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
-from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.naming import stamps_among
-from rvmon.readers.rows import Row, Rows
+from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.readers.tables import cells_of, is_of_dates
 from rvmon.readers.values import plain
 from rvmon.trace.health import Health
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 
@@ -109,8 +108,7 @@ class TableRecording:
         if len(set(lengths.values())) > 1:
             listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
             raise TraceError(f"columns differ in length: {listed}")
-        for row, (stamp, *own) in enumerate(zip(*cells.values(), strict=True)):
-            yield row, _ticks(stamp, layout.stamps, row), values_of_cells(layout, own)
+        yield from rows_of_cells(list(cells.values()), layout, 0)
 
     @property
     def unread(self) -> list[str]:
@@ -137,10 +135,16 @@ class TableRecording:
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
 
 
-def values_of_cells(layout: Layout, cells: Sequence[Any]) -> dict[str, Value]:
-    """What a row of values says; `None` is absent."""
-    found = zip(layout.columns, map(plain, cells), strict=True)
-    return row_values(((column, cell) for column, cell in found if cell is not None), layout.gaps)
+def rows_of_cells(columns: Sequence[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
+    """Rows of columns of values, those of stamps first; `None` is absent.
+
+    Raises:
+        TraceError: a stamp is none; rows are numbered from `first` on.
+    """
+    for row, (stamp, *cells) in enumerate(zip(*columns, strict=True), first):
+        found = zip(layout.columns, map(plain, cells), strict=True)
+        given = ((column, cell) for column, cell in found if cell is not None)
+        yield row, _ticks(stamp, layout.stamps, row), row_values(given, layout.gaps)
 
 
 def _ticks(stamp: Any, stamps: Stamps, row: int) -> int:

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.batch import NotPlainError
-from rvmon.readers.columns import values_of_cells
+from rvmon.readers.columns import rows_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.line_chunks import is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.tables import arrow_cells, is_of_dates
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Schema, Stamps
-from rvmon.trace.stamps import ticks_of_stamp
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
@@ -135,15 +134,5 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
             }
             yield replace(batch_of(times, layout, cells), first=row + 1)
         except (NotPlainError, TraceError):
-            yield _rows_of([stamps, *arrays], layout, row)
+            yield rows_of_cells([arrow_cells(one) for one in (stamps, *arrays)], layout, row + 1)
         row += len(stamps)
-
-
-def _rows_of(batch: list[Any], layout: Layout, before: int) -> Iterator[Row]:
-    """Rows, of which so many stand before."""
-    for row, (stamp, *cells) in enumerate(zip(*map(arrow_cells, batch), strict=True), before + 1):
-        try:
-            t = ticks_of_stamp(stamp, layout.stamps)
-        except TraceError as error:
-            raise TraceError(f"row {row}: {error}") from None
-        yield row, t, values_of_cells(layout, cells)

@@ -20,7 +20,6 @@ from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
-from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.joined import JOINT, Joined, schemas_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import (
@@ -30,7 +29,7 @@ from rvmon.readers.messages.forms import (
     form_of_folder,
 )
 from rvmon.readers.places import endings_of, is_address, local_path, named_errors, opened
-from rvmon.readers.rows import Row, Rows
+from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Outage, Sample

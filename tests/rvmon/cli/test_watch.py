@@ -62,7 +62,7 @@ def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch):
             return pieces.pop()
         raise OSError(5, "Input/output error")
 
-    monkeypatch.setattr("rvmon.adapters.json_lines.os.read", read)
+    monkeypatch.setattr("rvmon.adapters.json_objects.os.read", read)
     assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
     told = capsys.readouterr()
     assert "D1   I  ?" in told.out

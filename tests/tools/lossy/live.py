@@ -11,8 +11,7 @@ from threading import Thread
 from time import sleep
 from typing import Any
 
-from rvmon.adapters.json_lines import feed_lines, read_lines
-from rvmon.adapters.json_objects import JsonObjects
+from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines
 from rvmon.errors import TraceError
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
 from rvmon.trace.sample import Sample

@@ -5,8 +5,7 @@ import os
 import pytest
 
 from rvmon import Verdict, loads
-from rvmon.adapters.json_lines import feed_lines, read_lines
-from rvmon.adapters.json_objects import JsonObjects, stamp_of
+from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
 from rvmon.live import Driver, SimulatedClock
 from rvmon.readers.jsonl_rows import MORE, MOST_NAMES
 
