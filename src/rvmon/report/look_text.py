@@ -32,7 +32,8 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
     start = format_ticks(profile.start)
     yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
     for one in profile.outages:
-        yield Text(f"lost: {lost_names(one)} from {format_ticks(one.since)}: {one.why}", "yellow")
+        since = format_ticks(one.since - profile.start)
+        yield Text(f"lost: {lost_names(one)} from {since} on: {one.why}", "yellow")
     for title, columns in grouped(profile, requirements):
         table = Table(title=title, title_justify="left", title_style="bold", box=None)
         table.show_header = False

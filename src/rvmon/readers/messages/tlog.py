@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from array import array
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -86,9 +87,28 @@ class TelemetryMessages:
             self._places.append(place + _STAMP)
             self._senders.append(self._keys.setdefault(key, len(self._keys)))
             place += _STAMP + size
+        self._lose_strangers()
         if self._times and (lost >= 0 or place < len(data)):
             end = max(self._times)
             self.outages.append(Outage(end, end + 1, "it ends within a packet"))
+
+    def _lose_strangers(self) -> None:
+        """A packet of a message that no dialect has, and that comes once, may be another, damaged.
+
+        No checksum fits what nobody knows; dialects that are not ours send theirs again and again.
+        """
+        counts = Counter(self._senders)
+        unknown = {
+            number
+            for (message, _, _), number in self._keys.items()
+            if message not in self._dialect.mavlink_map and counts[number] == 1
+        }
+        for one, sender in enumerate(self._senders):
+            if sender in unknown:
+                near = self._times[max(0, one - 1) : one + 2]
+                why = f"there is an unknown packet at byte {self._places[one]:,}"
+                self.outages.append(Outage(min(near), max(near), why))
+        self.outages.sort(key=lambda one: one.since)
 
     def _lose(self, place: int, last: int, micros: int) -> None:
         # What was lost may have had the stamp of its neighbour.

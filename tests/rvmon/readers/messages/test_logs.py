@@ -192,6 +192,21 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
     assert spec.evaluate(path, binding=tmp_path / "b.toml").attempts
 
 
+def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
+    """No checksum is known of a message that nobody knows; a dialect's own come more than once."""
+    pytest.importorskip("pymavlink")
+    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+    path = write_tlog(tmp_path / "a.tlog", rows)
+    data, spec = path.read_bytes(), spec_of("VFR_HUD", "a.tlog")
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    size = len(data) // 6
+    strange = [(data[: 8 + 7] + b"\x60\xea\x00" + data[8 + 10 : size]) for _ in range(2)]
+    path.write_bytes(data[: 3 * size] + strange[0] + data[4 * size :])
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+    path.write_bytes(data[:size] + b"".join(strange) + data[size:])
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+
+
 @pytest.mark.parametrize("ending", ["asc", "trc"])
 def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
     """The library passes over it; what it said may have failed, and at its neighbours' stamps."""
