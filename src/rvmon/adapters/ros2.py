@@ -97,9 +97,10 @@ class Ros2Source:
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
         from rosidl_runtime_py.utilities import get_message
 
+        if len(types) > 1:
+            self._feed.lose(name, f"it has several types, {', '.join(types)}", for_good=True)
+            return
         try:
-            if len(types) > 1:
-                raise ValueError(f"it has several types, {', '.join(types)}")
             kind = get_message(types[0])
             topic = Topic(name, types[0], dict(_leaves(kind)))
         except (ImportError, AttributeError, ValueError) as error:

@@ -93,7 +93,7 @@ class Node:
         self.graph.timers.append(callback)
 
     def get_topic_names_and_types(self):
-        return [(topic, [kind]) for topic, (kind, _) in self.graph.publishers.items()]
+        return [(topic, kind.split()) for topic, (kind, _) in self.graph.publishers.items()]
 
     def get_publishers_info_by_topic(self, topic_name):
         return self.graph.publishers[topic_name][1]

@@ -111,13 +111,24 @@ def test_what_was_lost_is_unknown(graph, started):
     assert started.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
-def test_a_package_that_is_not_installed_is_told(graph, caplog):
-    """What its topic may feed is unknown."""
-    del graph.types["std_msgs/msg/Bool"]
-    spec = loads(SPEC)
-    with Ros2Source(MessageFeed(Driver(spec, clock=SimulatedClock()), spec.schema)):
-        assert "is the package of std_msgs/msg/Bool installed?" in caplog.text
-        assert "/base/twist" in graph.subscriptions
+@pytest.mark.parametrize("several", [False, True])
+def test_a_topic_that_can_never_be_read_is_lost_for_good(graph, caplog, several):
+    """Its package is not installed, or it has two types: what it may feed is unknown."""
+    why = "is the package of std_msgs/msg/Bool installed?"
+    if several:
+        why = "it has several types, std_msgs/msg/Bool, std_msgs/msg/Int32"
+        graph.publishers["/stop"] = ("std_msgs/msg/Bool std_msgs/msg/Int32", [LATCHED])
+    else:
+        del graph.types["std_msgs/msg/Bool"]
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    with Ros2Source(MessageFeed(driver, spec.schema)):
+        assert why in caplog.text
+        _moves(graph, 0.5)
+        clock.set_ns(10**9)
+        driver.work()
+    verdicts = driver.close()[""][0].verdicts
+    assert verdicts == {"R1": Verdict.PASS, "R2": Verdict.INCONCLUSIVE}
 
 
 @pytest.mark.parametrize("kind", ["sequence<float>", "sequence<float, 9>", "float[2]"])

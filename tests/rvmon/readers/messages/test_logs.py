@@ -2,6 +2,7 @@
 
 import random
 import re
+import struct
 
 import pytest
 from tests.tools.logs import (
@@ -190,6 +191,20 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
         spec.evaluate(path)
     (tmp_path / "b.toml").write_text('definitions = ["elsewhere/car.dbc"]\n')
     assert spec.evaluate(path, binding=tmp_path / "b.toml").attempts
+
+
+def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
+    """The library gives those that are there."""
+    asammdf = pytest.importorskip("asammdf")
+    path = write_mdf(tmp_path / "a.mf4", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)])
+    with asammdf.MDF(path) as file:
+        counted = file.groups[0].channel_group.address + 80
+    data = bytearray(path.read_bytes())
+    assert struct.unpack_from("<Q", data, counted) == (6,)
+    struct.pack_into("<Q", data, counted, 7)
+    path.write_bytes(data)
+    with pytest.raises(TraceError, match="holds 6 records of a group, and says itself that it has"):
+        spec_of("drive", "a.mf4").evaluate(path)
 
 
 def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
