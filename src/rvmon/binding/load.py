@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
@@ -12,15 +13,16 @@ from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 from rvmon.binding.expression import term_of
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
-from rvmon.readers.naming import read_as
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
+from rvmon.trace.gaps import gaps_of
 from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.stamps import stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
 if TYPE_CHECKING:
@@ -153,7 +155,6 @@ def _value(text: Any, key: str) -> Term:
 
 
 def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
-    """The value in the declared unit."""
     if kind is not Kind.REAL or not declared:
         raise RvmonError(f"`unit` is of a signal that is declared with one: real [{given}]")
     try:
@@ -224,20 +225,34 @@ def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: st
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
-    """A schema for recordings that are read with other options.
+    """A schema for recordings that name things otherwise.
 
     Args:
         spec: the specification.
         schema: of it; what no option gives stays as it says.
         **options: see `rvmon.session.Spec.reading`; so are the errors.
     """
-    path = options.get("binding")
-    return read_as(
+    path, time, clock = options.get("binding"), options.get("time"), options.get("clock")
+    bound = schema.binding if path is None else load_binding(path, spec)
+    fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
+    declared = [*schema.signals, *schema.events, *fields]
+    given = dict(options.get("columns") or {})
+    for name, column in given.items():
+        if name not in declared:
+            meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
+            raise UnknownNameError(f"nothing named `{name}` to map `{column}` to: {meant}")
+        if list(given.values()).count(column) > 1:
+            raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
+    if clock is not None and clock not in list(Clock):
+        raise UnknownNameError(f"no clock `{clock}`: there is {' and '.join(Clock)}")
+    nan, no_update = options.get("nan"), options.get("no_update")
+    return replace(
         schema,
-        time=options.get("time"),
-        columns=options.get("columns"),
-        nan=options.get("nan"),
-        no_update=options.get("no_update"),
-        binding=None if path is None else load_binding(path, spec),
-        clock=options.get("clock"),
+        stamps=schema.stamps if time is None else stamps_of(time),
+        columns={**schema.columns, **given},
+        gaps=gaps_of(
+            schema.gaps.reading_of_nan if nan is None else nan,
+            schema.gaps.no_update if no_update is None else no_update,
+        ),
+        binding=bound if clock is None else replace(bound, clock=Clock(clock)),
     )

@@ -108,7 +108,6 @@ def _print_binding(arguments: argparse.Namespace) -> int:
 
 
 def _write_campaign(folder: Path, *, force: bool) -> int:
-    """Write the starter campaign to a folder."""
     from rvmon.starter.campaign import campaign_files
 
     files = campaign_files()

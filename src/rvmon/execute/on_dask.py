@@ -191,7 +191,6 @@ class _Work:
                 self._lose(number, task, f"it took more than {self._timeout_s:g} s", timed_out=True)
 
     def _lose(self, number: int, task: bytes, why: str, *, timed_out: bool) -> None:
-        """Do without the result of a task."""
         if self._instead is None:
             error = WorkerLostError(f"{self._what} {number + 1} was not done: {why}")
             self._done[number] = (True, pickle.dumps(error))

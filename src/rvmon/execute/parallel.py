@@ -289,13 +289,11 @@ class _Pool:
         self._done[number] = pickle.dumps(result)
 
     def _dismiss(self, worker: _Worker) -> None:
-        """Do without a worker that ends."""
         self._workers.remove(worker)
         worker.connection.close()
         worker.process.join()
 
     def _give_back(self, worker: _Worker) -> None:
-        """What a worker has is for others."""
         while worker.tasks:
             heappush(self._returned, worker.tasks.pop())
 
@@ -306,7 +304,6 @@ class _Pool:
 
 
 def _end_of(process: BaseProcess) -> str:
-    """How a process ended, in words."""
     code = process.exitcode
     if code is None or code >= 0:
         return f"its process ended, with exit code {code}"

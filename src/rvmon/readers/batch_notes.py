@@ -111,7 +111,6 @@ def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts)
 
 
 def _rows_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
-    """The rows that say something."""
     if cells.says is None:
         return np.arange(len(batch.times))
     return np.flatnonzero(cells.says != NO_UPDATE)

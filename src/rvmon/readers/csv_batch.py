@@ -124,8 +124,6 @@ class _Text:
 
 
 class _Reader:
-    """Reads rows of a layout."""
-
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
         self._slots = np.full(len(layout.header), -1, np.int32)

@@ -129,7 +129,6 @@ def count_of_names(value: object) -> int:
 
 
 def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of which each name stands there once."""
     found = dict(pairs)
     if len(found) != len(pairs):
         [(name, count)] = Counter(name for name, _ in pairs).most_common(1)

@@ -2,61 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import replace
-from typing import Any
+from collections.abc import Collection
 
 from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.errors import TraceError
 from rvmon.readers.values import shorten
-from rvmon.trace.binding import Binding, Clock
-from rvmon.trace.gaps import gaps_of
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
 
 DEFAULT_COLUMNS = ("t", "t_ns")
 """The columns of stamps where none was named."""
-
-
-def read_as(
-    schema: Schema,
-    *,
-    time: str | None = None,
-    columns: Mapping[str, str] | None = None,
-    nan: str | None = None,
-    no_update: Any = None,
-    binding: Binding | None = None,
-    clock: str | None = None,
-) -> Schema:
-    """A schema for recordings that name things otherwise; see `rvmon.session.Spec.reading`.
-
-    Raises:
-        UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN,
-            or no such clock.
-        RvmonError: `columns` names a column twice.
-    """
-    fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
-    declared = [*schema.signals, *schema.events, *fields]
-    given = dict(columns or {})
-    for name, column in given.items():
-        if name not in declared:
-            meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
-            raise UnknownNameError(f"nothing named `{name}` to map `{column}` to: {meant}")
-        if list(given.values()).count(column) > 1:
-            raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
-    if clock is not None and clock not in list(Clock):
-        raise UnknownNameError(f"no clock `{clock}`: there is {' and '.join(Clock)}")
-    gaps, bound = schema.gaps, schema.binding if binding is None else binding
-    return replace(
-        schema,
-        stamps=schema.stamps if time is None else stamps_of(time),
-        columns={**schema.columns, **given},
-        gaps=gaps_of(
-            gaps.reading_of_nan if nan is None else nan,
-            gaps.no_update if no_update is None else no_update,
-        ),
-        binding=bound if clock is None else replace(bound, clock=Clock(clock)),
-    )
 
 
 def stamps_among(names: Collection[str], schema: Schema) -> Stamps:

@@ -137,7 +137,6 @@ class _Unpacked(RawIOBase):
             self._plain = zstd.ZstdFile(raw)
 
     def readable(self) -> bool:
-        """It is."""
         return True
 
     def readinto(self, buffer: Any, /) -> int:
@@ -151,7 +150,6 @@ class _Unpacked(RawIOBase):
         return count
 
     def close(self) -> None:
-        """Close it; the file stays open."""
         self._plain.close()
         super().close()
 

@@ -81,7 +81,6 @@ def _fault(topic: Topic, source: MessageFile) -> str:
 
 
 def _reason(leaf: str, topic: Topic) -> str:
-    """Why a field is not declared; empty if it is."""
     sort = meaning_of(leaf, topic).sort
     if sort is Sort.ODD or "covariance" in leaf:
         return _ODD

@@ -37,7 +37,6 @@ def starter_text(profile: Profile) -> str:
 
 
 def _by_reason(left_out: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Each reason with the names that it is of."""
     names: dict[str, list[str]] = {}
     for name, why in left_out.items():
         names.setdefault(why, []).append(_plain(name))

@@ -277,7 +277,6 @@ _FOUND = {bool: Kind.BOOL, int: Kind.REAL, float: Kind.REAL, str: Kind.LABEL}
 
 
 def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind]]:
-    """The fields of an object."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from _found_leaves(inner, f"{path}.{name}".lstrip("."))

@@ -42,19 +42,13 @@ class Differences:
         stamp: of a message; `None`: they have no header.
         count: of messages with one.
         first: when the first was recorded.
-        begin: the least of the first messages.
-        before: the least of the lot before.
-        now: the least of the last lot, whole or not.
-        least: of all.
+        lots: the least difference of each `SOME` messages, in order.
     """
 
     stamp: Callable[[Any], int] | None
     count: int = 0
     first: int = 0
-    begin: int = 0
-    before: int = 0
-    now: int = 0
-    least: int = 0
+    lots: list[int] = field(default_factory=list)
 
     def note(self, logged: int, content: Any) -> None:
         """Take a message; a header that nobody has filled in, which is zero, says nothing."""
@@ -64,15 +58,11 @@ class Differences:
             return  # where headers count, whoever reads them says what is wrong with them
         if not stamp:
             return
-        late = logged - stamp
         if not self.count:
-            self.first, self.least = logged, late
+            self.first = logged
         if self.count % SOME == 0:
-            if self.count == SOME:
-                self.begin = self.now
-            self.before, self.now = (self.now, late) if self.count else (late, late)
-        self.now = min(self.now, late)
-        self.least = min(self.least, late)
+            self.lots.append(logged - stamp)
+        self.lots[-1] = min(self.lots[-1], logged - stamp)
         self.count += 1
 
     @property
@@ -80,9 +70,8 @@ class Differences:
         """From the first messages to the last; 0 if they are too few to say."""
         if self.count < 2 * SOME:
             return 0
-        rest = self.count % SOME
-        is_begun = 0 < rest < ENOUGH
-        return (self.before if is_begun else self.now) - self.begin
+        is_begun = 0 < self.count % SOME < ENOUGH
+        return self.lots[-2 if is_begun else -1] - self.lots[0]
 
 
 @dataclass(slots=True)
@@ -102,7 +91,7 @@ class Skew:
     def doubts(self) -> list[Health]:
         """What is odd about the clocks, by topic."""
         known = {name: one for name, one in self.by_topic.items() if one.count >= ENOUGH}
-        nearest = min((one.least for one in known.values()), default=0)
+        nearest = min((min(one.lots) for one in known.values()), default=0)
         doubts = []
         for name, one in known.items():
             if remarks := _remarks(one, nearest, len(known)):
@@ -112,12 +101,12 @@ class Skew:
 
 
 def _remarks(one: Differences, nearest: int, topics: int) -> list[str]:
-    remarks = []
-    if one.least < -AHEAD:
-        remarks.append(f"headers are up to {format_ticks(-one.least)} later than the log")
-    elif topics > 1 and one.least - max(nearest, 0) > APART:
+    remarks, least = [], min(one.lots)
+    if least < -AHEAD:
+        remarks.append(f"headers are up to {format_ticks(-least)} later than the log")
+    elif topics > 1 and least - max(nearest, 0) > APART:
         remarks.append(
-            f"headers are at least {format_ticks(one.least)} earlier than the log, those of "
+            f"headers are at least {format_ticks(least)} earlier than the log, those of "
             f"another topic {format_ticks(max(nearest, 0))}"
         )
     if abs(one.change) > DRIFT:

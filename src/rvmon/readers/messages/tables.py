@@ -152,7 +152,6 @@ def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Seque
 
 
 def _looked_over(table: _Table) -> _Table:
-    """A file with the kinds of its columns, by its first rows."""
     with _lines(table) as rows:
         header, stamps = _header(table, rows)
         cells: dict[str, list[str]] = {name: [] for name in header}
@@ -222,7 +221,6 @@ def _rows(name: str, table: _Table) -> Iterator[Message]:
 
 
 def _element(column: str) -> int | None:
-    """Which element of an array a column is, if it is one."""
     found = re.search(r"\[(\d+)\]$", column)
     return int(found[1]) if found else None
 
