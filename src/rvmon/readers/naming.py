@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 
 from rvmon.diagnostics.nearest import did_you_mean
@@ -30,11 +31,12 @@ def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
         raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}")
     times = [name for name in DEFAULT_COLUMNS if name in names]
     if len(times) != 1:
+        close = [name for name in names if re.search(r"time|stamp|^sec", name, re.IGNORECASE)]
+        which = f": `{shorten(close[0])}` looks like it" if close and not times else ""
         raise TraceError(
-            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
-            f"in the header; found {'both' if times else listed}: name "
-            f"{'one of them' if times else 'it'} with --time COLUMN[:UNIT], in Python "
-            f"time=…"
+            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), found "
+            f"{'both' if times else listed}{which}: name {'one of them' if times else 'it'} with "
+            "--time COLUMN[:UNIT], in Python time=…"
         )
     return stamps_of(times[0])
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -17,13 +16,13 @@ from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.joined import JOINT, topics_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
-from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
 from rvmon.readers.places import local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, format_of, messages_of
 from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
 from rvmon.starter.seen import Seen, shapes_seen
-from rvmon.trace.schema import Kind, Stamps
+from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.units import UnknownUnitError, parse_unit
 
 RARE = 0.2
@@ -51,7 +50,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
         source = opened_as_csv(path, stamps) if form == "csv" else opened(path)
         with source as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
             look = _of_csv if form == "csv" else _of_json
-            return look(bounded_lines(text), path, stamps)
+            return look(bounded_lines(text), stamps)
 
 
 def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
@@ -67,7 +66,7 @@ def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
     return Shapes(declared, left_out)
 
 
-def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
+def _of_csv(text: Iterable[str], stamps: Stamps | None) -> Shapes:
     rows = split_lines(text)
     try:
         _, header = next(rows)
@@ -78,7 +77,7 @@ def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
         column if name in header else name for (name, _), column in zip(named, header, strict=True)
     ]
     if stamps is None:
-        _require_time(names, path)
+        stamps_among(names, Schema({}, {}))
     columns = [Seen() for _ in header]
     for _, row in rows:
         for seen, cell in zip(columns, row, strict=False):
@@ -107,7 +106,7 @@ def _of_parquet(path: str, stamps: Stamps | None) -> Shapes:
     seen: dict[str, Seen] = {}
     for columns in parquet_cells(local_path(path)):
         if stamps is None:
-            _require_time(columns, path)
+            stamps_among(columns, Schema({}, {}))
         for name, cells in columns.items():
             entry = seen.setdefault(name, Seen())
             for cell in cells:
@@ -121,18 +120,7 @@ def _without_time(seen: Mapping[str, Seen], stamps: Stamps | None) -> dict[str, 
     return {name: entry for name, entry in seen.items() if name not in times}
 
 
-def _require_time(names: Iterable[str], path: str) -> None:
-    known = list(names)
-    if not set(DEFAULT_COLUMNS).intersection(known):
-        close = [name for name in known if re.search(r"time|stamp|^sec", name, re.IGNORECASE)]
-        which = f"`{close[0]}` looks like it" if close else f"found {', '.join(known[:6])}"
-        raise TraceError(
-            f"{path}: no time column: {which}; rename the time column to `t` (seconds) or `t_ns` "
-            "(integer nanoseconds), or name it with --time COLUMN[:UNIT]"
-        )
-
-
-def _of_json(lines: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
+def _of_json(lines: Iterable[str], stamps: Stamps | None) -> Shapes:
     decode = msgspec.json.Decoder().decode
     seen: dict[str, Seen] = {}
     events: dict[str, Seen] = {}
@@ -142,12 +130,14 @@ def _of_json(lines: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
             continue
         try:
             fields = decode(line)
+            if isinstance(fields, dict) and not count and stamps is None:
+                stamps_among(fields, Schema({}, {}))
+        except TraceError as error:
+            raise TraceError(f"line {number}: {error}") from None
         except (msgspec.DecodeError, RecursionError) as error:
             raise TraceError(f"line {number}: not a JSON object ({error})") from None
         if not isinstance(fields, dict):
             raise TraceError(f'line {number}: expected an object such as {{"t": 0.5, "x": 1}}')
-        if not count and stamps is None:
-            _require_time(fields, f"{path}: line {number}")
         count += 1
         listed = fields.get("events")
         if isinstance(listed, list) and all(isinstance(name, str) for name in listed):

@@ -112,7 +112,7 @@ def test_a_response_is_timed_from_the_recording(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        ("a.csv", "time,x\n0,1\n", "`time` looks like it; rename"),
+        ("a.csv", "time,x\n0,1\n", "`time` looks like it: name it"),
         ("a.csv", "t,x\n", "`x`: no value in the recording"),
         ("a.csv", "", "is empty"),
         ("a.csv", "t\n0\n", "no signal or event is found (there is only time)"),
@@ -121,7 +121,7 @@ def test_a_response_is_timed_from_the_recording(tmp_path, capsys):
         ("a.csv", "t,x\nzero,1\n", "line 2"),
         ("a.jsonl", '{"t":0,\n', "line 1: not a JSON object"),
         ("a.jsonl", "[1]\n", "line 1: expected an object"),
-        ("a.jsonl", '{"x":0}\n', "no time column"),
+        ("a.jsonl", '{"x":0}\n', "expected one time column"),
         ("a.txt", "x", "no known format"),
     ],
 )
