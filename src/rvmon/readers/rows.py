@@ -245,7 +245,10 @@ class Rows:
         while waiting:
             yield heappop(waiting)[2]
         if fault is not None:
-            raise fault
+            try:
+                raise fault
+            finally:
+                del fault  # its traceback holds this frame, and with it an open file
 
     def doubts(self) -> list[Health]:
         """What is odd: signals that got two values at one stamp, stamps of another clock."""
