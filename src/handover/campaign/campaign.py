@@ -83,13 +83,11 @@ def handover_campaign(
             further={"paper": paper_table()},
             document=table_document,
             work=_work,
-            page_work=_physics,
             chart=flow_chart,
             chart_legend="Filled by the share of the state's statements that ran; the number "
             "beside a line is how many tests took it, a dashed line was taken by none.",
             sections=partial(model_sections, count=conforming),
             foremost=FOREMOST if monitors else (),
-            robot_words=_robot_words,
             write_more=_write_templates,
         ),
         closing=closing(),
@@ -97,22 +95,11 @@ def handover_campaign(
 
 
 def _work(summary: CampaignSummary) -> str:
+    stepped_s = summary.figures.get("stepped_s", 0)
     return (
-        f"{summary.simulated_s:,.0f} s simulated, {_stepped_s(summary)} s of them with physics, "
-        "the rest at rest and jumped over"
+        f"{summary.simulated_s:,.0f} s simulated, {stepped_s:,.0f} s of them with physics, the "
+        "rest at rest and jumped over"
     )
-
-
-def _physics(summary: CampaignSummary) -> str:
-    return f"{_stepped_s(summary)} s of physics"
-
-
-def _stepped_s(summary: CampaignSummary) -> str:
-    return f"{summary.figures.get('stepped_s', 0):,.0f}"
-
-
-def _robot_words(robot: str) -> Sequence[str]:
-    return ("--legacy",) if robot == "legacy" else ()
 
 
 def _write_templates(folder: Path, strategies: frozenset[str]) -> None:

@@ -312,5 +312,5 @@ def _address(job: Job) -> str:
 def _command(command: str, folder: Path, job: Job, campaign: Campaign) -> str:
     words: list[object] = [command, folder / TESTS / f"{job.test.name}.json"]
     if job.test.robot is None and len(campaign.robots) > 1:
-        words += campaign.presentation.robot_words(job.robot)
+        words += ["--robot", job.robot]
     return typed(campaign.program, words)

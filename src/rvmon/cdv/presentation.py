@@ -43,10 +43,6 @@ def _share(block: BlockCoverage) -> str:
     return percent_text(block.covered, block.statements) if block.statements else ""
 
 
-def _option_of_robot(robot: str) -> Sequence[str]:
-    return ("--robot", robot)
-
-
 def _nothing_more(folder: Path, strategies: frozenset[str]) -> None:
     """Write no further files."""
 
@@ -73,14 +69,12 @@ class Presentation:
         further: more tables for the files, by name.
         document: the content of `table.json`.
         work: what was simulated, in words, for the terminal.
-        page_work: the same for the page.
         chart: the coverage of code under one strategy, for the page.
         chart_legend: how to read it.
         sections: further ones of the page, from the tests that were played and the addresses of
             their pages.
         foremost: requirements that the terminal shows: with others only those that failed or were
             left open somewhere, and shares of code as one line; default: it shows all of all.
-        robot_words: what `replay` is given so that it takes a robot.
         write_more: writes further files to a campaign's folder, given the strategies of its tests.
     """
 
@@ -90,7 +84,6 @@ class Presentation:
     further: Mapping[str, VerdictTable] = field(default_factory=dict)
     document: Callable[[CampaignSummary], Mapping[str, object]] = table_document
     work: Callable[[CampaignSummary], str] = work_done
-    page_work: Callable[[CampaignSummary], str] = work_done
     chart: Callable[[StrategySummary], Element | Markup] = block_chart
     chart_legend: str = (
         "The share of statements that ran and of branches that were taken; how many tests entered "
@@ -100,5 +93,4 @@ class Presentation:
         [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[Element | Markup]
     ] = _no_sections
     foremost: Sequence[str] = ()
-    robot_words: Callable[[str], Sequence[str]] = _option_of_robot
     write_more: Callable[[Path, frozenset[str]], None] = _nothing_more

@@ -7,23 +7,16 @@ not, 2 wrong input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 
 from __future__ import annotations
 
-import argparse
-from argparse import Namespace
-from collections.abc import Sequence
+from argparse import ArgumentParser, Namespace, _SubParsersAction
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.gate import CampaignJudgement, junit_xml
 from rvmon.cli import evidence, guarded
-from rvmon.cli.campaign_options import (
-    add_campaign_options,
-    add_closing_options,
-    add_judging_options,
-    add_mutate_options,
-    add_replay_options,
-    add_shrink_options,
-)
+from rvmon.cli.numbers import duration, number_or_folder, positive, shard
+from rvmon.cli.options import add_dask
 from rvmon.cli.output import warn
 from rvmon.cli.parser import Parser
 from rvmon.errors import UnknownNameError
@@ -32,27 +25,6 @@ from rvmon.report.percent import counted
 
 SHOWN = 20
 """Lines about what is wrong; `--junit` has all of them."""
-
-
-def held(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
-    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected.
-
-    Args:
-        campaign: what it was about.
-        judgement: on its tests.
-        arguments: with `junit`, the path of a file or `None`.
-    """
-    if arguments.junit is not None:
-        write_file(arguments.junit, junit_xml(campaign.name, judgement))
-    for what, count in judgement.known.items():
-        warn(f"{what} ({counted(count, 'test')})")
-    wrong = judgement.wrong
-    for what in wrong[:SHOWN]:
-        warn(f"not as expected: {what}")
-    if len(wrong) > SHOWN:
-        warn(f"not as expected: … and {len(wrong) - SHOWN:,} more: --junit FILE has all")
-    return not wrong
-
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -66,77 +38,297 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
         arguments: without the program's name; default `sys.argv[1:]`.
     """
 
-    def parsed() -> argparse.Namespace:
-        found = _parser(campaign).parse_args(arguments)
-        found.campaign = campaign
-        return found
+    def parsed() -> Namespace:
+        parser: ArgumentParser = Parser(description=f"{campaign.name}: evaluated tests.")
+        commands = parser.add_subparsers(metavar="COMMAND", required=True)
+        robots, strategies = ", ".join(campaign.robots), ", ".join(campaign.strategies)
+        add_commands(commands, lambda _: campaign, robots=robots, strategies=strategies)
+        return parser.parse_args(arguments)
 
     return guarded(parsed)
 
 
-def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = Parser(description=f"{campaign.name}: evaluated tests.")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    run = commands.add_parser(
-        "run",
-        help="play the tests of a campaign",
-        description="Generate tests, play them on all cores, evaluate them, keep the table.",
-        epilog="example: %(prog)s --tests 20 --out out/mine",
+def add_commands(
+    commands: _SubParsersAction[ArgumentParser],
+    campaign: Callable[[Namespace], Campaign],
+    *,
+    robots: str,
+    strategies: str,
+    defaults: Mapping[str, Mapping[str, str]] | None = None,
+) -> dict[str, ArgumentParser]:
+    """Declare the commands of a campaign; a program may add options of its own to their parsers.
+
+    Args:
+        commands: take them.
+        campaign: makes the campaign once the command line is read.
+        robots: the names of its robots, for people.
+        strategies: those of its strategies.
+        defaults: by command, the `robot` and the `strategy` that it takes if none is named.
+
+    Returns:
+        The parsers by command. `again`, if a program sets it, names further options that belong to
+        the command which does the same again.
+    """
+    parsers = {
+        "run": commands.add_parser(
+            "run",
+            help="play the tests of a campaign",
+            description="Generate tests, play them on all cores, evaluate them, keep the table.",
+            epilog="example: %(prog)s --tests 20 --out out/mine",
+        ),
+        "close": commands.add_parser(
+            "close",
+            help="make tests until coverage has no holes",
+            description="Make tests aimed at what is not covered, by runs of a model if there is "
+            "one, by biased choices and by changing the nearest test; play and evaluate them until "
+            "all is covered that can be; keep the fewest that cover as much.",
+            epilog="example: %(prog)s --out out/closed",
+        ),
+        "replay": commands.add_parser(
+            "replay",
+            help="play one test again",
+            description="Play a test file alone and evaluate it; the same test gives the same run.",
+            epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/replay",
+        ),
+        "shrink": commands.add_parser(
+            "shrink",
+            help="find the smallest test that fails like one",
+            description="Take away from a failing test what its failure does not need, print what "
+            "is left, and write it as a regression test.",
+            epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/small",
+        ),
+        "mutate": commands.add_parser(
+            "mutate",
+            help="which small wrong changes of the code, and of requirements, do tests see?",
+            description="Change one small thing at a time, play the tests of each strategy, and "
+            "show what kills the mutant, or which question a survivor asks.",
+            epilog="example: %(prog)s --list",
+        ),
+    }
+    handlers = (_run, _close, _replay, _shrink, _mutate)
+    first = ("all", "the first", "the test's", "the test's", "the first")
+    for (name, parser), handler, robot in zip(parsers.items(), handlers, first, strict=True):
+        parser.set_defaults(run=handler, campaign=campaign, command=name, again=())
+        own = (defaults or {}).get(name, {})
+        metavar = "NAMES" if name == "run" else "NAME"
+        told = f"of {robots} (default: {own.get('robot', robot)})"
+        parser.add_argument("--robot", metavar=metavar, default=own.get("robot"), help=told)
+        if name not in ("replay", "shrink"):
+            drawn = own.get("strategy", "those of the campaign" if name == "close" else "all")
+            told = f"of {strategies} (default: {drawn})"
+            parser.add_argument(
+                "--strategy", metavar="NAMES", default=own.get("strategy"), help=told
+            )
+    add_run_options(parsers["run"])
+    _add_closing_options(parsers["close"])
+    for name in ("replay", "shrink"):
+        parsers[name].add_argument("test", metavar="TEST", help="a .json file")
+    _add_replay_options(parsers["replay"])
+    parsers["shrink"].add_argument(
+        "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
     )
-    strategies = ", ".join(campaign.strategies)
-    run.add_argument("--strategy", metavar="NAMES", help=f"of {strategies} (default: all)")
-    run.add_argument(
-        "--robot", metavar="NAMES", help=f"of {', '.join(campaign.robots)} (default: all)"
+    parsers["shrink"].add_argument(
+        "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
     )
-    add_campaign_options(run)
-    add_judging_options(run)
-    run.set_defaults(run=_run)
-    close = commands.add_parser(
-        "close",
-        help="make tests until coverage has no holes",
-        description="Make tests aimed at what is not covered, play and evaluate them, until all is "
-        "that can be; keep the fewest that cover as much.",
-        epilog="example: %(prog)s --out out/closed",
+    _add_mutate_options(parsers["mutate"])
+    for name in ("run", "close", "replay", "mutate"):
+        _add_judging_options(parsers[name])
+    evidence.add_parser(commands, campaign)
+    return parsers
+
+
+def add_run_options(parser: ArgumentParser) -> None:
+    """Declare how many tests are played, and where their results go."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
     )
-    close.add_argument(
-        "--strategy", metavar="NAMES", help=f"of {strategies} (default: those of the campaign)"
+    parser.add_argument(
+        "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
     )
-    close.add_argument(
-        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
+    parser.add_argument(
+        "--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive"
     )
-    add_closing_options(close)
-    close.set_defaults(run=_close)
-    replay = commands.add_parser(
-        "replay",
-        help="play one test again",
-        description="Play a test file alone and evaluate it; the same test gives the same run.",
-        epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/replay",
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        type=shard,
+        help="with --out, play this share, as 2/4; the same without it joins what shards left",
     )
-    add_replay_options(replay)
-    replay.add_argument(
-        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 1 as well if something is inconclusive, is never triggered though its "
+        "strategy has to, or too little is covered",
     )
-    replay.set_defaults(run=_replay)
-    smaller = commands.add_parser("shrink", help="find the smallest test that fails like one")
-    add_shrink_options(smaller)
-    smaller.add_argument(
-        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
+    _add_playing_options(parser)
+
+
+def _add_playing_options(parser: ArgumentParser) -> None:
+    """Declare how tests are played, and where their results go."""
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    add_dask(parser)
+    parser.add_argument(
+        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
     )
-    smaller.set_defaults(run=_shrink)
-    mutate = commands.add_parser(
-        "mutate",
-        help="which small wrong changes of the code, and of requirements, do tests see?",
-        description="Change one small thing at a time, play the tests of each strategy, and show "
-        "what kills the mutant, or which question a survivor asks.",
-        epilog="example: %(prog)s --list",
+    parser.add_argument(
+        "--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML"
     )
-    add_mutate_options(mutate)
-    mutate.add_argument(
-        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        help="write tables, tests and pages there; a campaign that was ended there goes on",
     )
-    mutate.set_defaults(run=_mutate)
-    evidence.add_parser(commands, lambda: campaign)
-    return parser
+    parser.add_argument(
+        "--pages",
+        choices=("examples", "all"),
+        default="examples",
+        help="of which runs to write a page: an example of each count, or all (%(default)s)",
+    )
+    parser.add_argument(
+        "--shrink",
+        action="store_true",
+        help="with --out, shrink the tests with a page that fail, and are not made to",
+    )
+
+
+def _add_closing_options(parser: ArgumentParser) -> None:
+    """Declare when closing gives up, and where the suite goes."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
+    )
+    parser.add_argument(
+        "--margin",
+        metavar="N",
+        type=positive,
+        default=2,
+        help="keep so many tests that show each goal, where so many were found (2): one covers it, "
+        "more see more faults",
+    )
+    parser.add_argument(
+        "--mutants",
+        metavar="N",
+        type=positive,
+        help="keep also the fewest tests that kill what the suite does not of so many mutants of "
+        "the code, and show what each choice of tests sees of them and of those held out",
+    )
+    _add_playing_options(parser)
+
+
+def _add_replay_options(parser: ArgumentParser) -> None:
+    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
+    parser.add_argument(
+        "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
+    )
+    parser.add_argument(
+        "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
+    )
+
+
+def _add_mutate_options(parser: ArgumentParser) -> None:
+    """Declare which mutants are played by which tests, and where results go."""
+    parser.add_argument(
+        "--tests",
+        metavar="N|DIR",
+        type=number_or_folder,
+        default=100,
+        help="of each random strategy (100); or a folder of tests, which is the suite",
+    )
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the tests (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    parser.add_argument(
+        "--of",
+        choices=("code", "spec", "both"),
+        default="both",
+        help="mutants of the code, of its requirements, or %(default)s (default)",
+    )
+    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
+    parser.add_argument(
+        "--all", action="store_true", help="play all tests, also after a requirement failed"
+    )
+    parser.add_argument(
+        "--held-out", action="store_true", help="show also single mutants that are held out"
+    )
+    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
+    parser.add_argument(
+        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
+    )
+
+
+def _add_judging_options(parser: ArgumentParser) -> None:
+    parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
+
+
+def _run(arguments: Namespace) -> int:
+    return run_tests(_as_asked(arguments), arguments)
+
+
+def run_tests(campaign: Campaign, arguments: Namespace) -> int:
+    """Play a campaign, show it, hold it against what was expected, and return an exit code.
+
+    Args:
+        campaign: what it is about.
+        arguments: those of `add_run_options`; perhaps `strategy`, `robot`, `spec` and `format`.
+    """
+    from rvmon.cli.campaign_run import conduct, show
+
+    given = vars(arguments)
+    robots = names_of(given.get("robot"), tuple(campaign.robots), "robot")
+    strategies = names_of(given.get("strategy"), tuple(campaign.strategies), "strategy")
+    campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
+    conducted = conduct(campaign, strategies, arguments, _words(arguments, "strategy"))
+    show(campaign, conducted, given.get("format", "text"))
+    is_fine = _held(campaign, conducted.judged(strict=arguments.strict), arguments)
+    return INTERRUPTED if conducted.interrupted else int(not is_fine)
+
+
+def _close(arguments: Namespace) -> int:
+    from rvmon.cdv.play import INTERRUPTED as BY_HAND
+    from rvmon.cli.campaign_close import conduct_closing
+
+    campaign = _as_asked(arguments)
+    robot = _one_robot(campaign, arguments)
+    strategies: Sequence[str] = ()
+    if arguments.strategy is not None:
+        strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    words = _words(arguments)
+    closed, judgement = conduct_closing(campaign, robot, strategies, arguments, words)
+    is_fine = _held(campaign, judgement, arguments)
+    if closed.ended == BY_HAND:
+        return INTERRUPTED
+    return int(bool(closed.open or closed.wrong) or not is_fine)
+
+
+def _replay(arguments: Namespace) -> int:
+    from rvmon.cli.campaign_one_test import replay
+
+    return replay(_judged_by(arguments), arguments)
+
+
+def _shrink(arguments: Namespace) -> int:
+    from rvmon.cli.campaign_one_test import shrink_file
+
+    return shrink_file(arguments.campaign(arguments), arguments)
+
+
+def _mutate(arguments: Namespace) -> int:
+    from rvmon.cli.campaign_mutate import mutate
+
+    campaign = _judged_by(arguments)
+    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    return mutate(campaign, _one_robot(campaign, arguments), strategies, arguments)
 
 
 def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, ...]:
@@ -155,22 +347,20 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
     names = tuple(dict.fromkeys(name.strip() for name in listed.split(",") if name.strip()))
     if not names:
         raise UnknownNameError(f"--{what} names none: there are {', '.join(known)}")
-    return tuple(one_of(name, known, what) for name in names)
+    for name in names:
+        if name not in known:
+            raise UnknownNameError(f"no {what} `{name}`: there are {', '.join(known)}")
+    return names
 
 
-def one_of(named: str | None, known: Sequence[str], what: str) -> str:
-    """Read one name; `None`: the first that there is.
-
-    Raises:
-        UnknownNameError: it does not exist.
-    """
-    if named is not None and named not in known:
-        raise UnknownNameError(f"no {what} `{named}`: there are {', '.join(known)}")
-    return known[0] if named is None else named
+def _one_robot(campaign: Campaign, arguments: Namespace) -> str:
+    return names_of(arguments.robot, tuple(campaign.robots), "robot")[0]
 
 
-def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
-    """The campaign with other requirements for all of its robots; `None`: as it is."""
+def _judged_by(arguments: Namespace) -> Campaign:
+    """The campaign, by other requirements for all of its robots if some are given."""
+    campaign: Campaign = arguments.campaign(arguments)
+    spec = getattr(arguments, "spec", None)
     if spec is None:
         return campaign
     robots = {
@@ -180,131 +370,36 @@ def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
     return replace(campaign, robots=robots)
 
 
-def _run(arguments: argparse.Namespace) -> int:
-    campaign = arguments.campaign
-    robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
-    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    return run_tests(
-        campaign, strategies, arguments, ["run", *_given(arguments, "robot")], robots=robots
-    )
-
-
-def run_tests(
-    campaign: Campaign,
-    strategies: Sequence[str],
-    arguments: argparse.Namespace,
-    words: Sequence[object],
-    *,
-    robots: Sequence[str] = (),
-) -> int:
-    """Play a campaign, show it, hold it against what was expected, and return an exit code.
-
-    Args:
-        campaign: what it is about.
-        strategies: that make tests.
-        arguments: those of `add_campaign_options`; perhaps `strategy`, `spec` and `format`.
-        words: the command that runs it again, and its options but those.
-        robots: of its robots those that are tested; default: all.
-    """
-    from rvmon.cli.campaign_run import conduct, show
-
-    campaign = _as_asked(campaign, arguments)
-    tested = robots or campaign.robots
-    campaign = replace(campaign, robots={name: campaign.robots[name] for name in tested})
-    words = [*words, *_given(arguments, "strategy", "spec", "timeout")]
-    conducted = conduct(campaign, strategies, arguments, words)
-    show(campaign, conducted, getattr(arguments, "format", "text"))
-    is_fine = held(campaign, conducted.judged(strict=arguments.strict), arguments)
-    return INTERRUPTED if conducted.interrupted else int(not is_fine)
-
-
-def _as_asked(campaign: Campaign, arguments: argparse.Namespace) -> Campaign:
+def _as_asked(arguments: Namespace) -> Campaign:
     """The campaign as the options change it; wrong ones are refused before anything is played."""
     from rvmon.cdv.gate import refuse_unknown
 
-    refuse_unknown(campaign)
+    refuse_unknown(arguments.campaign(arguments))
     if arguments.junit is not None:
         refuse_no_file(arguments.junit)
-    if arguments.timeout is not None:
-        campaign = replace(campaign, timeout_s=arguments.timeout)
-    return judged_by(campaign, getattr(arguments, "spec", None))
+    campaign = _judged_by(arguments)
+    return campaign if arguments.timeout is None else replace(campaign, timeout_s=arguments.timeout)
 
 
-def _given(arguments: argparse.Namespace, *options: str) -> list[object]:
-    """Those options that were given, as words of a command."""
-    values = ((option, getattr(arguments, option, None)) for option in options)
-    return [word for name, value in values if value is not None for word in (f"--{name}", value)]
+def _words(arguments: Namespace, *options: str) -> list[object]:
+    """The command that does it again, with those options that were given."""
+    words: list[object] = [arguments.command]
+    for option in ("robot", *arguments.again, *options, "spec", "timeout"):
+        value = getattr(arguments, option, None)
+        if value:
+            words += [f"--{option.replace('_', '-')}", *([] if value is True else [value])]
+    return words
 
 
-def _close(arguments: argparse.Namespace) -> int:
-    robot = one_of(arguments.robot, tuple(arguments.campaign.robots), "robot")
-    return close_holes(arguments.campaign, robot, arguments, ["close", *_given(arguments, "robot")])
-
-
-def close_holes(
-    campaign: Campaign, robot: str, arguments: argparse.Namespace, words: Sequence[object]
-) -> int:
-    """Close the holes of a campaign and return an exit code.
-
-    Args:
-        campaign: what it is about.
-        robot: of its robots the one that is tested.
-        arguments: those of `add_closing_options`, and `strategy`.
-        words: the command that does it again, and its options but those.
-    """
-    from rvmon.cdv.play import INTERRUPTED as BY_HAND
-    from rvmon.cli.campaign_close import conduct_closing
-
-    campaign = _as_asked(campaign, arguments)
-    words = [*words, *_given(arguments, "spec", "timeout")]
-
-    strategies: Sequence[str] = ()
-    if arguments.strategy is not None:
-        strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    closed, judgement = conduct_closing(campaign, robot, strategies, arguments, words)
-    is_fine = held(campaign, judgement, arguments)
-    if closed.ended == BY_HAND:
-        return INTERRUPTED
-    return int(bool(closed.open or closed.wrong) or not is_fine)
-
-
-def _replay(arguments: argparse.Namespace) -> int:
-    from rvmon.cli.campaign_replay import replay as play_again
-
-    campaign = judged_by(arguments.campaign, arguments.spec)
-    return play_again(
-        campaign,
-        arguments.test,
-        arguments.robot,
-        out=arguments.out,
-        mcap=arguments.mcap,
-        form=arguments.format,
-        expected=arguments.expected,
-    )
-
-
-def _shrink(arguments: argparse.Namespace) -> int:
-    from rvmon.cli.campaign_shrink import shrink_file
-
-    return shrink_file(
-        arguments.campaign,
-        arguments.test,
-        arguments.robot,
-        arguments.requirement,
-        arguments.out,
-    )
-
-
-def mutate_code(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> int:
-    """Play suites on mutants, as the options of `add_mutate_options` say; return an exit code."""
-    from rvmon.cli.campaign_mutate import mutate
-
-    campaign = judged_by(campaign, arguments.spec)
-    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    return mutate(campaign, robot, strategies, arguments)
-
-
-def _mutate(arguments: argparse.Namespace) -> int:
-    robots = tuple(arguments.campaign.robots)
-    robot = names_of(arguments.robot, robots, "robot")[0]
-    return mutate_code(arguments.campaign, robot, arguments)
+def _held(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
+    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected."""
+    if arguments.junit is not None:
+        write_file(arguments.junit, junit_xml(campaign.name, judgement))
+    for what, count in judgement.known.items():
+        warn(f"{what} ({counted(count, 'test')})")
+    wrong = judgement.wrong
+    for what in wrong[:SHOWN]:
+        warn(f"not as expected: {what}")
+    if len(wrong) > SHOWN:
+        warn(f"not as expected: … and {len(wrong) - SHOWN:,} more: --junit FILE has all")
+    return not wrong

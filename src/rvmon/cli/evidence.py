@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-    campaign: Callable[[], Campaign] | None = None,
+    campaign: Callable[[argparse.Namespace], Campaign] | None = None,
 ) -> None:
     """Declare the subcommand's arguments.
 
@@ -122,7 +122,7 @@ def _verify(
             return
         from rvmon.cli.campaign_evidence import as_kept, played_again, programs_of
 
-        campaign = as_kept(arguments.made(), kept)
+        campaign = as_kept(arguments.made(arguments), kept)
         again = partial(played_again, campaign)
         if not programs_of(campaign).items() <= about.programs.items():
             say(f"{campaign.name} has changed since: its tests are played as it is now")

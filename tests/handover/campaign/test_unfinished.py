@@ -192,7 +192,9 @@ def test_another_campaign_is_refused(whole, here, capsys, other):
     assert main([*WORDS, *other]) == 2
     told = " ".join(capsys.readouterr().err.split())
     assert f"{Path('out', NAME)} holds another campaign" in told
-    assert "run --tests 12 --seed 1 --legacy --strategy constrained --out out` finishes" in told
+    assert (
+        "run --tests 12 --seed 1 --robot legacy --strategy constrained --out out` finishes" in told
+    )
     assert "remove it to give that up, or name another --out" in told
     assert files(here) == {Path(NAME): whole[1]}
 

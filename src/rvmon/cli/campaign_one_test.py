@@ -1,0 +1,139 @@
+"""Play one test of a campaign again, alone, or shrink it."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from pathlib import Path
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_page import comparable_jobs
+from rvmon.cdv.gate import judge_test
+from rvmon.cdv.output import typed
+from rvmon.cdv.pages import Replay, play_again, replay_page
+from rvmon.cdv.plan import Job, Outcome, Played
+from rvmon.cdv.play import play_apart, player
+from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
+from rvmon.cdv.test import Test, to_json
+from rvmon.cdv.test import load as load_test
+from rvmon.cli.output import busy, say_json, warn
+from rvmon.coverage.record import Ending
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
+from rvmon.report.folder import made, refuse_no_file
+from rvmon.report.run_text import print_report
+from rvmon.report.terminal import Terminal
+from rvmon.session import Spec, load
+from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
+
+
+def replay(campaign: Campaign, arguments: Namespace) -> int:
+    """Play a test file again, judge it, and return an exit code: 1 if a requirement failed.
+
+    Args:
+        campaign: that the test is of.
+        arguments: those of `replay`.
+    """
+    job = _job(campaign, arguments)
+    robot = campaign.robots[job.robot]
+    if robot.spec is None:
+        raise RvmonError(f"robot `{job.robot}` has no requirements: name some by --spec")
+    spec = load(robot.spec)
+    # A folder that cannot be written to is reported before anything is played.
+    folder = made(arguments.out) if arguments.out else None
+    if arguments.mcap is not None:
+        refuse_mcap(arguments.mcap)
+        refuse_no_file(arguments.mcap)
+    played = play_again(job.test, job.robot, robot, spec)
+    _show(arguments.format, spec, played)
+    if arguments.mcap is not None:
+        report, samples = played.report, played.samples
+        write_verdicts(arguments.mcap, spec.checked, report, samples, played.run.scene)
+    if folder is not None:
+        words: list[object] = ["replay", arguments.test]
+        words += [] if arguments.robot is None else ["--robot", arguments.robot]
+        others = [
+            play_again(one.test, job.robot, robot, spec).judged
+            for one in comparable_jobs(job, (), ())
+        ]
+        command = typed(campaign.program, words)
+        page = replay_page(played, job.robot, spec, command=command, others=others)
+        # The file is named after the test's file: what it says inside is no path.
+        name = Path(arguments.test).stem
+        write_whole(folder / f"{name}.html", page)
+        lines = [json.dumps({"t_ns": one.t, **one.values}) + "\n" for one in played.samples]
+        write_whole(folder / f"{name}.jsonl", "".join(lines))
+    if arguments.expected:
+        wrong = judge_test(Played(job, played.outcome), campaign.expected_failures).wrong
+        for what in wrong:
+            warn(f"not as expected: {what}")
+        return int(bool(wrong))
+    return int(Verdict.FAIL in played.report.verdicts.values())
+
+
+def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
+    """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail.
+
+    Args:
+        campaign: that the test is of.
+        arguments: those of `shrink`.
+    """
+    job, requirement = _job(campaign, arguments), arguments.requirement
+    folder = made(arguments.out) if arguments.out else None  # reported before anything is played
+    with busy("shrinking"):
+        found = _smallest(campaign, job, requirement)
+    if found is None:
+        why = f"{requirement} does not fail" if requirement else "no requirement fails"
+        warn(f"{arguments.test}: {why}: there is nothing to shrink")
+        return 1
+    small = regression_test(campaign, job, found)
+    left = removed(job.test, small)
+    say_json(to_json(small).decode().removesuffix("\n"))
+    if not found.is_minimal:
+        warn("it was ended early: an even smaller test may fail alike")
+    if not job.test.removable:
+        kind = type(job.test).__name__
+        warn(f"`{kind}` names nothing in `removable`: only values can be simpler")
+    warn(f"{found.failure}: {left or 'values'}; {found.tried} tests in {found.seconds:.1f} s")
+    if folder is not None:
+        for written in save_regression(campaign, small, folder):
+            warn(f"written: {written}")
+    return 0
+
+
+def _job(campaign: Campaign, arguments: Namespace) -> Job:
+    """The test, on the robot that was asked for, else its own, else the campaign's first.
+
+    Raises:
+        UnknownNameError: there is no such robot.
+    """
+    test = load_test(arguments.test, campaign.test)
+    name = arguments.robot or test.robot or next(iter(campaign.robots))
+    if name not in campaign.robots:
+        raise UnknownNameError(f"no robot `{name}`: there are {', '.join(campaign.robots)}")
+    return Job(test, name)
+
+
+def _smallest(campaign: Campaign, job: Job, requirement: str | None) -> Shrunk[Test] | None:
+    """The smallest test; where the run hangs or is lost, each is played in a process of its own."""
+    outcome = play_apart(campaign, job)
+    here = None
+    if outcome.ending in (Ending.COMPLETED, Ending.CRASHED):
+        here = player({job.robot: campaign.robots[job.robot]}, None, None)
+
+    def play(test: Test) -> Outcome:
+        again = Job(test, job.robot)
+        return play_apart(campaign, again) if here is None else here(again)[0]
+
+    return shrink(job.test, outcome, play, requirement)
+
+
+def _show(form: str, spec: Spec, played: Replay) -> None:
+    if form == "json":
+        say_json(played.report.to_json())
+        return
+    console = Terminal()
+    print_report(played.report, spec.checked, console)
+    if played.run.error is not None:
+        console.print(f"The robot's code crashed: {played.run.error}", style="bold red")
