@@ -24,7 +24,7 @@ from rvmon.cdv import Campaign
 from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.witnesses import EDGES
 from rvmon.coverage.database import read
-from rvmon.coverage.questions import by_strategy
+from rvmon.coverage.questions import Answers
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
 LOOKED_AT = (25, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
@@ -85,7 +85,7 @@ def _look_at(path: str, closed: Closed) -> None:
     goals |= {goal for goal in closed.open if goal[0] != EDGES}
     coverage = read([path])
     met: set[tuple[str, str]] = set()
-    for number, place in enumerate(_in_turn([*by_strategy(coverage).values()]), 1):
+    for number, place in enumerate(_in_turn([*Answers(coverage).strategies.values()]), 1):
         row = coverage.entries[place].row
         met |= goals & {coverage.items[item] for item in row.items.tolist()}
         if number in LOOKED_AT:

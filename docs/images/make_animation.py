@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import rvmon
-from handover.campaign.scene import scene_of
 from handover.checker import spec_path
 from handover.driver import run_test
 from handover.driver.play import SampleValues
@@ -116,7 +115,7 @@ def main(target: Path) -> None:
 
 def _panel(sheet: Sheet, name: str, x: int) -> ET.Element:
     test = next(test for test in directed() if test.name == name)
-    run = run_test(test, record_poses=True)
+    run = run_test(test, films=True)
     lamps = _judged(run.samples, run.simulated_s)
     events = [
         (t / TICKS_PER_SECOND, event)
@@ -124,7 +123,7 @@ def _panel(sheet: Sheet, name: str, x: int) -> ET.Element:
         for event in SHOWN
         if values.get(event)
     ]
-    scene = scene_of(run.poses)
+    scene = run.scene
     drawing = scene_svg(scene, 0)
     for key, value in {"x": 0, "y": 34, "width": PANEL, "height": SCENE_HEIGHT}.items():
         drawing.set(key, str(value))

@@ -16,8 +16,7 @@ from handover.campaign.strategies import STRATEGIES
 from handover.campaign.system import Handover, without_loss
 from handover.campaign.table1 import paper_table, robot_tables, table_document
 from handover.checker import SPECS, situations_path, spec_path
-from handover.collector.code import robot_code
-from handover.collector.transitions import TRANSITIONS
+from handover.collector.code import TRANSITIONS, robot_code
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.model_based import save_templates
 from handover.robot.handover import STATES

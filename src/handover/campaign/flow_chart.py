@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from handover.collector.transitions import TRANSITIONS
+from handover.collector.code import COMMON, TRANSITIONS
 from handover.robot.handover import STATES
-from handover.robot.layout import COMMON
 from rvmon.cdv.summary import BlockCoverage, StrategySummary, Transition
 from rvmon.report.markup import e
 from rvmon.report.percent import percent_text

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from msgspec import structs
 
-from handover.campaign.scene import scene_of
 from handover.driver import run_test
 from handover.driver.play import draw
 from handover.generator.abstract_test import AbstractTest
@@ -33,7 +32,7 @@ class Handover:
         run = run_test(
             test,
             robot=self._robot,
-            record_poses=observer.wants_scene,
+            films=observer.wants_scene,
             observer=observer,
             around_robot_step=observer.code,
         )
@@ -45,7 +44,7 @@ class Handover:
             error=run.error,
             figures={"stepped_s": run.stepped_s},
             facts=[("outcome", outcome)],
-            scene=None if run.poses is None else scene_of(run.poses),
+            scene=run.scene,
         )
 
 

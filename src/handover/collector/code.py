@@ -1,17 +1,36 @@
-"""The robot's code, as what coverage is measured of: a block per state."""
+"""The states and the code of the robot that coverage is measured of: a block per state."""
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path
 
 from handover.robot import behaviour, handover
-from handover.robot.handover import STATES
-from handover.robot.layout import COMMON, code_blocks
-from rvmon.cdv import Block, Code
+from handover.robot.handover import STATES, HandoverRobot
+from rvmon.cdv import Block, Code, blocks_of
 
-_BEFORE_THE_TEST = "__init__"
-"""The one function that runs before any step of the robot can be measured."""
+COMMON = "common"
+"""The block of the code that several states share, or none."""
 
+TRANSITIONS = (
+    ("reset", "receive_activation"),
+    ("receive_activation", "receive_activation"),
+    ("receive_activation", "move"),
+    ("receive_activation", "done"),
+    ("move", "send_signal"),
+    ("move", "done"),
+    ("send_signal", "receive_readiness"),
+    ("receive_readiness", "receive_readiness"),
+    ("receive_readiness", "sense"),
+    ("receive_readiness", "done"),
+    ("sense", "sense"),
+    ("sense", "decide"),
+    ("sense", "done"),
+    ("decide", "release"),
+    ("decide", "done"),
+    ("release", "done"),
+)
+"""Those that the code allows: from, to; loops and failures included, in the order of a handover."""
 
 _EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 
@@ -22,13 +41,14 @@ def robot_code() -> Code:
     >>> [block.name for block in robot_code().blocks][-2:]
     ['done', 'common']
     """
-    blocks = [block for block in code_blocks() if block.function != _BEFORE_THE_TEST]
-    lines: dict[str, set[int]] = {state: set() for state in (*STATES, COMMON)}
-    for block in blocks:
-        lines[block.state].update(range(block.first + 1, block.last + 1))
-    path = blocks[0].path
+    path = str(handover.__file__)
+    owners = state_of_functions()
+    names = {f"{HandoverRobot.__name__}.{name}": owners[name] for name in (*STATES, *owners)}
+    # What runs before any step of the robot cannot be measured: it counts with no state.
+    (before,) = (one for one in blocks_of(path) if one.name == f"{HandoverRobot.__name__}.__init__")
+    blocks = {one.name: one.lines - before.lines for one in blocks_of(path, names)}
     return Code(
-        [Block(state, path, frozenset(own)) for state, own in lines.items()],
+        [Block(name, path, blocks[name]) for name in (*STATES, COMMON)],
         marked=True,
         kind="state",
         constants={
@@ -37,3 +57,28 @@ def robot_code() -> Code:
         },
         equivalent=_EQUIVALENT,
     )
+
+
+def state_of_functions() -> dict[str, str]:
+    """The state of each function of the state machine, in the order of the file.
+
+    A state's method belongs to it; a helper belongs to the one state that calls it, directly or
+    through other helpers, and to `COMMON` if several do.
+
+    >>> state_of_functions()["go_to"], state_of_functions()["poll_signal"]
+    ('move', 'common')
+    """
+    functions = {
+        name: member.__code__.co_names
+        for name, member in vars(HandoverRobot).items()
+        if inspect.isfunction(member)
+    }
+    users: dict[str, set[str]] = {name: set() for name in functions}
+    for state in STATES:
+        todo = [state]
+        while todo:
+            name = todo.pop()
+            if state not in users[name]:
+                users[name].add(state)
+                todo += [called for called in functions[name] if called in functions]
+    return {name: own.pop() if len(own) == 1 else COMMON for name, own in users.items()}

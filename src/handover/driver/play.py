@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from handover.generator.abstract_test import AbstractTest, Action
-    from handover.world.poses import Poses
     from handover.world.process import Process
     from handover.world.world import World
+    from rvmon.report.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class Run:
         end_ns: the horizon.
         stepped_s: simulated seconds for which the physics was stepped.
         error: the exception of the robot's code as one text, if it crashed.
-        poses: the scene over time, if asked for.
+        scene: over time, if asked for.
     """
 
     test: AbstractTest
@@ -102,7 +102,7 @@ class Run:
     end_ns: int
     stepped_s: float
     error: str | None
-    poses: Poses | None
+    scene: Scene | None
 
     @property
     def simulated_s(self) -> float:
@@ -134,7 +134,7 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
         end_ns=horizon_ns,
         stepped_s=played.world.stepped_s,
         error=played.process.error,
-        poses=played.world.poses(),
+        scene=played.world.film(),
     )
 
 
@@ -165,7 +165,7 @@ def begun(
     mutation: str | None = None,
     startup_loss: bool = True,
     jump: bool = True,
-    record_poses: bool = False,
+    films: bool = False,
     observer: Observer | None = None,
     around_robot_step: AroundRobotStep | None = None,
 ) -> Played:
@@ -179,7 +179,7 @@ def begun(
         startup_loss: `False` switches the fitted loss of signals to the legacy robot off in any
             case; the correct one loses none.
         jump: skip the physics while nothing moves; `False` steps all of it.
-        record_poses: keep the scene over time for an animation.
+        films: keep the scene over time for an animation.
         observer: called with each whole sample, in time order.
         around_robot_step: context in which each step of the robot's code runs.
 
@@ -210,7 +210,7 @@ def begun(
         faults=test.faults,
         scene_faults=test.scene,
         jump=jump,
-        record_poses=record_poses,
+        films=films,
         observer=observer,
     )
     states: list[tuple[int, str]] = []

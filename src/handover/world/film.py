@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import pymunk
+import math
 
 from handover.world import parameters as p
 from handover.world.building import palm_corners, table_corners
-from handover.world.poses import Outline, Poses
 from handover.world.scene import Scene
+from rvmon.report import scene as shown
 
 BODIES = (
     "upper_arm",
@@ -20,12 +20,19 @@ BODIES = (
     "head",
 )
 
+VIEW = (-0.62, -0.1, 1.18, 0.95)
+"""Metres: from behind the robot's shoulder to behind the human's head, the table below."""
+
+GAZE_LENGTH = 0.55
+GAZE_HALF_ANGLE = math.radians(12)
+
 
 class Film:
     """Takes frames of a scene."""
 
     def __init__(self, scene: Scene) -> None:
-        self._bodies = _bodies(scene)
+        # In the order of `BODIES`.
+        self._bodies = (*scene.links, *scene.fingers, scene.piece, scene.hand, scene.head)
         self._frames: list[tuple[int, tuple[float, ...]]] = []
 
     def take(self, t_ns: int) -> None:
@@ -36,33 +43,28 @@ class Film:
             frame += (round(x, 4), round(z, 4), round(body.angle, 4))
         self._frames.append((t_ns, tuple(frame)))
 
-    def poses(self) -> Poses:
+    def scene(self) -> shown.Scene:
         """All frames, with what to draw."""
-        return Poses(BODIES, outlines(), tuple(self._frames))
+        return shown.Scene(BODIES, outlines(), tuple(self._frames), VIEW)
 
 
-def outlines() -> tuple[Outline, ...]:
-    """What to draw for each body of `BODIES`, and for the ground."""
+def outlines() -> tuple[shown.Outline, ...]:
+    """What to draw for each body of `BODIES` and the ground, and the cone of the human's gaze."""
     length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
     finger = ((-length, -width), (length, -width), (length, width), (-length, width))
     half_x, half_z = p.PIECE_SIZE[0] / 2, p.PIECE_SIZE[1] / 2
+    piece = ((-half_x, -half_z), (half_x, -half_z), (half_x, half_z), (-half_x, half_z))
+    x, z = GAZE_LENGTH, GAZE_LENGTH * math.tan(GAZE_HALF_ANGLE)
     return (
-        Outline("upper_arm", ((-p.UPPER_ARM / 2, 0.0), (p.UPPER_ARM / 2, 0.0)), 0.03),
-        Outline("forearm", ((-p.FOREARM / 2, 0.0), (p.FOREARM / 2, 0.0)), 0.025),
-        Outline("palm", palm_corners()),
-        Outline("left_finger", finger),
-        Outline("right_finger", finger),
-        Outline(
-            "piece",
-            ((-half_x, -half_z), (half_x, -half_z), (half_x, half_z), (-half_x, half_z)),
-        ),
-        Outline("hand", ((0.0, 0.0),), p.HAND_RADIUS),
-        Outline("head", ((0.0, 0.0),), p.HEAD_RADIUS),
-        Outline("ground", table_corners()),
-        Outline("ground", ((-2.0, p.FLOOR_Z), (3.0, p.FLOOR_Z))),
+        shown.Outline("upper_arm", ((-p.UPPER_ARM / 2, 0.0), (p.UPPER_ARM / 2, 0.0)), 0.03, "link"),
+        shown.Outline("forearm", ((-p.FOREARM / 2, 0.0), (p.FOREARM / 2, 0.0)), 0.025, "link"),
+        shown.Outline("palm", palm_corners(), 0.0, "gripper"),
+        shown.Outline("left_finger", finger, 0.0, "gripper"),
+        shown.Outline("right_finger", finger, 0.0, "gripper"),
+        shown.Outline("piece", piece, 0.0, "piece"),
+        shown.Outline("hand", ((0.0, 0.0),), p.HAND_RADIUS, "person"),
+        shown.Outline("head", ((0.0, 0.0),), p.HEAD_RADIUS, "person"),
+        shown.Outline("ground", table_corners(), 0.0, "ground"),
+        shown.Outline("ground", ((-2.0, p.FLOOR_Z), (3.0, p.FLOOR_Z)), 0.0, "ground"),
+        shown.Outline("head", ((0.0, 0.0), (x, -z), (x, z)), 0.0, "gaze"),
     )
-
-
-def _bodies(scene: Scene) -> tuple[pymunk.Body, ...]:
-    """The bodies that have a pose, in the order of `BODIES`."""
-    return (*scene.links, *scene.fingers, scene.piece, scene.hand, scene.head)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from handover.world import parameters as p
 from handover.world.arm import Arm, Gripper
@@ -14,9 +15,11 @@ from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
 from handover.world.measures import seen_piece
-from handover.world.poses import Poses
 from handover.world.recorder import Recorder, SampleValue, Truth
 from handover.world.sensing import Reading, Sensors
+
+if TYPE_CHECKING:
+    from rvmon.report import scene as shown
 
 PERFECT = SensorFaults()
 
@@ -37,7 +40,7 @@ class World:
         faults: what is wrong with the sensors.
         scene_faults: what the scene has in store for the robot.
         jump: `False` steps the physics over rest, too.
-        record_poses: keep a frame at 10 Hz while something moves.
+        films: keep a frame at 10 Hz while something moves.
         observer: called with each whole sample.
     """
 
@@ -48,7 +51,7 @@ class World:
         faults: SensorFaults = PERFECT,
         scene_faults: SceneFaults = AS_PLANNED,
         jump: bool = True,
-        record_poses: bool = False,
+        films: bool = False,
         observer: Callable[[int, dict[str, SampleValue]], None] | None = None,
     ) -> None:
         self.schedule = Schedule()
@@ -68,7 +71,7 @@ class World:
         self._hand_seen: tuple[int, float | None] = (-1, None)
         self._hidden = scene_faults.hidden
         self._rng = rng
-        self._film = Film(self.scene) if record_poses else None
+        self._film = Film(self.scene) if films else None
         self.bus.tap(self._record)
         self._wake(0.0)
         self.recorder.signal(0, "sensors_disturbed", faults != PERFECT)
@@ -114,9 +117,9 @@ class World:
         """Seconds for which the physics was stepped."""
         return self._stepped * p.STEP_NS / p.NS
 
-    def poses(self) -> Poses | None:
-        """The recorded frames, if they were asked for."""
-        return None if self._film is None else self._film.poses()
+    def film(self) -> shown.Scene | None:
+        """The scene over time, if it was asked for."""
+        return None if self._film is None else self._film.scene()
 
     def _advance(self, t_ns: int) -> None:
         """Bring the physics to the last step at or before an instant."""

@@ -19,7 +19,6 @@ from rvmon.cdv.tables import (
     INTERVALS,
     LEGEND,
     RobotTables,
-    coverage_document,
     named_tables,
     to_json,
 )
@@ -205,7 +204,7 @@ def write_tables(
     tables: Mapping[str, RobotTables],
     presentation: Presentation,
 ) -> None:
-    """Write `table.txt`, `table.csv`, `table.tex`, `table.json` and `coverage.json`."""
+    """Write `table.txt`, `table.csv`, `table.tex` and `table.json`."""
     named = {**named_tables(tables, summary.control), **presentation.further}
     latex = "\n".join(table_latex(table) for table in named.values())
     folder.mkdir(parents=True, exist_ok=True)
@@ -213,7 +212,6 @@ def write_tables(
     write_whole(folder / "table.csv", tables_csv(named, key="robot"))
     write_whole(folder / "table.tex", latex)
     write_whole(folder / "table.json", to_json(presentation.document(summary)))
-    write_whole(folder / "coverage.json", to_json(coverage_document(summary)))
 
 
 def write_tests(folder: Path, results: Results) -> None:

@@ -15,7 +15,7 @@ from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.gate import judge_test
 from rvmon.cdv.output import RUNS, SMALLEST, TESTS, typed
 from rvmon.cdv.plan import Job, Outcome, Played, Results
-from rvmon.cdv.play import outcome_of, player, run_of, system_of
+from rvmon.cdv.play import Bench, Recorded, player
 from rvmon.cdv.shrink import (
     Shrunk,
     failure_of,
@@ -26,7 +26,6 @@ from rvmon.cdv.shrink import (
     small_name,
 )
 from rvmon.cdv.summary import CampaignSummary
-from rvmon.cdv.system import Checker, Observer, Run, Values
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
@@ -36,7 +35,6 @@ from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
-from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 
@@ -47,46 +45,24 @@ class Replay:
 
     Attributes:
         test: that was played.
-        run: what the system reported of it at its end.
-        samples: that it reported before.
-        report: the verdicts.
+        recorded: all that came of it but what it hit, which is not measured.
     """
 
     test: Test
-    run: Run
-    samples: tuple[Sample, ...]
-    report: Report
-
-    @property
-    def outcome(self) -> Outcome:
-        """What a campaign keeps of the run; what it hit was not measured."""
-        return outcome_of(self.run, self.report)
+    recorded: Recorded
 
     @property
     def judged(self) -> JudgedRun:
         """The run as its page wants it."""
-        return JudgedRun(self.test.name, self.report, self.samples)
+        samples = tuple(Sample(*one) for one in self.recorded.samples)
+        return JudgedRun(
+            self.test.name, replace(self.recorded.report, trace=self.test.name), samples
+        )
 
 
 def play_again(test: Test, name: str, robot: Robot, spec: Spec) -> Replay:
-    """Play one test in this process with its scene recorded: the run that the campaign had.
-
-    Args:
-        test: what is played.
-        name: of the robot.
-        robot: against which.
-        spec: what judges it.
-    """
-    checker = Checker(spec)
-    samples: list[Sample] = []
-
-    def note(t_ns: int, values: Values) -> None:
-        samples.append(Sample(t_ns, dict(values)))
-
-    observer = Observer((checker.observe, note), wants_scene=True)
-    run = run_of(system_of(name, robot), test, observer)
-    report = replace(checker.finish(run.end_ns), trace=test.name)
-    return Replay(test, run, tuple(samples), report)
+    """Play one test in this process with its scene recorded: the run that the campaign had."""
+    return Replay(test, Bench(name, robot, spec).play(test, keeps=True, wants_scene=True))
 
 
 def replay_page(
@@ -120,23 +96,23 @@ def replay_page(
             command=command,
             others=others,
             facts=facts,
-            scene=replay.run.scene,
+            scene=replay.recorded.run.scene,
             back=back,
         )
     )
 
 
 def _facts(replay: Replay, robot: str, spec: Spec) -> list[tuple[str, str]]:
-    test = replay.test
+    test, run = replay.test, replay.recorded.run
     facts = [("test", test.name)]
     if test.text:
         facts.append(("purpose", test.text))
     facts += [("robot", robot), ("specification", spec.checked.name)]
     if test.mutation is not None:
         facts.append(("planted fault", test.mutation))
-    facts += [("seed", str(test.seed)), *replay.run.facts]
-    if replay.run.error is not None:
-        facts.append(("robot crashed", replay.run.error))
+    facts += [("seed", str(test.seed)), *run.facts]
+    if run.error is not None:
+        facts.append(("robot crashed", run.error))
     return facts
 
 
@@ -289,7 +265,7 @@ def _writer(
             smallest=_smallest(page, shrunk),
         )
         write_whole(folder / _address(page.job), text)
-        return replay.report.verdicts, shrunk
+        return replay.recorded.report.verdicts, shrunk
 
     return write
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
-from rvmon.cdv.test import Test, TestError, from_json, load, to_json
+from rvmon.cdv.test import Test, TestError, blamed, from_json, load, to_json
 from rvmon.coverage.model import Group, Hits
 from rvmon.coverage.record import Ending
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import UnknownNameError
 from rvmon.verdict.verdict import Verdict
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
@@ -119,13 +119,8 @@ def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
 
 def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
     """The tests of a strategy."""
-    try:
+    with blamed(f"strategy `{strategy}` cannot make its tests"):
         made = [*campaign.strategies[strategy](tests, seed)]
-    except RvmonError:
-        raise
-    except Exception as error:
-        cause = f"{type(error).__name__}: {error}"
-        raise TestError(f"strategy `{strategy}` cannot make its tests: {cause}") from error
     for test in made:
         if not isinstance(test, campaign.test):
             kind = campaign.test.__name__

@@ -8,15 +8,15 @@ from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code import Code
 from rvmon.cdv.code_coverage import Meter, hits_of_states
 from rvmon.cdv.coverage import spec_coverages
 from rvmon.cdv.plan import Job, Outcome, Plan, Played, Results
-from rvmon.cdv.system import Checker, Observer, Run, System
-from rvmon.cdv.test import TestError
+from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
+from rvmon.cdv.test import TestError, blamed
 from rvmon.cdv.unfinished import Unfinished
 from rvmon.coverage.model import Hits
 from rvmon.coverage.record import Ending
@@ -29,6 +29,8 @@ from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test
+    from rvmon.coverage.monitor import SpecCoverage
+    from rvmon.session import Spec
     from rvmon.verdict.report import Report
 
 
@@ -47,66 +49,101 @@ def player(
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
     """
-    benches = {name: _Bench(name, robot, code) for name, robot in robots.items()}
+    benches = {}
+    for name, robot in robots.items():
+        spec = None if robot.spec is None else load(robot.spec)
+        benches[name] = Bench(name, robot, spec, code, spec_coverages(robot))
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench = benches[job.robot]
-        outcome = bench.play(job.test)
-        try:
+        outcome = outcome_of(bench.play(job.test))
+        with blamed(f"test `{job.test.name}`: its control cannot be made"):
             beside = None if control is None else control(job.test)
-        except Exception as error:
-            message = f"test `{job.test.name}`: its control cannot be made: {_error_text(error)}"
-            raise TestError(message) from error
-        return outcome, None if beside is None else bench.play(beside)
+        return outcome, None if beside is None else outcome_of(bench.play(beside))
 
     return played
 
 
-class _Bench:
-    """One robot with all that plays, judges and measures it."""
+class Recorded(NamedTuple):
+    """A test that was played, with all that was asked for.
 
-    def __init__(self, name: str, robot: Robot, code: Code | None) -> None:
-        self._system = system_of(name, robot)
-        spec = None if robot.spec is None else load(robot.spec)
-        self._checker = Checker(spec, spec_coverages(robot))
+    Attributes:
+        run: what the system reported at its end.
+        report: the verdicts.
+        samples: instants, and what changed or occurred; where they were to be kept.
+        hits: what was hit of what is measured.
+        illegal: what of it must not be.
+        seconds: wall time that it took, with judging.
+        cpu_s: processor time of this process that playing it took.
+    """
+
+    run: Run
+    report: Report
+    samples: Sequence[tuple[int, Values]]
+    hits: Hits
+    illegal: tuple[str, ...]
+    seconds: float
+    cpu_s: float
+
+
+class Bench:
+    """One robot with all that plays, judges and measures it: one test after the other.
+
+    Args:
+        name: of the robot.
+        robot: itself.
+        spec: judges it; `None`: nothing does.
+        code: whose coverage is measured.
+        coverages: whose coverage models are gathered.
+
+    Raises:
+        RvmonError: what plays its tests cannot be made; the message says why.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        robot: Robot,
+        spec: Spec | None,
+        code: Code | None = None,
+        coverages: Sequence[SpecCoverage] = (),
+    ) -> None:
+        with blamed(f"robot `{name}`: what plays its tests cannot be made", RvmonError):
+            self._system: System[Any] = robot.system()
+        self._checker = Checker(spec, coverages)
         self._meter = None if code is None else Meter(code)
         self._marked = code is not None and code.marked
 
-    def play(self, test: Test) -> Outcome:
-        """Play a test; whatever its code raises is its result."""
-        started = time.perf_counter()
+    def play(self, test: Test, *, keeps: bool = False, wants_scene: bool = False) -> Recorded:
+        """Play a test; whatever its code raises is its result.
+
+        Args:
+            test: is played.
+            keeps: keep the samples.
+            wants_scene: ask the system for what could be seen.
+        """
+        started, samples = time.perf_counter(), list[tuple[int, Values]]()
+        takers: list[Taker] = [self._checker.observe]
+        if keeps:
+            takers.append(lambda t_ns, values: samples.append((t_ns, dict(values))))
         self._checker.begin()
         if self._meter is not None:
             self._meter.begin()
         measured = self._meter or nullcontext()
-        observer = Observer((self._checker.observe,), code=measured if self._marked else None)
+        marked = measured if self._marked else None
+        observer = Observer(takers, code=marked, wants_scene=wants_scene)
+        begun = time.process_time()
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
+        cpu_s = time.process_time() - begun
         hits = hits_of_states(run)
         if self._meter is not None:
             hits |= self._meter.hits()
         found = self._checker.hits(run.end_ns)
-        hits |= found
         report = self._checker.finish(run.end_ns)
         illegal = tuple(map(str, self._checker.illegal(found)))
         seconds = time.perf_counter() - started
-        return outcome_of(run, report, illegal=illegal, hits=hits, seconds=seconds)
-
-
-def system_of(name: str, robot: Robot) -> System[Any]:
-    """What plays the tests of a robot.
-
-    Raises:
-        RvmonError: it cannot be made; the message says why.
-    """
-    try:
-        return robot.system()
-    except RvmonError:
-        raise
-    except Exception as error:
-        raise RvmonError(
-            f"robot `{name}`: what plays its tests cannot be made: {_error_text(error)}"
-        ) from error
+        return Recorded(run, report, samples, {**hits, **found}, illegal, seconds, cpu_s)
 
 
 def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
@@ -129,33 +166,19 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     return run
 
 
-def outcome_of(
-    run: Run,
-    report: Report,
-    *,
-    illegal: tuple[str, ...] = (),
-    hits: Hits | None = None,
-    seconds: float = 0.0,
-) -> Outcome:
-    """What a campaign keeps of a run that came to its end.
-
-    Args:
-        run: what the system reported of it.
-        report: the verdicts.
-        illegal: what was hit and must not be.
-        hits: what was hit, if that was measured.
-        seconds: wall time that it took.
-    """
+def outcome_of(recorded: Recorded) -> Outcome:
+    """What a campaign keeps of a test that came to its end."""
+    run, report = recorded.run, recorded.report
     return Outcome(
         verdicts=report.verdicts,
         reasons=_reasons(report),
-        illegal=illegal,
-        hits=hits or {},
+        illegal=recorded.illegal,
+        hits=recorded.hits,
         ending=Ending.COMPLETED if run.error is None else Ending.CRASHED,
         error=run.error,
         end_ns=run.end_ns,
         figures=run.figures,
-        seconds=seconds,
+        seconds=recorded.seconds,
     )
 
 

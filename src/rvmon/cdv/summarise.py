@@ -126,9 +126,7 @@ def _strategy(
             source_and_target(name): tests
             for name, tests in _counted(groups[TRANSITIONS], outcomes).items()
         },
-        crashes=_errors(played, Ending.CRASHED),
-        hung=_errors(played, Ending.HUNG),
-        lost=_errors(played, Ending.LOST),
+        errors=_errors(played),
         figures=_sums(outcomes),
         simulated_s=sum(one.simulated_s for one in outcomes),
         shares={name: decide(share, _drawn(name, played)) for name, share in shares.items()},
@@ -149,10 +147,12 @@ def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
             yield one.outcome.verdicts[requirement]
 
 
-def _errors(played: Sequence[Played], ending: Ending) -> dict[str, str]:
-    return {
-        one.job.test.name: one.outcome.error or "" for one in played if one.outcome.ending is ending
-    }
+def _errors(played: Sequence[Played]) -> dict[Ending, dict[str, str]]:
+    found: dict[Ending, dict[str, str]] = {one: {} for one in Ending if one != Ending.COMPLETED}
+    for one in played:
+        if one.outcome.ending in found:
+            found[one.outcome.ending][one.job.test.name] = one.outcome.error or ""
+    return found
 
 
 def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> dict[str, Counts]:

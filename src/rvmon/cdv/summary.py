@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.cdv.run_share import Decision
 from rvmon.coverage.model import Hits
+from rvmon.coverage.record import Ending
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
 from rvmon.verdict.verdict import Verdict
@@ -57,9 +58,7 @@ class StrategySummary:
         branches: by block; empty if they are not measured.
         states: how many tests entered each, of those that are declared also none.
         transitions: how many tests took each, likewise.
-        crashes: what the code under test raised, by test.
-        hung: why, by test that was ended.
-        lost: why, by test whose process was ended.
+        errors: by how tests ended that did not complete, why, by test.
         figures: the sums of what the system reports of its runs.
         simulated_s: simulated seconds.
         shares: by requirement that is to hold in a share of runs, what the tests say of it.
@@ -71,9 +70,7 @@ class StrategySummary:
     branches: Mapping[str, BlockCoverage]
     states: Mapping[str, int]
     transitions: Mapping[Transition, int]
-    crashes: Mapping[str, str]
-    hung: Mapping[str, str]
-    lost: Mapping[str, str]
+    errors: Mapping[Ending, Mapping[str, str]]
     figures: Mapping[str, float]
     simulated_s: float
     shares: Mapping[str, Decision]

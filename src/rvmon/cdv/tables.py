@@ -10,6 +10,7 @@ import msgspec
 from rvmon.cdv.run_share import ALPHA, BETA, Decision, errors_text
 from rvmon.cdv.summary import CampaignSummary, RobotSummary, StrategySummary
 from rvmon.confidence import CONFIDENCE, interval
+from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
@@ -120,14 +121,14 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
             )
             notes.append(f"{name} {decision.share}: under {strategy} {result}.")
     strategies = figures.strategies.values()
-    if crashed := sum(len(one.crashes) for one in strategies):
+    if crashed := sum(len(one.errors[Ending.CRASHED]) for one in strategies):
         notes.append(
             f"The robot's code crashed in {crashed} tests, which were evaluated all the same."
         )
-    for test, why in (item for one in strategies for item in one.hung.items()):
-        notes.append(f"{test} hung: {why}, and was ended; nothing is known of it.")
-    for test, why in (item for one in strategies for item in one.lost.items()):
-        notes.append(f"{test} was lost: {why}; nothing is known of it.")
+    ends = {Ending.HUNG: "{} hung: {}, and was ended", Ending.LOST: "{} was lost: {}"}
+    for ending, text in ends.items():
+        ended = (item for one in strategies for item in one.errors[ending].items())
+        notes += [f"{text.format(*item)}; nothing is known of it." for item in ended]
     return tuple(notes)
 
 
@@ -204,21 +205,6 @@ def _intervals(counts: Counts) -> dict[str, list[float]]:
     }
 
 
-def coverage_document(summary: CampaignSummary) -> dict[str, object]:
-    """The content of `coverage.json`: statements, branches, states and transitions."""
-    return {
-        "robots": {
-            name: {
-                "strategies": {
-                    strategy: _coverage_document(figures, summary.kind)
-                    for strategy, figures in robot.strategies.items()
-                }
-            }
-            for name, robot in summary.robots.items()
-        }
-    }
-
-
 def to_json(document: Mapping[str, object]) -> bytes:
     """A document as indented JSON, keys in their order."""
     return msgspec.json.format(msgspec.json.encode(document), indent=2) + b"\n"
@@ -240,9 +226,9 @@ def _strategy_document(figures: StrategySummary, kind: str) -> dict[str, object]
     document["simulated_s"] = round(figures.simulated_s, 3)
     for name, figure in figures.figures.items():
         document.setdefault(name, round(figure, 3))
-    for ending in ("crashes", "hung", "lost"):
-        if errors := getattr(figures, ending):
-            document[ending] = errors
+    for ending, errors in figures.errors.items():
+        if errors:
+            document["crashes" if ending is Ending.CRASHED else ending.value] = errors
     return document
 
 
@@ -258,29 +244,3 @@ def _share_document(decision: Decision) -> dict[str, object]:
         "beta": BETA,
         "indifference": [round(bound, 6) for bound in decision.indifference],
     }
-
-
-def _coverage_document(figures: StrategySummary, kind: str) -> dict[str, object]:
-    document: dict[str, object] = {"tests": figures.tests}
-    if figures.statements:
-        document["percent"] = figures.total.percent
-        document[f"by_{kind}"] = {
-            name: {
-                "statements": one.statements,
-                "covered": one.covered,
-                "percent": one.percent,
-                "missing_lines": [int(line) for line in one.missing],
-            }
-            for name, one in figures.statements.items()
-        }
-    if figures.branches:
-        document["branches"] = {
-            name: {"branches": one.statements, "covered": one.covered, "missing": one.missing}
-            for name, one in figures.branches.items()
-        }
-    document["transitions"] = [
-        {"from": source, "to": target, "tests": tests}
-        for (source, target), tests in sorted(figures.transitions.items())
-        if tests
-    ]
-    return document

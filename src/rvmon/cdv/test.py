@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
@@ -67,6 +68,17 @@ class TestError(RvmonError, ValueError):
     """A test cannot be made, read or played; the message says which, where and why."""
 
     __test__ = False
+
+
+@contextmanager
+def blamed(what: str, kind: type[RvmonError] = TestError) -> Iterator[None]:
+    """Say of an exception of other people's code what it has prevented; ours pass as they are."""
+    try:
+        yield
+    except RvmonError:
+        raise
+    except Exception as error:
+        raise kind(f"{what}: {type(error).__name__}: {error}") from error
 
 
 def to_json(test: Test) -> bytes:

@@ -12,7 +12,7 @@ from rvmon.cdv.gate import judge_test
 from rvmon.cdv.output import typed
 from rvmon.cdv.pages import Replay, play_again, replay_page
 from rvmon.cdv.plan import Job, Outcome, Played
-from rvmon.cdv.play import play_apart, player
+from rvmon.cdv.play import outcome_of, play_apart, player
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
@@ -46,10 +46,10 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         refuse_mcap(arguments.mcap)
         refuse_no_file(arguments.mcap)
     played = play_again(job.test, job.robot, robot, spec)
+    judged = played.judged.report, played.judged.samples
     _show(arguments.format, spec, played)
     if arguments.mcap is not None:
-        report, samples = played.report, played.samples
-        write_verdicts(arguments.mcap, spec.checked, report, samples, played.run.scene)
+        write_verdicts(arguments.mcap, spec.checked, *judged, played.recorded.run.scene)
     if folder is not None:
         words: list[object] = ["replay", arguments.test]
         words += [] if arguments.robot is None else ["--robot", arguments.robot]
@@ -62,14 +62,16 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         # The file is named after the test's file: what it says inside is no path.
         name = Path(arguments.test).stem
         write_whole(folder / f"{name}.html", page)
-        lines = [json.dumps({"t_ns": one.t, **one.values}) + "\n" for one in played.samples]
+        lines = [json.dumps({"t_ns": one.t, **one.values}) + "\n" for one in judged[1]]
         write_whole(folder / f"{name}.jsonl", "".join(lines))
     if arguments.expected:
-        wrong = judge_test(Played(job, played.outcome), campaign.expected_failures).wrong
+        wrong = judge_test(
+            Played(job, outcome_of(played.recorded)), campaign.expected_failures
+        ).wrong
         for what in wrong:
             warn(f"not as expected: {what}")
         return int(bool(wrong))
-    return int(Verdict.FAIL in played.report.verdicts.values())
+    return int(Verdict.FAIL in judged[0].verdicts.values())
 
 
 def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
@@ -130,10 +132,11 @@ def _smallest(campaign: Campaign, job: Job, requirement: str | None) -> Shrunk[T
 
 
 def _show(form: str, spec: Spec, played: Replay) -> None:
+    report, error = played.judged.report, played.recorded.run.error
     if form == "json":
-        say_json(played.report.to_json())
+        say_json(report.to_json())
         return
     console = Terminal()
-    print_report(played.report, spec.checked, console)
-    if played.run.error is not None:
-        console.print(f"The robot's code crashed: {played.run.error}", style="bold red")
+    print_report(report, spec.checked, console)
+    if error is not None:
+        console.print(f"The robot's code crashed: {error}", style="bold red")

@@ -111,9 +111,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
     """What is compared with: a file, or a campaign of what is shown."""
     from rvmon.coverage.database import read
-    from rvmon.coverage.questions import campaigns
 
-    if Path(arguments.compare).exists() or arguments.compare not in campaigns(coverage):
+    if Path(arguments.compare).exists() or arguments.compare not in coverage.campaigns:
         return read([arguments.compare])
     if arguments.campaign is None:
         raise RvmonError(
@@ -124,10 +123,10 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
 
 
 def _campaign(coverage: Coverage, name: str) -> Coverage:
-    from rvmon.coverage.questions import campaigns, only
+    from rvmon.coverage.questions import only
     from rvmon.diagnostics.nearest import did_you_mean
 
-    known = campaigns(coverage)
+    known = coverage.campaigns
     if name not in known:
         listed = ", ".join(f"`{one}`" for one in known) or "none"
         meant = did_you_mean(name, known, f"there are {listed}")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -113,137 +114,151 @@ _MOST = 1 << 62
 """What a sum of hits is cut off at."""
 
 
-def goals_of(coverage: Coverage) -> Goals:
-    """What is wanted of each item."""
-    groups = list(coverage.model.groups.values())
-    items = [item for group in groups for item in group.items.values()]
-    has_goal = np.array([item.kind is BinKind.GOAL for item in items], np.bool_)
-    out = np.array([names in coverage.unreachable for names in coverage.items], np.bool_)
-    return Goals(
-        np.array([item.goal for item in items], np.int64),
-        has_goal & ~out,
-        has_goal & out,
-        np.array([item.kind is BinKind.ILLEGAL for item in items], np.bool_),
-        np.repeat(np.arange(len(groups)), [len(group.items) for group in groups]),
-    )
-
-
-def totals(coverage: Coverage) -> Totals:
-    """How often each item was hit, by how many tests, and by which one first."""
-    size = len(coverage.items)
-    counts, tests = np.zeros(size, np.int64), np.zeros(size, np.int64)
-    first, instants = np.full(size, -1), np.full(size, UNKNOWN)
-    for place, entry in enumerate(coverage.entries):
-        row = entry.row
-        counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
-        tests[row.items] += 1
-        is_new = first[row.items] < 0
-        first[row.items[is_new]] = place
-        instants[row.items[is_new]] = row.firsts[is_new]
-    return Totals(counts, tests, first, instants)
-
-
-def scores(coverage: Coverage, counts: NDArray[np.int64]) -> dict[str, Score]:
-    """How much of each group is covered by so many hits of each item."""
-    goals = goals_of(coverage)
-    return _scores(coverage, goals, goals.wanted & (counts >= goals.goal))
-
-
-def share_of(coverage: Coverage, scored: Mapping[str, Score]) -> float:
-    """The share of the model that is covered, from 0 to 1, as `hits.share` has it."""
-    return weighted((coverage.model.groups[name], score) for name, score in scored.items())
-
-
-def holes(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
-    """The items that were hit less often than their goals ask for."""
-    goals = goals_of(coverage)
-    return np.flatnonzero(goals.wanted & (counts < goals.goal)).tolist()
-
-
-def illegal_hits(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
-    """The items that were hit and must not be."""
-    return np.flatnonzero(goals_of(coverage).illegal & (counts > 0)).tolist()
-
-
-def contradicted(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
-    """The items that were hit and cannot be, as it is said."""
-    return np.flatnonzero(goals_of(coverage).unreachable & (counts > 0)).tolist()
-
-
-def growth(coverage: Coverage, order: Sequence[int] | None = None) -> list[Step]:
-    """What each test adds to those before it.
+class Answers:
+    """What is hit and by whom, what is missing, what each test is good for: each worked out once.
 
     Args:
-        coverage: with the tests.
-        order: their places, or those of some of them; default: all, as in their campaigns.
+        coverage: all that a database holds.
     """
-    goals = goals_of(coverage)
-    counts = np.zeros(len(coverage.items), np.int64)
-    covered = np.zeros(len(coverage.items), np.bool_)
-    share = share_of(coverage, _scores(coverage, goals, covered))
-    steps = []
-    for place in range(len(coverage.entries)) if order is None else order:
-        row = coverage.entries[place].row
-        counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
-        reached = goals.wanted & (counts >= goals.goal)
-        added = np.flatnonzero(reached & ~covered).tolist()
-        if added:
-            covered = reached
-            share = share_of(coverage, _scores(coverage, goals, covered))
-        steps.append(Step(place, added, share))
-    return steps
+
+    def __init__(self, coverage: Coverage) -> None:
+        self.coverage = coverage
+
+    @cached_property
+    def goals(self) -> Goals:
+        """What is wanted of each item."""
+        coverage = self.coverage
+        groups = list(coverage.model.groups.values())
+        items = [item for group in groups for item in group.items.values()]
+        has_goal = np.array([item.kind is BinKind.GOAL for item in items], np.bool_)
+        out = np.array([names in coverage.unreachable for names in coverage.items], np.bool_)
+        return Goals(
+            np.array([item.goal for item in items], np.int64),
+            has_goal & ~out,
+            has_goal & out,
+            np.array([item.kind is BinKind.ILLEGAL for item in items], np.bool_),
+            np.repeat(np.arange(len(groups)), [len(group.items) for group in groups]),
+        )
+
+    @cached_property
+    def totals(self) -> Totals:
+        """How often each item was hit, by how many tests, and by which one first."""
+        size = len(self.coverage.items)
+        counts, tests = np.zeros(size, np.int64), np.zeros(size, np.int64)
+        first, instants = np.full(size, -1), np.full(size, UNKNOWN)
+        for place, entry in enumerate(self.coverage.entries):
+            row = entry.row
+            counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
+            tests[row.items] += 1
+            is_new = first[row.items] < 0
+            first[row.items[is_new]] = place
+            instants[row.items[is_new]] = row.firsts[is_new]
+        return Totals(counts, tests, first, instants)
+
+    @cached_property
+    def covered(self) -> NDArray[np.bool_]:
+        """Whether each item is wanted, and was hit as often as its goal asks for."""
+        return self.goals.wanted & (self.totals.counts >= self.goals.goal)
+
+    @cached_property
+    def scores(self) -> Mapping[str, Score]:
+        """How much of each group is covered."""
+        return self._scores(self.covered)
+
+    @cached_property
+    def share(self) -> float:
+        """The share of the model that is covered, from 0 to 1, as `model.share` has it."""
+        return self._share(self.covered)
+
+    @cached_property
+    def holes(self) -> Sequence[int]:
+        """The items that were hit less often than their goals ask for."""
+        return _places(self.goals.wanted & ~self.covered)
+
+    @cached_property
+    def illegal(self) -> Sequence[int]:
+        """The items that were hit and must not be."""
+        return _places(self.goals.illegal & (self.totals.counts > 0))
+
+    @cached_property
+    def contradicted(self) -> Sequence[int]:
+        """The items that were hit and cannot be, as it is said."""
+        return _places(self.goals.unreachable & (self.totals.counts > 0))
+
+    @cached_property
+    def steps(self) -> Sequence[Step]:
+        """What each test adds to those before it, in the order of their campaigns."""
+        return self.growth(range(len(self.coverage.entries)))
+
+    def growth(self, order: Iterable[int]) -> list[Step]:
+        """What each of some tests, by their places, adds to those before it."""
+        goals, size = self.goals, len(self.coverage.items)
+        counts, covered = np.zeros(size, np.int64), np.zeros(size, np.bool_)
+        share = self._share(covered)
+        steps = []
+        for place in order:
+            row = self.coverage.entries[place].row
+            counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
+            reached = goals.wanted & (counts >= goals.goal)
+            added = _places(reached & ~covered)
+            if added:
+                covered = reached
+                share = self._share(covered)
+            steps.append(Step(place, added, share))
+        return steps
+
+    @cached_property
+    def strategies(self) -> Mapping[str, Sequence[int]]:
+        """The tests of each strategy, in order."""
+        found: dict[str, list[int]] = {}
+        for place, entry in enumerate(self.coverage.entries):
+            found.setdefault(entry.record.strategy, []).append(place)
+        return found
+
+    @cached_property
+    def unique(self) -> Sequence[Sequence[int]]:
+        """By test, the items that would not be covered without it."""
+        counts, found = self.totals.counts, []
+        for entry in self.coverage.entries:
+            items = entry.row.items
+            rest = counts[items] - entry.row.counts
+            needed = self.covered[items] & (rest < self.goals.goal[items])
+            found.append(items[needed].tolist())
+        return found
+
+    def hitters(self, most: int) -> dict[int, list[int]]:
+        """The first tests that hit each item, at most so many."""
+        found: dict[int, list[int]] = {}
+        counts = np.zeros(len(self.coverage.items), np.int64)
+        for place, entry in enumerate(self.coverage.entries):
+            items = entry.row.items
+            for item in items[counts[items] < most].tolist():
+                found.setdefault(item, []).append(place)
+            counts[items] += 1
+        return found
+
+    def _scores(self, covered: NDArray[np.bool_]) -> dict[str, Score]:
+        goals, groups = self.goals, self.coverage.model.groups
+        wanted = np.bincount(goals.group[goals.wanted], minlength=len(groups))
+        reached = np.bincount(goals.group[covered], minlength=len(groups))
+        return {
+            name: Score(int(wanted[place]), int(reached[place]))
+            for place, name in enumerate(groups)
+        }
+
+    def _share(self, covered: NDArray[np.bool_]) -> float:
+        groups = self.coverage.model.groups
+        return weighted((groups[name], score) for name, score in self._scores(covered).items())
 
 
-def by_strategy(coverage: Coverage) -> dict[str, list[int]]:
-    """The tests of each strategy, in order."""
-    found: dict[str, list[int]] = {}
-    for place, entry in enumerate(coverage.entries):
-        found.setdefault(entry.record.strategy, []).append(place)
-    return found
-
-
-def unique(coverage: Coverage, counts: NDArray[np.int64]) -> list[list[int]]:
-    """By test, the items that would not be covered without it."""
-    goals = goals_of(coverage)
-    covered = goals.wanted & (counts >= goals.goal)
-    found = []
-    for entry in coverage.entries:
-        items = entry.row.items
-        needed = covered[items] & (counts[items] - entry.row.counts < goals.goal[items])
-        found.append(items[needed].tolist())
-    return found
-
-
-def hitters(coverage: Coverage, most: int) -> dict[int, list[int]]:
-    """The first tests that hit each item, at most so many."""
-    found: dict[int, list[int]] = {}
-    counts = np.zeros(len(coverage.items), np.int64)
-    for place, entry in enumerate(coverage.entries):
-        items = entry.row.items
-        for item in items[counts[items] < most].tolist():
-            found.setdefault(item, []).append(place)
-        counts[items] += 1
+def _places(chosen: NDArray[np.bool_]) -> list[int]:
+    found: list[int] = np.flatnonzero(chosen).tolist()
     return found
 
 
 def only(coverage: Coverage, wanted: Callable[[TestRecord], bool]) -> Coverage:
     """The same with some of the tests."""
     return replace(coverage, entries=[entry for entry in coverage.entries if wanted(entry.record)])
-
-
-def campaigns(coverage: Coverage) -> list[str]:
-    """The names of the campaigns, in order."""
-    return list(dict.fromkeys(entry.record.campaign for entry in coverage.entries))
-
-
-def _scores(coverage: Coverage, goals: Goals, covered: NDArray[np.bool_]) -> dict[str, Score]:
-    size = len(coverage.model.groups)
-    wanted = np.bincount(goals.group[goals.wanted], minlength=size)
-    reached = np.bincount(goals.group[covered], minlength=size)
-    return {
-        name: Score(int(wanted[place]), int(reached[place]))
-        for place, name in enumerate(coverage.model.groups)
-    }
 
 
 Names = tuple[str, str]
@@ -272,14 +287,12 @@ def compare(before: Coverage, after: Coverage) -> Comparison:
 
 def _state(coverage: Coverage) -> tuple[dict[Names, bool], list[Names], float]:
     """Of each item that is wanted whether it is covered; the illegal ones that are hit; a share."""
-    counts = totals(coverage).counts
-    goals = goals_of(coverage)
+    answers = Answers(coverage)
     covered = {
-        coverage.items[place]: bool(counts[place] >= goals.goal[place])
-        for place in goals.wanted.nonzero()[0].tolist()
+        coverage.items[place]: bool(answers.covered[place])
+        for place in _places(answers.goals.wanted)
     }
-    illegal = [coverage.items[place] for place in illegal_hits(coverage, counts)]
-    return covered, illegal, share_of(coverage, scores(coverage, counts))
+    return covered, [coverage.items[place] for place in answers.illegal], answers.share
 
 
 def _changes(before: Coverage, after: Coverage) -> Iterator[VerdictChange]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.questions import Step, goals_of, growth, totals
+from rvmon.coverage.questions import Answers, Step
 from rvmon.coverage.record import Coverage
 
 MOST_NODES = 20_000
@@ -198,20 +198,20 @@ MOST_TESTS = 1000
 """Tests among which the smallest choice is looked for."""
 
 
-def fewest(coverage: Coverage) -> Smallest:
+def fewest(answers: Answers) -> Smallest:
     """The fewest tests known that reach the coverage of all.
 
     Of many tests those of the ranking are taken, and how many are needed at least is left open.
     """
-    if len(coverage.entries) > MOST_TESTS:
-        return Smallest(tuple(step.entry for step in ranking(coverage)), 0)
-    goals = goals_of(coverage)
+    entries = answers.coverage.entries
+    if len(entries) > MOST_TESTS:
+        return Smallest(tuple(step.entry for step in ranking(answers)), 0)
     rows = [
         dict(zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True))
-        for entry in coverage.entries
+        for entry in entries
     ]
-    reached = np.flatnonzero(goals.wanted & (totals(coverage).counts >= goals.goal))
-    return smallest(rows, {item: int(goals.goal[item]) for item in reached.tolist()})
+    reached = np.flatnonzero(answers.covered).tolist()
+    return smallest(rows, {item: int(answers.goals.goal[item]) for item in reached})
 
 
 def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
@@ -223,7 +223,7 @@ def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
     return [group.weight / max(1, whole[group.subject]) for group in groups]
 
 
-def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[Step]:
+def ranking(answers: Answers, places: Collection[int] | None = None) -> list[Step]:
     """Tests that reach the coverage of all, the one that adds most first.
 
     At every step the test is taken that brings the items nearest to their goals, weighed as in the
@@ -231,15 +231,14 @@ def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[S
     are taken, so that most of them need not be worked out again.
 
     Args:
-        coverage: with the tests.
+        answers: about the tests.
         places: of those that may be taken, such as the fewest; default: all, of which those that
             are taken are not always the fewest.
 
     Source: Nemhauser, Wolsey, Fisher, "An analysis of approximations for maximizing submodular set
     functions", 1978; Minoux, "Accelerated greedy algorithms", 1978.
     """
-    goals = goals_of(coverage)
-    reached = goals.wanted & (totals(coverage).counts >= goals.goal)
+    coverage, goals, reached = answers.coverage, answers.goals, answers.covered
     items = np.bincount(goals.group[goals.wanted], minlength=len(coverage.model.groups))
     weights = np.array(_weights(coverage, items))
     worth = np.where(reached, weights[goals.group] / np.maximum(items[goals.group], 1), 0.0)
@@ -267,4 +266,4 @@ def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[S
         order.append(place)
         row = coverage.entries[place].row
         left[row.items] -= np.minimum(row.counts, left[row.items])
-    return growth(coverage, order)
+    return answers.growth(order)

@@ -126,3 +126,8 @@ class Coverage:
     entries: Sequence[Entry]
     reasons: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
     unreachable: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
+
+    @property
+    def campaigns(self) -> list[str]:
+        """The names of the campaigns, in order."""
+        return list(dict.fromkeys(entry.record.campaign for entry in self.entries))

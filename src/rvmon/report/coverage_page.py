@@ -297,7 +297,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
     wanted.update(place for place in every if summary.unique[place])
     wanted.update(place for place in summary.totals.first.tolist() if place >= 0)
     for place in summary.illegal:
-        wanted.update(summary.hitters[place])
+        wanted.update(summary.first_hitters[place])
     seen: set[tuple[str, str, Verdict]] = set()
     for place in every:
         record = summary.record(place)

@@ -10,26 +10,8 @@ from math import prod
 import numpy as np
 
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
-from rvmon.coverage.model import Group, Hit, Hits, Item, Score
-from rvmon.coverage.questions import (
-    Comparison,
-    Goals,
-    Step,
-    Totals,
-    by_strategy,
-    campaigns,
-    compare,
-    contradicted,
-    goals_of,
-    growth,
-    hitters,
-    holes,
-    illegal_hits,
-    scores,
-    share_of,
-    totals,
-    unique,
-)
+from rvmon.coverage.model import Group, Hit, Hits, Item
+from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
 from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import counted
@@ -43,8 +25,8 @@ LISTED = 5
 """Tests that are named of those that hit an item."""
 
 
-class Summary:
-    """Answers about coverage."""
+class Summary(Answers):
+    """Answers about coverage, as they are shown."""
 
     def __init__(
         self,
@@ -54,42 +36,17 @@ class Summary:
         earlier_name: str = "",
         pages: Mapping[str, str] | None = None,
     ) -> None:
+        super().__init__(coverage)
         self.name = name
-        self.coverage = coverage
         self.earlier_name = earlier_name
         self.pages = pages or {}
         self._earlier = earlier
-
-    @cached_property
-    def goals(self) -> Goals:
-        """What is wanted of each item."""
-        return goals_of(self.coverage)
-
-    @cached_property
-    def totals(self) -> Totals:
-        """What became of each item."""
-        return totals(self.coverage)
-
-    @cached_property
-    def scores(self) -> Mapping[str, Score]:
-        """How much of each group is covered."""
-        return scores(self.coverage, self.totals.counts)
-
-    @cached_property
-    def share(self) -> float:
-        """The share that is covered in all, from 0 to 1."""
-        return share_of(self.coverage, self.scores)
 
     @property
     def is_empty(self) -> bool:
         """Whether there is nothing to cover, so that a share says nothing."""
         groups = self.coverage.model.groups
         return not any(one.items for name, one in self.scores.items() if groups[name].weight)
-
-    @cached_property
-    def holes(self) -> Sequence[int]:
-        """Items that were hit too rarely."""
-        return holes(self.coverage, self.totals.counts)
 
     @cached_property
     def hole_texts(self) -> Mapping[int, Hole]:
@@ -121,16 +78,6 @@ class Summary:
         return [*found.values()]
 
     @cached_property
-    def illegal(self) -> Sequence[int]:
-        """Items that were hit and must not be."""
-        return illegal_hits(self.coverage, self.totals.counts)
-
-    @cached_property
-    def contradicted(self) -> Sequence[int]:
-        """Items that were hit and cannot be, as it was said."""
-        return contradicted(self.coverage, self.totals.counts)
-
-    @cached_property
     def unreachable(self) -> Mapping[str, Sequence[int]]:
         """Items that cannot be hit, by the reasons."""
         found: dict[str, list[int]] = {}
@@ -150,24 +97,14 @@ class Summary:
         return "" if item.kind is BinKind.GOAL else f" ({item.kind})"
 
     @cached_property
-    def steps(self) -> Sequence[Step]:
-        """What each test added."""
-        return growth(self.coverage)
-
-    @cached_property
-    def unique(self) -> Sequence[Sequence[int]]:
-        """What only each test covers."""
-        return unique(self.coverage, self.totals.counts)
-
-    @cached_property
     def fewest(self) -> Smallest:
         """The fewest tests known that cover as much."""
-        return fewest(self.coverage)
+        return fewest(self)
 
     @cached_property
     def ranking(self) -> Sequence[Step]:
         """A short order of tests that cover as much."""
-        return ranking(self.coverage, self.fewest.places)
+        return ranking(self, self.fewest.places)
 
     def ranking_text(self) -> str:
         """How many tests cover as much, and whether fewer might."""
@@ -183,19 +120,19 @@ class Summary:
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
     @cached_property
-    def hitters(self) -> Mapping[int, Sequence[int]]:
+    def first_hitters(self) -> Mapping[int, Sequence[int]]:
         """The first tests that hit each item."""
-        return hitters(self.coverage, LISTED)
+        return self.hitters(LISTED)
 
     @cached_property
-    def strategies(self) -> Mapping[str, Sequence[int]]:
-        """The tests of each strategy, in order."""
-        return by_strategy(self.coverage)
+    def campaigns(self) -> Sequence[str]:
+        """Their names, in order."""
+        return self.coverage.campaigns
 
     @cached_property
     def alone(self) -> Mapping[str, Sequence[Step]]:
         """What the tests of each strategy add to each other, without those of the others."""
-        return {name: growth(self.coverage, order) for name, order in self.strategies.items()}
+        return {name: self.growth(order) for name, order in self.strategies.items()}
 
     @cached_property
     def not_fine(self) -> Sequence[int]:
@@ -219,11 +156,6 @@ class Summary:
             for name, reason in entry.record.failed_as_expected.items():
                 found.setdefault(f"{name}: {reason}", []).append(place)
         return found
-
-    @cached_property
-    def campaigns(self) -> Sequence[str]:
-        """Their names, in order."""
-        return campaigns(self.coverage)
 
     @cached_property
     def starts(self) -> Mapping[str, int]:

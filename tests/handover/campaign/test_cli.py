@@ -89,7 +89,7 @@ def test_the_demo_leaves_all_its_files(demo):
     names = {path.name for path in demo.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
     robots = {"correct", "legacy"}
-    assert names == {*tables, *robots, "coverage.json", "report.html", "tests", "runs", "templates"}
+    assert names == {*tables, *robots, "report.html", "tests", "runs", "templates"}
     for robot in robots:
         covered = {"coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
         assert {path.name for path in (demo / robot).iterdir()} == covered

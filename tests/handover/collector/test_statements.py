@@ -4,8 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from handover.collector.code import robot_code
-from handover.collector.transitions import TRANSITIONS
+from handover.collector.code import COMMON, TRANSITIONS, robot_code, state_of_functions
 from handover.driver import run_test
 from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
@@ -26,6 +25,15 @@ def measured():
         runs[name] = run_test(TESTS[name], around_robot_step=lambda: meter)
         hits[name] = meter.hits()
     return runs, hits
+
+
+def test_functions_belong_to_states():
+    """Each state owns the function of its name, and helpers that nobody else calls."""
+    owners = state_of_functions()
+    assert {state: owners[state] for state in STATES} == {state: state for state in STATES}
+    assert owners["go_to"] == "move"
+    assert owners["poll_signal"] == COMMON
+    assert not any("__init__" in block.name for block in robot_code().blocks)
 
 
 def test_every_state_has_statements():

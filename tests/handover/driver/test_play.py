@@ -228,17 +228,17 @@ def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
     assert entered >= len(run.states)
 
 
-def test_poses_are_kept_on_demand() -> None:
+def test_a_scene_is_kept_on_demand() -> None:
     """Frames come only when asked for, at most ten a second, and show the piece moving."""
-    assert run_test(protocol_test(1)).poses is None
-    poses = run_test(protocol_test(1), record_poses=True).poses
-    assert poses is not None
-    stamps = [t for t, _ in poses.frames]
+    assert run_test(protocol_test(1)).scene is None
+    scene = run_test(protocol_test(1), films=True).scene
+    assert scene is not None
+    stamps = [t for t, _ in scene.frames]
     assert min(b - a for a, b in itertools.pairwise(stamps)) >= 100_000_000
-    assert {len(frame) for _, frame in poses.frames} == {3 * len(poses.bodies)}
-    assert {outline.body for outline in poses.outlines} == {*poses.bodies, "ground"}
-    column = 3 * poses.bodies.index("piece")
-    xs = [frame[column] for _, frame in poses.frames]
+    assert {len(frame) for _, frame in scene.frames} == {3 * len(scene.bodies)}
+    assert {outline.body for outline in scene.outlines} == {*scene.bodies, "ground"}
+    column = 3 * scene.bodies.index("piece")
+    xs = [frame[column] for _, frame in scene.frames]
     assert xs[0] == 0.0
     assert xs[-1] == pytest.approx(0.2, abs=0.02)
 

@@ -52,7 +52,7 @@ def test_all_files_are_there_and_lead_somewhere(played):
     out = played[0] / "out"
     names = {path.name for path in out.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
-    covered = {"coverage.json", "coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
+    covered = {"coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
     assert names == {*tables, *covered, "report.html", "tests", "runs"}
     for page in (out / "report.html", out / "coverage.html", *(out / "runs").iterdir()):
         for address in re.findall(r'href="([^"#]+)', page.read_text()):

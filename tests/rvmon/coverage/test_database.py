@@ -9,7 +9,7 @@ from tests.tools.hostile import hostile_names
 from rvmon.coverage import schema
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.model import Group, Hit, Item, Subject, group_of, model_of
-from rvmon.coverage.questions import goals_of
+from rvmon.coverage.questions import Answers
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.errors import CoverageError
 from rvmon.spec.checked.goals import BinKind
@@ -49,7 +49,9 @@ def test_what_cannot_be_hit_is_no_goal(path):
             fill(database)
             if said:
                 database.exclude("near", "reach", "the arm is short")
-    goals = [goals_of(read(paths)) for paths in ([path], [other], [path, other], [other, path])]
+    goals = [
+        Answers(read(paths)).goals for paths in ([path], [other], [path, other], [other, path])
+    ]
     assert [int(one.wanted.sum()) for one in goals] == [11, 10, 10, 10]
     assert read([other, path]).unreachable == {("near", "reach"): ["the arm is short"]}
     with Database.open(path) as database, pytest.raises(CoverageError, match="there is no item"):

@@ -9,21 +9,7 @@ from tests.tools.covered import door_model, fill, hits_of, merged, random_databa
 from rvmon.coverage import model as by_run
 from rvmon.coverage.database import Database
 from rvmon.coverage.model import Hit
-from rvmon.coverage.questions import (
-    VerdictChange,
-    by_strategy,
-    campaigns,
-    compare,
-    growth,
-    hitters,
-    holes,
-    illegal_hits,
-    only,
-    scores,
-    share_of,
-    totals,
-    unique,
-)
+from rvmon.coverage.questions import Answers, VerdictChange, compare, only
 from rvmon.coverage.ranking import ranking
 from rvmon.coverage.record import TestRecord
 from rvmon.verdict.verdict import Verdict
@@ -42,21 +28,22 @@ def named(coverage, places):
 
 def test_totals(door):
     """Hits in all, by how many tests, by which first and when."""
-    found = totals(door)
+    answers = Answers(door)
+    found = answers.totals
     look = door.items.index(("gaze", "yes"))
     assert (found.counts[look], found.tests[look], found.first[look]) == (3, 2, 0)
     assert found.instants[look] == 1_000_000_000
     far = door.items.index(("near", "far"))
     assert (found.counts[far], found.tests[far], found.first[far]) == (0, 0, -1)
-    assert hitters(door, 1)[look] == [0]
-    assert hitters(door, 9)[look] == [0, 1]
+    assert answers.hitters(1)[look] == [0]
+    assert answers.hitters(9)[look] == [0, 1]
 
 
 def test_holes_and_illegal_hits(door):
     """What is ignored or illegal is no hole; a goal of three needs three."""
-    counts = totals(door).counts
-    assert named(door, illegal_hits(door, counts)) == [("situation", "no × touch")]
-    assert named(door, holes(door, counts)) == [
+    answers = Answers(door)
+    assert named(door, answers.illegal) == [("situation", "no × touch")]
+    assert named(door, answers.holes) == [
         ("near", "reach"),
         ("near", "far"),
         ("situation", "yes × reach"),
@@ -74,17 +61,16 @@ def test_the_share_is_that_of_the_hits_of_all_runs(door):
         for (group, item), count in row:
             own = together.setdefault(group, {})
             own[item] = Hit(count + (own[item].count if item in own else 0))
-    scored = scores(door, totals(door).counts)
-    assert (
-        share_of(door, scored) == by_run.share(together, door.model) == (2 / 2 + 1 / 3 + 2 / 4) / 4
-    )
+    answers = Answers(door)
+    assert answers.share == by_run.share(together, door.model) == (2 / 2 + 1 / 3 + 2 / 4) / 4
     for name, group in door.model.groups.items():
-        assert scored[name] == by_run.score(together, group)
+        assert answers.scores[name] == by_run.score(together, group)
 
 
 def test_growth_and_what_each_test_adds(door):
     """A goal of three hits is reached by the test that brings the third."""
-    steps = growth(door)
+    answers = Answers(door)
+    steps = answers.steps
     assert [named(door, step.added) for step in steps] == [
         [("gaze", "yes"), ("D1", "triggered")],
         [("near", "touch"), ("situation", "yes × touch")],
@@ -93,14 +79,14 @@ def test_growth_and_what_each_test_adds(door):
     ]
     shares = [step.share for step in steps]
     assert shares == sorted(shares)
-    assert shares[-1] == share_of(door, scores(door, totals(door).counts))
-    assert by_strategy(door) == {"random": [0, 1], "directed": [2, 3]}
-    assert named(door, growth(door, [2, 3])[1].added) == [("gaze", "no")]
+    assert shares[-1] == answers.share
+    assert answers.strategies == {"random": [0, 1], "directed": [2, 3]}
+    assert named(door, answers.growth([2, 3])[1].added) == [("gaze", "no")]
 
 
 def test_what_only_one_test_covers(door):
     """Without it, the item would be a hole."""
-    found = unique(door, totals(door).counts)
+    found = Answers(door).unique
     assert [named(door, items) for items in found] == [
         [("D1", "triggered")],
         [("situation", "yes × touch")],
@@ -115,8 +101,8 @@ def test_a_ranking_covers_all_with_few_tests(seed):
     together = merged(random_database(4 * seed + one) for one in range(4))
     coverage = together.coverage()
     together.close()
-    steps = ranking(coverage)
-    share = share_of(coverage, scores(coverage, totals(coverage).counts))
+    answers = Answers(coverage)
+    steps, share = ranking(answers), answers.share
     assert (steps[-1].share if steps else share) == share
     order = [step.entry for step in steps]
     assert len(set(order)) == len(order)
@@ -125,7 +111,7 @@ def test_a_ranking_covers_all_with_few_tests(seed):
             size
             for size in range(len(coverage.entries) + 1)
             for some in permutations(range(len(coverage.entries)), size)
-            if ([0.0] + [step.share for step in growth(coverage, some)])[-1] >= share
+            if ([0.0] + [step.share for step in answers.growth(some)])[-1] >= share
             or (not size and not steps)
         )
         assert least <= len(order) <= least + 1
@@ -136,10 +122,11 @@ def test_nothing_to_cover_is_covered():
     with Database.in_memory() as database:
         database.record(TestRecord("t"), {})
         coverage = database.coverage()
-    assert share_of(coverage, scores(coverage, totals(coverage).counts)) == 1
-    assert [step.share for step in growth(coverage)] == [1]
-    assert ranking(coverage) == []
-    assert unique(coverage, totals(coverage).counts) == [[]]
+    answers = Answers(coverage)
+    assert answers.share == 1
+    assert [step.share for step in answers.steps] == [1]
+    assert ranking(answers) == []
+    assert answers.unique == [[]]
 
 
 def test_campaigns_are_compared(door):
@@ -164,6 +151,6 @@ def test_campaigns_are_compared(door):
 
 def test_some_of_the_tests(door):
     """A campaign alone."""
-    assert campaigns(door) == ["week 1"]
+    assert door.campaigns == ["week 1"]
     assert len(only(door, lambda record: record.strategy == "random").entries) == 2
     assert only(door, lambda record: record.campaign == "").entries == []

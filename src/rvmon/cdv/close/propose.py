@@ -17,10 +17,9 @@ from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.vary_test import Draw, Learned, Mutator
 from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
 from rvmon.cdv.plan import Played, plan
-from rvmon.cdv.test import Test, TestError, from_json, to_json
+from rvmon.cdv.test import Test, TestError, blamed, from_json, to_json
 from rvmon.coverage.holes import Goal, nearness
 from rvmon.coverage.model import Subject
-from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)
 
@@ -227,13 +226,8 @@ class Proposer:
         Raises:
             TestError: it fails, or makes none.
         """
-        try:
+        with blamed(f"`{what}` of the campaign cannot make a test"):
             made: object = make()
-        except RvmonError:
-            raise
-        except Exception as error:
-            cause = f"{type(error).__name__}: {error}"
-            raise TestError(f"`{what}` of the campaign cannot make a test: {cause}") from error
         kind = self._campaign.test
         if not isinstance(made, kind):
             raise TestError(f"`{what}` of the campaign makes {made!r}, which is no {kind.__name__}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
@@ -11,10 +10,10 @@ from functools import cached_property, partial
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code import Code
-from rvmon.cdv.code_coverage import Meter, code_groups, statements_name
+from rvmon.cdv.code_coverage import code_groups, statements_name
 from rvmon.cdv.mutation.mutant import Mutant
-from rvmon.cdv.play import run_of, system_of
-from rvmon.cdv.system import Checker, Observer, Run, System, Values
+from rvmon.cdv.play import Bench
+from rvmon.cdv.system import Run, Values
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Subject
 from rvmon.errors import RvmonError
@@ -64,50 +63,23 @@ class Difference:
     verdicts: tuple[tuple[str, str, str], ...] = ()
 
 
-class Recorder:
-    """Plays tests in this process.
+def recorder(
+    name: str, robot: Robot, spec: Spec, code: Code | None = None
+) -> Callable[[Test], Recorded]:
+    """What plays tests of a robot in this process; `code`: whose statements are measured."""
+    bench = Bench(name, robot, spec, code)
 
-    Args:
-        system: that plays them.
-        checker: that judges them.
-        code: whose statements are measured; `None`: none.
-    """
-
-    def __init__(self, system: System[Test], checker: Checker, code: Code | None = None) -> None:
-        self._system = system
-        self._checker = checker
-        self._code = code
-        self._meter = None if code is None else Meter(code)
-
-    def play(self, test: Test) -> Recorded:
-        """Play a test; whatever its code raises is its result."""
-        samples: list[tuple[int, Values]] = []
-        self._checker.begin()
-        if self._meter is not None:
-            self._meter.begin()
-        observer = Observer(
-            (self._checker.observe, lambda t_ns, values: samples.append((t_ns, dict(values)))),
-            code=self._meter,
-        )
-        begun = time.process_time()
-        if self._meter is not None and self._code is not None and not self._code.marked:
-            with self._meter:
-                run = run_of(self._system, test, observer)
-        else:
-            run = run_of(self._system, test, observer)
-        taken = time.process_time() - begun
-        verdicts = self._checker.finish(run.end_ns).verdicts
-        return Recorded(verdicts, run, tuple(samples), self._lines(), taken)
-
-    def _lines(self) -> dict[str, frozenset[int]]:
-        if self._meter is None or self._code is None:
-            return {}
-        hits = self._meter.hits()
+    def play(test: Test) -> Recorded:
+        played = bench.play(test, keeps=True)
         lines: dict[str, frozenset[int]] = {}
-        for block in self._code.blocks:
-            ran = frozenset(map(int, hits.get(statements_name(block.name), ())))
+        for block in () if code is None else code.blocks:
+            ran = frozenset(map(int, played.hits.get(statements_name(block.name), ())))
             lines[block.path] = lines.get(block.path, frozenset()) | ran
-        return lines
+        return Recorded(
+            played.report.verdicts, played.run, tuple(played.samples), lines, played.cpu_s
+        )
+
+    return play
 
 
 def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
@@ -273,7 +245,7 @@ def record_suite(
     with closing(
         parallel.execute(
             own,
-            partial(_begin, robot, under_test, spec, code),
+            partial(recorder, robot, under_test, spec, code),
             jobs=jobs,
             what="test",
             instead=_ended,
@@ -293,10 +265,6 @@ def record_suite(
         raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
     used = {one.name: one for one in own if one.name in recorded}
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
-
-
-def _begin(name: str, robot: Robot, spec: Spec, code: Code) -> Callable[[Test], Recorded | str]:
-    return Recorder(system_of(name, robot), Checker(spec), code).play
 
 
 def _ended(_: Test, ended: Ended) -> Recorded | str:

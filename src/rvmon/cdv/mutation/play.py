@@ -18,11 +18,10 @@ from functools import partial
 from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType, FunctionType, ModuleType
 
-from rvmon.cdv.mutation.baseline import Progress, Recorded, Recorder, Suite, difference
+from rvmon.cdv.mutation.baseline import Progress, Recorded, Suite, difference, recorder
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.tried import Finding, How, Tried
-from rvmon.cdv.play import run_of, system_of
-from rvmon.cdv.system import Checker, Observer
+from rvmon.cdv.play import Bench
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
@@ -183,8 +182,7 @@ _Task = tuple[Mutant, Sequence[str]]
 def _load_what_runs_need(suite: Suite) -> None:
     """Play the quickest test here, so that not each process loads the same modules anew."""
     quickest = min(suite.recorded, key=lambda name: suite.recorded[name].cpu_s)
-    run_of(system_of(suite.name, suite.robot), suite.tests[quickest], Observer(()))
-    suite.spec.monitor()
+    Bench(suite.name, suite.robot, suite.spec).play(suite.tests[quickest])
 
 
 def _begin(
@@ -203,13 +201,13 @@ def _tried(suite: Suite, sources: dict[str, str], every: bool, keep: bool, task:
     findings: list[Finding] = []
     first = failing = None
     played = 0
-    recorder = Recorder(system_of(suite.name, suite.robot), Checker(suite.spec))
+    play = recorder(suite.name, suite.robot, suite.spec)
     for name in reaching:
         played += 1
         was = suite.recorded[name]
         try:
             with _at_most(_most_cpu_s(was)):
-                now = recorder.play(suite.tests[name])
+                now = play(suite.tests[name])
         except _Overtime:
             findings.append(Finding(name, How.HUNG, (HANGS,)))
             continue

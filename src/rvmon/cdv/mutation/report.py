@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.cdv.mutation.mutant import HELD_OUT, THIRDS
 from rvmon.cdv.mutation.spec_mutants import SpecTried, spec_scored
-from rvmon.cdv.mutation.tried import Finding, Missing, Score, Tried, missing, question, scored
+from rvmon.cdv.mutation.tried import Missing, Score, Tried, missing, question, scored
 
 ALL = "all"
 
@@ -141,9 +141,9 @@ class MutationReport:
         return {
             "tests": suite.tests,
             "left_out": suite.left_out,
-            "scores": {third: _score(one) for third, one in self.scores(name).items()},
+            "scores": self.scores(name),
             "mutants": [self._mutant(one) for one in self.shown(name)],
-            "spec_scores": {third: _score(one) for third, one in self.spec_scores(name).items()},
+            "spec_scores": self.spec_scores(name),
             "spec_mutants": [
                 _spec_mutant(one)
                 for one in suite.spec_tried
@@ -166,7 +166,7 @@ class MutationReport:
         if one.invalid:
             document["invalid"] = one.invalid
         elif one.killed:
-            document["killed_by"] = [_finding(finding) for finding in one.findings]
+            document["killed_by"] = one.findings
         elif mutant.identity in self.equivalent:
             document["equivalent"] = self.equivalent[mutant.identity]
         else:
@@ -192,17 +192,3 @@ def _spec_mutant(one: SpecTried) -> dict[str, object]:
     if one.was is not None and one.now is not None:
         document["killed_by"] = {"test": one.test, "was": one.was.value, "now": one.now.value}
     return document
-
-
-def _finding(found: Finding) -> dict[str, object]:
-    return {"test": found.test, "how": found.how.value, "what": list(found.what)}
-
-
-def _score(score: Score) -> dict[str, int]:
-    return {
-        "mutants": score.mutants,
-        "equivalent": score.equivalent,
-        "killed": score.killed,
-        "by_requirement": score.by_requirement,
-        "unreached": score.unreached,
-    }
