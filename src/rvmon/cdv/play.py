@@ -237,7 +237,7 @@ def execute(
                     continue
                 played.append(Played(job, *next(results)))
                 if kept is not None:
-                    kept.keep(played[-1], time.perf_counter() - begun)
+                    kept.played(played[-1], time.perf_counter() - begun)
                 if progress is not None:
                     progress(len(played))
     except KeyboardInterrupt:

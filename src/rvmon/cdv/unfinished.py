@@ -6,18 +6,14 @@ that outcomes depend on has changed since: tests, requirements, programs.
 
 from __future__ import annotations
 
-import hashlib
 import inspect
-import json
-import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import msgspec
 
-import rvmon
 from rvmon.cache import contents
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.plan import Job, Outcome, Plan, Played
@@ -54,39 +50,25 @@ class _Heading:
 
 
 @dataclass(frozen=True, slots=True)
-class Unfinished:
+class Unfinished(journal.Journal):
     """A campaign that goes on.
 
     Attributes:
-        path: of its file.
         jobs: what it plays, in the order of the plan.
         known: what of it was played before, by test and robot.
         seconds: that this took.
-        shards: files of shards that were played, from which something is known.
         shard: what of the campaign this is; `None`: all.
     """
 
-    path: Path
-    jobs: Sequence[Job]
-    known: Mapping[tuple[str, str], Played]
+    jobs: Sequence[Job] = ()
+    known: Mapping[tuple[str, str], Played] = field(default_factory=dict)
     seconds: float = 0.0
-    shards: Sequence[Path] = ()
     shard: Shard | None = None
 
-    def keep(self, one: Played, seconds: float) -> None:
-        """Write down what was played: it stays, whatever ends this process.
-
-        Args:
-            one: a test.
-            seconds: that the campaign has taken by now.
-        """
-        entry = _Entry(one.job.test.name, one.job.robot, one.outcome, one.control, seconds)
-        journal.add(self.path, msgspec.json.encode(entry))
-
-    def remove(self) -> None:
-        """Delete the files, as all is played and written."""
-        for path in (self.path, *self.shards):
-            path.unlink(missing_ok=True)
+    def played(self, one: Played, seconds: float) -> None:
+        """Write down a test, and the seconds that the campaign has taken by now."""
+        job = one.job
+        self.keep(_Entry(job.test.name, job.robot, one.outcome, one.control, seconds))
 
 
 def unfinished(
@@ -128,7 +110,7 @@ def unfinished(
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
     chosen = [*jobs.values()] if shard is None else shard.of([*jobs.values()])
-    return Unfinished(path, chosen, known, seconds, shards, shard)
+    return Unfinished(path, shards, chosen, known, seconds, shard)
 
 
 def _in_order(
@@ -165,13 +147,12 @@ def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None
 def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     """A checksum of all that outcomes depend on."""
     campaign = plan.campaign
-    inputs = [
+    return journal.checksum(
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        [list(contents(path)) for path in (Path(rvmon.__file__).parent, *sources_of(campaign))],
-        [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
-    ]
-    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()
+        [list(contents(path)) for path in sources_of(campaign)],
+        [*map(_version, (*_PACKAGES, *campaign.packages))],
+    )
 
 
 def sources_of(campaign: Campaign) -> list[Path]:

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import pickle
-import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import msgspec
 
-import rvmon
-from rvmon.cache import contents
 from rvmon.cli.judging import Judged, Options
 from rvmon.coverage.model import Hit
 from rvmon.errors import RvmonError
@@ -42,20 +37,16 @@ class _Entry(msgspec.Struct, frozen=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Unfinished:
+class Unfinished(journal.Journal):
     """A run that goes on.
 
     Attributes:
-        path: of its file.
         stamps: what distinguished the files of recordings from others when the run began, by path.
         known: the recordings that were judged before, by path.
-        shards: files of shards, from which something is known.
     """
 
-    path: Path
-    stamps: dict[str, tuple[int, int] | None]
+    stamps: dict[str, tuple[int, int] | None] = field(default_factory=dict)
     known: dict[str, Judged] = field(default_factory=dict)
-    shards: Sequence[Path] = ()
 
     def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:
         """The recordings in their order, of which those that are fresh are kept."""
@@ -64,15 +55,10 @@ class Unfinished:
             one = self.known.get(trace)
             if one is None:
                 one = next(new)
-                self._keep(trace, one)
+                self._add(trace, one)
             yield one
 
-    def remove(self) -> None:
-        """Delete the files, as all is judged and written."""
-        for path in (self.path, *self.shards):
-            path.unlink(missing_ok=True)
-
-    def _keep(self, trace: str, one: Judged) -> None:
+    def _add(self, trace: str, one: Judged) -> None:
         """Write down what was judged, unless it is to be tried again."""
         stamp = self.stamps[trace]
         if one.report is None or stamp is None:
@@ -80,7 +66,7 @@ class Unfinished:
         hits = {group: dict(items) for group, items in one.hits.items()}
         entry = _Entry(trace, stamp, one.report.to_json(), one.missing, hits, one.seconds)
         try:
-            journal.add(self.path, msgspec.json.encode(entry))
+            self.keep(entry)
         except OSError as error:
             raise _cannot_write(self.path, error) from None
 
@@ -121,7 +107,7 @@ def unfinished(
         journal.begin(path, [heading, *map(msgspec.json.encode, entries)])
     except OSError as error:
         raise _cannot_write(path, error) from None
-    return Unfinished(path, stamps, known | _judged_before(entries, stamps), shards)
+    return Unfinished(path, shards, stamps, known | _judged_before(entries, stamps))
 
 
 def _entries(path: Path, heading: bytes) -> list[_Entry]:
@@ -176,14 +162,8 @@ def _stamp(trace: str) -> tuple[int, int] | None:
 
 def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
-    inputs = [
-        to_plain(spec.checked),
-        [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
-        asdict(options),
-        list(contents(Path(rvmon.__file__).parent)),
-        sys.version,
-    ]
-    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest().encode()
+    binding = pickle.dumps(spec.schema.binding).hex()  # its file may be another one since
+    return journal.checksum(to_plain(spec.checked), [*reading, binding], asdict(options)).encode()
 
 
 def _cannot_write(path: Path, error: OSError) -> RvmonError:

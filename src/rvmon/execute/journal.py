@@ -15,10 +15,17 @@ to it, the entries before are whole; what is torn or damaged ends what is read.
 
 from __future__ import annotations
 
+import hashlib
+import json
+import sys
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
+from rvmon.cache import contents
 from rvmon.writing import place_whole
 
 
@@ -69,6 +76,38 @@ def add(path: Path, entry: bytes) -> None:
     """
     with path.open("ab", buffering=0) as file:
         file.write(_line(entry))
+
+
+@dataclass(frozen=True, slots=True)
+class Journal:
+    """Work that goes on from where it was ended.
+
+    Attributes:
+        path: of the journal that is added to.
+        shards: journals of shards, from which something is known.
+    """
+
+    path: Path
+    shards: Sequence[Path] = ()
+
+    def keep(self, entry: object) -> None:
+        """Write down what was done, as JSON: it stays, whatever ends this process.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        add(self.path, msgspec.json.encode(entry))
+
+    def remove(self) -> None:
+        """Delete the files, as all is done and written."""
+        for path in (self.path, *self.shards):
+            path.unlink(missing_ok=True)
+
+
+def checksum(*inputs: object) -> str:
+    """A checksum of what results depend on, rvmon and Python included."""
+    own = list(contents(Path(__file__).parents[1]))
+    return hashlib.sha256(json.dumps([*inputs, own, sys.version]).encode()).hexdigest()
 
 
 _WIDTH = 9

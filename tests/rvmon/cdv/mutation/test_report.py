@@ -1,6 +1,5 @@
 """What a person reads of mutants: scores, questions, equivalents; and what is held out."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -10,6 +9,7 @@ from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
 from rvmon.cdv.mutation.output import mutation_page, report_text
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
 from rvmon.cdv.mutation.tried import Finding, How, Tried, equivalents, readers
+from rvmon.cdv.tables import to_json
 from rvmon.errors import RvmonError
 from rvmon.session import loads
 
@@ -69,7 +69,7 @@ def test_what_is_held_out_is_counted_and_not_shown():
     shown = report(*alive, shows=True)
     assert hidden.scores("s") == shown.scores("s")
     assert hidden.scores("s")[HELD_OUT].mutants == len(HIDDEN)
-    for form in (report_text, mutation_page, lambda one: json.dumps(one.document())):
+    for form in (report_text, mutation_page, lambda one: to_json(one.document()).decode()):
         for one in HIDDEN:
             assert f"{one.identity}<" not in form(hidden).replace("\n", "<").replace('"', "<")
             assert one.identity in form(shown)
