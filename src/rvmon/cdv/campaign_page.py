@@ -22,8 +22,9 @@ from rvmon.verdict.verdict import Verdict
 Cell = tuple[str, str, str, Verdict]
 """Robot, strategy, requirement and verdict: a count in a table."""
 
-COMPARED = 12
-"""Passing tests in which the nearest passing attempt is looked for."""
+COMPARED = 4
+"""Passing tests in which the nearest passing attempt is looked for; where a fault is planted, one
+beside the test without it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,12 @@ def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -
         failed: ids of the requirements.
         played: of the campaign.
     """
-    jobs = _without_fault(job)
+    jobs: list[Job] = []
+    if job.test.mutation is not None:
+        name = f"{job.test.name} on the robot as it is"
+        fixed: dict[str, object] = {"name": name, "mutation": None, "expected": {}, "reaches": {}}
+        jobs = [replace(job, test=structs.replace(job.test, **fixed))]
+    most = 1 if jobs else COMPARED
     for requirement in failed:
         passed = [
             one.job
@@ -87,19 +93,8 @@ def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -
         ]
         # Tests that know their answers are about what the robot should do: those first.
         passed.sort(key=lambda one: not one.test.expected)
-        jobs.extend(passed[:COMPARED])
+        jobs.extend(passed[:most])
     return jobs
-
-
-def _without_fault(job: Job) -> list[Job]:
-    if job.test.mutation is None:
-        return []
-    name = f"{job.test.name} on the robot as it is"
-    return [
-        replace(
-            job, test=structs.replace(job.test, name=name, mutation=None, expected={}, reaches={})
-        )
-    ]
 
 
 def campaign_page(

@@ -60,9 +60,9 @@ class Replay:
         )
 
 
-def play_again(test: Test, name: str, robot: Robot, spec: Spec) -> Replay:
+def play_again(test: Test, bench: Bench, *, wants_scene: bool = True) -> Replay:
     """Play one test in this process with its scene recorded: the run that the campaign had."""
-    return Replay(test, Bench(name, robot, spec).play(test, keeps=True, wants_scene=True))
+    return Replay(test, bench.play(test, keeps=True, wants_scene=wants_scene))
 
 
 def replay_page(
@@ -235,15 +235,15 @@ def _writer(
 ) -> Callable[[_Page], tuple[Mapping[str, Verdict], Shrunk[Test] | None]]:
     """What writes a page, and returns the verdicts on its test and, if it is shrunk, the result."""
     specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
-    compared: dict[tuple[str, str], Replay] = {}
-
-    def replay_of(job: Job) -> Replay:
-        known = compared.get((job.robot, job.test.name))
-        return known or play_again(job.test, job.robot, robots[job.robot], specs[job.robot])
+    benches = {name: Bench(name, robots[name], spec) for name, spec in specs.items()}
+    compared: dict[tuple[str, str], JudgedRun] = {}
 
     def compared_with(job: Job) -> JudgedRun:
         """A run that many pages may compare theirs with: it is kept."""
-        return compared.setdefault((job.robot, job.test.name), replay_of(job)).judged
+        key = job.robot, job.test.name
+        if key not in compared:
+            compared[key] = play_again(job.test, benches[job.robot], wants_scene=False).judged
+        return compared[key]
 
     def shrunk_of(page: _Page) -> Shrunk[Test] | None:
         if page.failed is None:
@@ -253,7 +253,8 @@ def _writer(
         return shrink(page.job.test, page.failed, lambda test: play(Job(test, robot))[0])
 
     def write(page: _Page) -> tuple[Mapping[str, Verdict], Shrunk[Test] | None]:
-        replay, robot = replay_of(page.job), page.job.robot
+        robot = page.job.robot
+        replay = play_again(page.job.test, benches[robot])
         shrunk = shrunk_of(page)
         text = replay_page(
             replay,

@@ -12,7 +12,7 @@ from rvmon.cdv.gate import judge_test
 from rvmon.cdv.output import typed
 from rvmon.cdv.pages import Replay, play_again, replay_page
 from rvmon.cdv.plan import Job, Outcome, Played
-from rvmon.cdv.play import outcome_of, play_apart, player
+from rvmon.cdv.play import Bench, outcome_of, play_apart, player
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
@@ -45,7 +45,8 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
     if arguments.mcap is not None:
         refuse_mcap(arguments.mcap)
         refuse_no_file(arguments.mcap)
-    played = play_again(job.test, job.robot, robot, spec)
+    bench = Bench(job.robot, robot, spec)
+    played = play_again(job.test, bench)
     judged = played.judged.report, played.judged.samples
     _show(arguments.format, spec, played)
     if arguments.mcap is not None:
@@ -54,7 +55,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         words: list[object] = ["replay", arguments.test]
         words += [] if arguments.robot is None else ["--robot", arguments.robot]
         others = [
-            play_again(one.test, job.robot, robot, spec).judged
+            play_again(one.test, bench, wants_scene=False).judged
             for one in comparable_jobs(job, (), ())
         ]
         command = typed(campaign.program, words)
