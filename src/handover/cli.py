@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli import guarded
-from rvmon.cli.campaign import add_commands, add_run_options, run_tests
+from rvmon.cli.campaign import add_commands, run_tests
+from rvmon.cli.campaign_options import add_run_options
 from rvmon.cli.numbers import positive
 from rvmon.cli.parser import Parser
 

@@ -66,12 +66,7 @@ class Recorder:
 
 
 class Truth:
-    """Measures the bodies without error, for requirements and people, never for the robot.
-
-    Args:
-        scene: where the bodies are.
-        human: who may hold the piece.
-    """
+    """Measures the bodies without error, for requirements and people, never for the robot."""
 
     def __init__(self, scene: Scene, human: Human) -> None:
         self._scene = scene

@@ -59,9 +59,6 @@ class Sensors:
         A sensor has a reading while the tracked head or hand is in view and still: a face that
         is turned away, or a hand at the chest, is not seen. Pressure is that of a hand which
         has opened or closed: a slack one has not made up its mind.
-
-        Args:
-            t_ns: the instant of the reading.
         """
         if not self._delay_ns:
             return self._read()

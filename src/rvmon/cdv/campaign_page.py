@@ -12,7 +12,7 @@ from msgspec import structs
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.presentation import Presentation
-from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.summary import CampaignSummary, differences
 from rvmon.cdv.tables import INTERVALS, RobotTables
 from rvmon.coverage.record import Ending
 from rvmon.report.pages import render, table_html
@@ -43,7 +43,7 @@ class Examples:
 def choose_examples(
     played: Sequence[Played], *, also: Collection[str] = (), every: bool = False
 ) -> Examples:
-    """The first test behind each count, every test with a known answer, and every crash.
+    """The first test behind each count, every one with a planted fault, and what came out wrong.
 
     A test that hung, or ended its process, has no page: it cannot be played again here.
 
@@ -59,7 +59,8 @@ def choose_examples(
         if outcome.ending in (Ending.HUNG, Ending.LOST):
             continue
         wanted = every or job.test.name in also
-        wanted |= bool(job.test.expected) or outcome.error is not None
+        wanted |= job.test.mutation is not None or outcome.error is not None
+        wanted |= bool(differences(job.test.expected, outcome.verdicts))
         if job.test.mutation is None:
             for requirement, verdict in outcome.verdicts.items():
                 cell = (job.robot, job.test.strategy, requirement, verdict)
@@ -70,13 +71,7 @@ def choose_examples(
 
 
 def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -> list[Job]:
-    """Tests that pass what a test failed, on the same robot: its own self without fault first.
-
-    Args:
-        job: the test that failed.
-        failed: ids of the requirements.
-        played: of the campaign.
-    """
+    """Tests that pass what a test failed, on the same robot: its own self without fault first."""
     jobs: list[Job] = []
     if job.test.mutation is not None:
         name = f"{job.test.name} on the robot as it is"

@@ -43,9 +43,6 @@ class Meter:
 
     It is a context, to be entered again and again, which measures while it is entered.
 
-    Args:
-        code: what is measured.
-
     Raises:
         RvmonError: coverage.py is not installed.
     """
@@ -100,9 +97,6 @@ class Meter:
 
 def code_groups(code: Code) -> list[Group]:
     """What there is to be covered: statements of each block, and branches where it has some.
-
-    Args:
-        code: the blocks.
 
     Raises:
         RvmonError: coverage.py is not installed, or a file is no Python.

@@ -253,9 +253,6 @@ def _gated(
 def refuse_unknown(campaign: Campaign) -> None:
     """See that all that failures are expected of, and gates name, exists; tests come later.
 
-    Args:
-        campaign: as it was written.
-
     Raises:
         UnknownNameError: a failure is expected of what there is not, or a gate names it.
         SpecError: the requirements of a robot are wrong.

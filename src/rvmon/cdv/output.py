@@ -127,8 +127,8 @@ def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
         for name, verdicts in strategy.counts.items():
             found[name].update(verdicts)
     for one in figures.known:
-        if one.mutation is None:
-            for name, verdict in one.expected.items():
+        if one.test.mutation is None:
+            for name, verdict in one.test.expected.items():
                 if one.verdicts[name] == verdict:
                     found[name][one.verdicts[name]] -= 1
     return found
@@ -178,14 +178,14 @@ def _known(figures: RobotSummary) -> Iterator[str]:
     if not figures.known:
         return
     right = sum(one.as_expected for one in figures.known)
-    planted = sum(one.mutation is not None for one in figures.known)
+    planted = sum(one.test.mutation is not None for one in figures.known)
     yield (
         f"{figures.title}: {right} of {len(figures.known)} directed tests ended as they should, "
         f"{planted} of them with a fault planted into the robot."
     )
     for one in figures.known:
         if not one.as_expected:
-            yield f"  {one.test}: {', '.join(one.wrong)}"
+            yield f"  {one.test.name}: {', '.join(one.wrong)}"
 
 
 TESTS = "tests"

@@ -83,10 +83,6 @@ def plan(
 def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
     """The tests of a folder as those of a campaign, such as a suite that was closed before.
 
-    Args:
-        campaign: what it is about.
-        folder: with a `.json` file for each.
-
     Raises:
         TestError: there is no test in it, one is none of the campaign, or two have one name.
     """
@@ -206,12 +202,7 @@ class Results:
 
 
 def accepted_failures(one: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
-    """The requirements that may fail in a test, each with the reason.
-
-    Args:
-        one: the test.
-        expected: what its campaign expects to fail.
-    """
+    """The requirements that may fail in a test, each with the reason."""
     accepted = {
         name: "this test is made to fail it"
         for name, verdict in one.job.test.expected.items()

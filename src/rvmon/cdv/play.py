@@ -38,6 +38,7 @@ def player(
     robots: Mapping[str, Robot],
     code: Code | None,
     control: Callable[[Any], Test | None] | None,
+    judges: Mapping[str, Judge] | None = None,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
     """What plays a job in this process: its outcome, and that of its control.
 
@@ -45,14 +46,16 @@ def player(
         robots: by name.
         code: whose coverage is measured.
         control: makes the control of a test.
+        judges: of the robots, where they are made already.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
     """
-    benches = {}
-    for name, robot in robots.items():
-        spec = None if robot.spec is None else load(robot.spec)
-        benches[name] = Bench(name, robot, spec, code, spec_coverages(robot))
+    judges = judges or {name: judge_of(robot) for name, robot in robots.items()}
+    benches = {
+        name: Bench(name, robot, judges[name].spec, code, judges[name].coverages)
+        for name, robot in robots.items()
+    }
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench = benches[job.robot]
@@ -62,6 +65,20 @@ def player(
         return outcome, None if beside is None else outcome_of(bench.play(beside))
 
     return played
+
+
+class Judge(NamedTuple):
+    """What judges a robot's tests, and what is gathered of them."""
+
+    spec: Spec | None
+    coverages: Sequence[SpecCoverage]
+
+
+def judge_of(robot: Robot) -> Judge:
+    """The requirements of a robot and its coverage models, ready to watch runs."""
+    judge = Judge(None if robot.spec is None else load(robot.spec), spec_coverages(robot))
+    Checker(*judge)  # what is compiled now is not compiled again in each process
+    return judge
 
 
 class Recorded(NamedTuple):
@@ -264,12 +281,13 @@ def outcomes(
         RvmonError: a system cannot be made, or no process be begun.
     """
     control = campaign.control.make if campaign.control is not None and controls else None
+    judges = {name: judge_of(robot) for name, robot in campaign.robots.items()}
     return parallel.execute(
         tests,
-        partial(player, campaign.robots, campaign.code, control),
+        partial(player, campaign.robots, campaign.code, control, judges),
         jobs=jobs or os.cpu_count() or 1,
         what="test",
-        instead=partial(_without_result, _requirements(campaign)),
+        instead=partial(_without_result, judges),
         timeout_s=campaign.timeout_s,
     )
 
@@ -289,18 +307,9 @@ def play_apart(campaign: Campaign, job: Job) -> Outcome:
         return next(results)[0]
 
 
-def _requirements(campaign: Campaign) -> dict[str, tuple[str, ...]]:
-    """The ids of the requirements by robot."""
-    return {
-        name: () if robot.spec is None else tuple(load(robot.spec).requirements)
-        for name, robot in campaign.robots.items()
-    }
-
-
-def _without_result(
-    requirements: Mapping[str, Sequence[str]], job: Job, ended: Ended
-) -> tuple[Outcome, None]:
+def _without_result(judges: Mapping[str, Judge], job: Job, ended: Ended) -> tuple[Outcome, None]:
     """The outcome of a test whose process was ended: nothing is known of it."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
-    verdicts = dict.fromkeys(requirements[job.robot], Verdict.INCONCLUSIVE)
+    spec = judges[job.robot].spec
+    verdicts = dict.fromkeys(spec.requirements if spec else (), Verdict.INCONCLUSIVE)
     return Outcome(verdicts, {}, (), {}, ending, ended.why, 0, {}, ended.seconds), None

@@ -256,11 +256,6 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
 
     A test that is made to fail, or has a fault planted into its robot, is to fail again: it finds
     the fault. Any other is to pass: it fails until the robot is fixed.
-
-    Args:
-        campaign: that the test is of.
-        job: the test that was shrunk.
-        shrunk: what came of it.
     """
     test, failure = job.test, shrunk.failure
     finds = test.mutation is not None or test.expected.get(failure.requirement) == "F"
@@ -286,13 +281,7 @@ def small_name(test: Test) -> str:
 
 
 def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path, Path]:
-    """Write a regression test as `NAME.json` and `test_NAME.py`, and return these paths.
-
-    Args:
-        campaign: that the test is of.
-        test: what `regression_test` made.
-        folder: of both files.
-    """
+    """Write a regression test as `NAME.json` and `test_NAME.py`, and return these paths."""
     function = re.sub(r"\W", "_", test.name)
     text = _FILE.format(
         found=f"Replays {test.name}, and sees that it comes out as it should.",
@@ -309,12 +298,7 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
 
 
 def removed(before: Test, after: Test) -> str:
-    """How much of a test is left, in words.
-
-    Args:
-        before: as it was.
-        after: as it is now.
-    """
+    """How much of a test is left, in words."""
     fields = ((name, getattr(before, name), getattr(after, name)) for name in before.removable)
     return ", ".join(f"{len(new)} of {len(old)} {name}" for name, old, new in fields)
 

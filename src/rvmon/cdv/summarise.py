@@ -60,7 +60,9 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
                 if any(one.control is not None for one in several)
             },
             known=tuple(
-                _known(one) for one in played if one.job.test.expected or one.job.test.reaches
+                KnownAnswer(test, one.outcome.verdicts, missed(test.reaches, one.outcome.hits))
+                for one in played
+                if (test := one.job.test).expected or test.reaches
             ),
         )
     outcomes = [one.outcome for one in results.played]
@@ -185,11 +187,3 @@ def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
         for name, figure in one.figures.items():
             sums[name] = sums.get(name, 0) + figure
     return sums
-
-
-def _known(one: Played) -> KnownAnswer:
-    test, outcome = one.job.test, one.outcome
-    not_reached = missed(test.reaches, outcome.hits)
-    return KnownAnswer(
-        test.name, test.text, test.mutation, test.expected, outcome.verdicts, not_reached
-    )

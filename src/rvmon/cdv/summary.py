@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.cdv.run_share import Decision
+from rvmon.cdv.test import Test
 from rvmon.coverage.model import Hits
 from rvmon.coverage.record import Ending
 from rvmon.report.percent import percent
@@ -86,25 +87,19 @@ class KnownAnswer:
     """A directed test: it knows what is to come out.
 
     Attributes:
-        test: its name.
-        text: what it is for.
-        mutation: the fault that was planted into the robot, if any.
-        expected: verdicts by requirement.
+        test: itself.
         verdicts: what came out, of all requirements.
         missed: what it is made to reach and did not, in words.
     """
 
-    test: str
-    text: str
-    mutation: str | None
-    expected: Mapping[str, str]
+    test: Test
     verdicts: Mapping[str, Verdict]
     missed: Sequence[str]
 
     @property
     def wrong(self) -> list[str]:
         """What is not as the test knows it, each in a sentence."""
-        return [*differences(self.expected, self.verdicts), *self.missed]
+        return [*differences(self.test.expected, self.verdicts), *self.missed]
 
     @property
     def as_expected(self) -> bool:

@@ -176,9 +176,9 @@ def _robot_document(robot: RobotSummary, kind: str, control_key: str) -> dict[st
         }
     if robot.known:
         document["known_answers"] = {
-            one.test: {
-                "mutation": one.mutation,
-                "expected": one.expected,
+            one.test.name: {
+                "mutation": one.test.mutation,
+                "expected": one.test.expected,
                 "verdicts": one.verdicts,
                 "missed": one.missed,
                 "as_expected": one.as_expected,

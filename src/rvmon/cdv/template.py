@@ -196,12 +196,6 @@ def project(
 
     The closed difference constraints of the run, restricted to those instants, are exactly the
     limits that the whole run puts on them.
-
-    Args:
-        network: whose run it is.
-        run: as the model checker gives it.
-        automata: names of those that are kept.
-        actions: what a test does for their edges.
     """
     timing = run.timing
     assert timing is not None  # noqa: S101 - the model checker knows the timing of its runs

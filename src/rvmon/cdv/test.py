@@ -119,10 +119,6 @@ def from_json(text: bytes, kind: type[_Test], *, source: str = "<bytes>") -> _Te
 def load(path: str | Path, kind: type[_Test]) -> _Test:
     """Read a test file.
 
-    Args:
-        path: of the file.
-        kind: of the test.
-
     Raises:
         TestError: the file cannot be read, or holds no such test.
     """

@@ -36,10 +36,6 @@ from rvmon.verdict.rows import VerdictRow
 def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
     """The texts of requirements, before the campaign is played, and after.
 
-    Args:
-        campaign: that is to be played.
-        path: where its evidence goes.
-
     Raises:
         RvmonError: evidence cannot be kept of it.
     """
@@ -59,14 +55,6 @@ def write_campaign(
     words: Sequence[object],
 ) -> None:
     """Write the evidence of a campaign.
-
-    Args:
-        path: of the file.
-        before: what `begun` gave before it was played.
-        results: of all its tests.
-        summary: its figures.
-        specs: what judged, by robot.
-        words: the command that plays it again.
 
     Raises:
         RvmonError: requirements have changed meanwhile, or it cannot be written.
@@ -132,10 +120,6 @@ def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:
 def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
     """The campaign as it made evidence: with its robots, judged by the requirements in there.
 
-    Args:
-        campaign: that made it.
-        kept: the evidence.
-
     Raises:
         RvmonError: the campaign has no such robot.
     """
@@ -149,12 +133,6 @@ def played_again(
     campaign: Campaign, kept: Kept, chosen: Sequence[str], jobs: int
 ) -> Iterator[VerdictRow]:
     """Play tests of evidence again; their code is not measured.
-
-    Args:
-        campaign: of `as_kept`.
-        kept: the evidence.
-        chosen: robots and tests.
-        jobs: processes.
 
     Raises:
         RvmonError: a test is none, or not there.

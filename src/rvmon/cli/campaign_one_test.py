@@ -29,12 +29,7 @@ from rvmon.writing import write_whole
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:
-    """Play a test file again, judge it, and return an exit code: 1 if a requirement failed.
-
-    Args:
-        campaign: that the test is of.
-        arguments: those of `replay`.
-    """
+    """Play a test file again, judge it, and return an exit code: 1 if a requirement failed."""
     job = _job(campaign, arguments)
     robot = campaign.robots[job.robot]
     if robot.spec is None:
@@ -76,12 +71,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
 
 
 def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
-    """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail.
-
-    Args:
-        campaign: that the test is of.
-        arguments: those of `shrink`.
-    """
+    """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail."""
     job, requirement = _job(campaign, arguments), arguments.requirement
     folder = made(arguments.out) if arguments.out else None  # reported before anything is played
     with busy("shrinking"):

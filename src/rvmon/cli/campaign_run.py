@@ -207,13 +207,7 @@ def written(
 
 
 def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
-    """Print a campaign's figures.
-
-    Args:
-        campaign: what it was about.
-        conducted: how it went.
-        form: `text` for people, or `json`.
-    """
+    """Print a campaign's figures."""
     summary = conducted.summary
     if form == "json":
         say_json(to_json(campaign.presentation.document(summary)).decode().removesuffix("\n"))

@@ -68,11 +68,7 @@ class Bins:
         return plan_of_watches(self.spec, watches, groups)
 
     def hits(self, counted: bytes) -> Hits:
-        """What a run has hit.
-
-        Args:
-            counted: by the core.
-        """
+        """What a run has hit."""
         numbers = iter_unpack("=qq", counted)
         found: dict[str, dict[str, Hit]] = {}
         for group in self.groups:

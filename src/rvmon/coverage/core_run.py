@@ -45,12 +45,7 @@ class CoverageRun(Monitor):
 
 
 def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:
-    """The attempts of each requirement, but those in doubt.
-
-    Args:
-        ids: of the requirements that the run judged.
-        run: is over.
-    """
+    """The attempts of each requirement, but those in doubt."""
     found: dict[str, list[Judged]] = {name: [] for name in ids}
     records = np.frombuffer(run.records()[0], RECORD)
     records = records[records["in_doubt"] == 0]

@@ -20,13 +20,7 @@ _PART = re.compile(r"(?:^| × )(?:`([^`]*)`|([^`×]*?))(?= × |$)")
 def nearest_tests(
     goals: Iterable[Goal], tests: Sequence[tuple[str, Hits]], model: Model
 ) -> dict[Goal, str]:
-    """The first of the tests that came nearest to each item; none where no test came near.
-
-    Args:
-        goals: items that were not hit.
-        tests: names, and what each has hit.
-        model: what there is to be covered.
-    """
+    """The first of the tests that came nearest to each item; none where no test came near."""
     found = {}
     for goal in goals:
         near, name = max(
@@ -45,11 +39,6 @@ def nearness(goal: Goal, hits: Hits, model: Model) -> float:
     Of a combination of bins it is the bins in common with the nearest one that was hit; of a
     transition, that its source was reached; of a statement or branch, how far the test got towards
     its line; of anything else, what it hit of the same group.
-
-    Args:
-        goal: what was not hit.
-        hits: of the test.
-        model: what there is to be covered.
     """
     group = model.groups[goal[0]]
     seen = hits.get(group.name, {})

@@ -124,11 +124,7 @@ class _Watched:
         return found
 
     def bin_hits(self, runs: Sequence[native.Monitor]) -> Hits:
-        """The bins and combinations hit so far.
-
-        Args:
-            runs: by what is `planned`.
-        """
+        """The bins and combinations hit so far."""
         return self._bins.hits(runs[-1].hits()) if self._bins.groups else {}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Hits:

@@ -115,11 +115,7 @@ _MOST = 1 << 62
 
 
 class Answers:
-    """What is hit and by whom, what is missing, what each test is good for: each worked out once.
-
-    Args:
-        coverage: all that a database holds.
-    """
+    """What is hit and by whom, what is missing, what each test is good for, worked out once."""
 
     def __init__(self, coverage: Coverage) -> None:
         self.coverage = coverage

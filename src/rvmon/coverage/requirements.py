@@ -182,11 +182,7 @@ class WatchedRequirements:
         return {one: _planned(one, traced if one is self._own else ()) for one in specs}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What was hit, by group.
-
-        Args:
-            runs: by what is `planned`, over.
-        """
+        """What was hit, by group."""
         attempts: dict[str, list[Judged]] = {}
         passages: dict[str, Passages] = {}
         for compiled, run in zip(self.planned, runs, strict=True):

@@ -25,10 +25,6 @@ def coverage_ucis(summary: Summary, version: str) -> str:
     """All but the coverage of code, as one covergroup: a coverpoint or cross per group.
 
     What cannot be hit is ignored there, with the reason. LCOV and Cobertura files have the code.
-
-    Args:
-        summary: what is written.
-        version: of what writes it.
     """
     now = datetime.now(UTC).isoformat(timespec="seconds")
     root = ET.Element("UCIS", ucisVersion="1.0", writtenBy="rvmon", writtenTime=now)

@@ -103,9 +103,9 @@ def test_directed_tests_end_as_they_should(directed_results):
     """Each known answer comes out; a planted fault says nothing about the robot as it is."""
     summary = summarise(directed_results, SPECS)
     for figures in summary.robots.values():
-        assert [one.test for one in figures.known if not one.as_expected] == []
+        assert [one.test.name for one in figures.known if not one.as_expected] == []
     correct = summary.robots["correct"]
-    planted = [one for one in correct.known if one.mutation is not None]
+    planted = [one for one in correct.known if one.test.mutation is not None]
     assert planted
     assert correct.strategies["directed"].tests == len(correct.known) - len(planted)
 

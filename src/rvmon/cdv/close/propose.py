@@ -119,13 +119,7 @@ class Proposer:
         return made
 
     def learn(self, proposal: Proposal, played: Played, *, added: bool) -> None:
-        """Learn what became of a test: one that came nearer to its goal than all before paid, too.
-
-        Args:
-            proposal: of it.
-            played: its outcome.
-            added: whether it met something that was open.
-        """
+        """Learn what became of a test: one that came nearer to its goal than before paid, too."""
         near = nearness(proposal.goal, played.outcome.hits, self._goals.model)
         is_nearer = near > self._nearness[proposal.goal]
         self._nearness[proposal.goal] = max(near, self._nearness[proposal.goal])

@@ -86,13 +86,7 @@ _SEEDS = 1 << 32
 
 
 class Mutator:
-    """Changes tests of one type.
-
-    Args:
-        kind: the type.
-        fixed: fields that stay as they are.
-        learned: which changes have paid.
-    """
+    """Changes tests of one type."""
 
     def __init__(self, kind: type[Test], fixed: Collection[str], learned: Learned) -> None:
         described = inspect.type_info(kind)

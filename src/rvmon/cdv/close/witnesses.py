@@ -124,12 +124,7 @@ class Witnesses:
         return model.make(template, seed)
 
     def shown(self, witness: Witness, hits: Hits) -> dict[str, dict[str, Hit]]:
-        """The edges of the model that the test of a run has shown.
-
-        Args:
-            witness: the run.
-            hits: of the test.
-        """
+        """The edges of the model that the test of a run has shown."""
         if not self._describes:
             return {}
         visited = hits.get(STATES, {})

@@ -132,12 +132,7 @@ def _left_out(suite: SuiteTried) -> Iterator[str]:
 
 
 def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
-    """The mutants one by one, without playing them.
-
-    Args:
-        mutants: all there are.
-        held_out: list also those that are held out.
-    """
+    """The mutants one by one, without playing them."""
     shown = [one for one in mutants if held_out or one.third != HELD_OUT]
     rows = [("third", "mutant", "change")]
     rows += [(one.third, one.identity, one.brief) for one in shown]
@@ -154,11 +149,7 @@ ABOUT = (
 
 
 def mutation_page(report: MutationReport) -> str:
-    """Write the page; it needs no script and nothing but itself.
-
-    Args:
-        report: what is shown.
-    """
+    """Write the page; it needs no script and nothing but itself."""
     suites = report.suites.values()
     hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, and not shown."
     code = any(one.tried for one in suites)

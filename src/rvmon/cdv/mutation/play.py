@@ -32,10 +32,6 @@ from rvmon.verdict.verdict import Verdict
 def plant(mutant: Mutant, source: str) -> None:
     """Change the code of this process.
 
-    Args:
-        mutant: what is to run.
-        source: of its file as it was.
-
     Raises:
         RvmonError: it cannot be planted; the message says why.
     """

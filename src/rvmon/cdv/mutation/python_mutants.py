@@ -132,9 +132,6 @@ def code_mutants(code: Code) -> list[Mutant]:
     Of those that Python compiles to one code the first is kept, and none that it compiles to the
     code as it is, or not at all.
 
-    Args:
-        code: whose files are read and not run.
-
     Raises:
         RvmonError: one cannot be read, or is no Python.
 

@@ -23,11 +23,7 @@ _WAITS = (ast.Yield, ast.YieldFrom)
 
 
 class Strings:
-    """The strings of a file by what they are used for; one may stand for another of its use.
-
-    Args:
-        tree: of the file.
-    """
+    """The strings of a file by what they are used for; one may stand for another of its use."""
 
     def __init__(self, tree: ast.Module) -> None:
         self._uses: dict[int, str] = {}
@@ -67,12 +63,7 @@ def _used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
 
 
 class Scope:
-    """A function, or the statement that makes a constant, in its file.
-
-    Args:
-        body: its statements.
-        strings: of the file.
-    """
+    """A function, or the statement that makes a constant, in its file."""
 
     def __init__(self, body: Sequence[ast.stmt], strings: Strings) -> None:
         self._body = body

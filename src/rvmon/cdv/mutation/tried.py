@@ -205,10 +205,6 @@ def _differs(found: Difference, reading: Mapping[str, Sequence[str]]) -> str:
 def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
     """Read the file: TOML, a table for each argument, with the changes by the mutants' identities.
 
-    Args:
-        path: of the file.
-        mutants: that there are.
-
     Returns:
         The argument for each, by identity.
 

@@ -1,0 +1,156 @@
+"""The options of a campaign's commands: tests, how they are played, where results go."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser
+
+from rvmon.cli.numbers import duration, number_or_folder, positive, shard
+from rvmon.cli.options import add_dask
+
+
+def add_run_options(parser: ArgumentParser) -> None:
+    """Declare how many tests are played, and where their results go."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
+    )
+    parser.add_argument(
+        "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
+    )
+    parser.add_argument(
+        "--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive"
+    )
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        type=shard,
+        help="with --out, play this share, as 2/4; the same without it joins what shards left",
+    )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 1 as well if something is inconclusive, is never triggered though its "
+        "strategy has to, or too little is covered",
+    )
+    _add_playing_options(parser)
+
+
+def _add_playing_options(parser: ArgumentParser) -> None:
+    _add_seed_and_jobs(parser)
+    add_dask(parser)
+    parser.add_argument(
+        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
+    )
+    parser.add_argument(
+        "--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        help="write tables, tests and pages there; a campaign that was ended there goes on",
+    )
+    parser.add_argument(
+        "--pages",
+        choices=("examples", "all"),
+        default="examples",
+        help="of which runs to write a page: an example of each count, or all (%(default)s)",
+    )
+    parser.add_argument(
+        "--shrink",
+        action="store_true",
+        help="with --out, shrink the tests with a page that fail, and are not made to",
+    )
+
+
+def add_closing_options(parser: ArgumentParser) -> None:
+    """Declare when closing gives up, and where the suite goes."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
+    )
+    parser.add_argument(
+        "--margin",
+        metavar="N",
+        type=positive,
+        default=2,
+        help="keep so many tests that show each goal, where so many were found (2): one covers it, "
+        "more see more faults",
+    )
+    parser.add_argument(
+        "--mutants",
+        metavar="N",
+        type=positive,
+        help="keep also the fewest tests that kill what the suite does not of so many mutants of "
+        "the code, and show what each choice of tests sees of them and of those held out",
+    )
+    _add_playing_options(parser)
+
+
+def add_replay_options(parser: ArgumentParser) -> None:
+    """Declare where the run of a test goes."""
+    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
+    parser.add_argument(
+        "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
+    )
+    parser.add_argument(
+        "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
+    )
+
+
+def add_shrink_options(parser: ArgumentParser) -> None:
+    """Declare by which failure a test is shrunk, and where it goes."""
+    parser.add_argument(
+        "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
+    )
+
+
+def add_mutate_options(parser: ArgumentParser) -> None:
+    """Declare which mutants are played by which tests, and where results go."""
+    parser.add_argument(
+        "--tests",
+        metavar="N|DIR",
+        type=number_or_folder,
+        default=100,
+        help="of each random strategy (100); or a folder of tests, which is the suite",
+    )
+    _add_seed_and_jobs(parser)
+    parser.add_argument(
+        "--of",
+        choices=("code", "spec", "both"),
+        default="both",
+        help="mutants of the code, of its requirements, or %(default)s (default)",
+    )
+    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
+    parser.add_argument(
+        "--all", action="store_true", help="play all tests, also after a requirement failed"
+    )
+    parser.add_argument(
+        "--held-out", action="store_true", help="show also single mutants that are held out"
+    )
+    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
+    parser.add_argument(
+        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
+    )
+
+
+def _add_seed_and_jobs(parser: ArgumentParser) -> None:
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="all follows from it (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+
+
+def add_judging_options(parser: ArgumentParser) -> None:
+    """Declare what judges, and in which form verdicts are printed."""
+    parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
