@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
+
+from markupsafe import Markup
 
 from handover.campaign.closing import UNREACHABLE, closing
 from handover.campaign.system import Handover
@@ -15,13 +16,14 @@ from handover.campaign.table1 import witness_test
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
+from handover.model import handover_network
 from rvmon.cdv import Observer, Test
 from rvmon.cdv.close.witnesses import EDGES, Witness, Witnesses
 from rvmon.cdv.code_coverage import hits_of_states
 from rvmon.cdv.presentation import RobotTest
 from rvmon.confidence import interval_text
 from rvmon.execute import parallel
-from rvmon.report.markup import Child, e
+from rvmon.report.pages import component
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:
@@ -40,9 +42,21 @@ Addresses = Mapping[RobotTest, str]
 """Of pages."""
 
 
+Row = tuple[str | Markup, ...]
+
+_SECTION = Markup(
+    "<section><h2>The model</h2>{}<p class=soft>Random runs choose among edges by the weights of "
+    "the model, {:,} of {:g} s for each, with the 95 % interval.</p><h3>The model and the code</h3>"
+    "<p class=soft>Tests follow runs of the model that take all edges there are, and the correct "
+    "robot plays them; runs of it are held against the model, of each strategy the first {}; when "
+    "the human is ready is an input.</p>{}</section>"
+)
+_WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
+
+
 def model_sections(
     tests: Mapping[RobotTest, Test], addresses: Addresses, count: int
-) -> list[ET.Element]:
+) -> list[Markup]:
     """The section of a campaign's page, unless no run is to be held against the model.
 
     Args:
@@ -53,45 +67,28 @@ def model_sections(
     strategies: dict[str, list[AbstractTest]] = {}
     for (robot, _), test in tests.items():
         if robot == ROBOT and test.mutation is None and isinstance(test, AbstractTest):
-            strategies.setdefault(test.strategy, []).append(test)
+            own = strategies.setdefault(test.strategy, [])
+            own += [test] if len(own) < count else []
     if not count or not strategies:
         return []
-    chosen = [test for several in strategies.values() for test in several[:count]]
     jobs = os.cpu_count() or 1
-    edges = list(parallel.execute(edge_tests(), _follower, jobs=jobs, what="run of the model"))
-    rows = list(parallel.execute(claims(), _verifier, jobs=jobs, what="query"))
-    for requirement, row in zip(claims(), rows, strict=True):
-        witness = addresses.get((ROBOT, witness_test(requirement.removesuffix(SUFFIX))))
-        if witness is not None:
-            row[1].append(e("a", {"href": witness, "title": "the robot plays it"}, " (witness)"))
-    found = list(parallel.execute(chosen, _conformer, jobs=jobs, what="run"))
-    both = _edge_rows(frozenset().union(*edges))
-    both += [
-        _row([pair for pair in zip(chosen, found, strict=True) if pair[0] in several], addresses)
-        for several in strategies.values()
-    ]
+    edges = parallel.execute(edge_tests(), _follower, jobs=jobs, what="run of the model")
+    code = _edge_rows(frozenset().union(*edges))
+    claimed = []
+    for row in parallel.execute(claims(), _verifier, jobs=jobs, what="query"):
+        address = addresses.get((ROBOT, witness_test(str(row[0]))))
+        some = row[1] if address is None else _WITNESS.format(row[1], address)
+        claimed.append((row[0], some, *row[2:]))
+    chosen = [test for own in strategies.values() for test in own]
+    found = parallel.execute(chosen, _conformer, jobs=jobs, what="run")
+    for own in strategies.values():
+        code.append(_strategy_row([(test, next(found)) for test in own], addresses))
     titles = ("", "some run shows it", "random runs that do", "all runs keep to it", "that is")
-    return [
-        e(
-            "section",
-            None,
-            e("h2", None, "The model"),
-            _table(titles, rows),
-            e("p", {"class": "soft"}, "Random runs choose among edges by the weights of the model, "
-              f"{SIMULATED:,} of {SIMULATED_UNITS * 0.05:g} s for each, with the 95 % interval."),
-            e("h3", None, "The model and the code"),
-            e("p", {"class": "soft"}, "Tests follow runs of the model that take all edges there "
-              "are, and the correct robot plays them; runs of it are held against the model, of "
-              f"each strategy the first {count}; when the human is ready is an input."),
-            _table(("", "there are", "so it is", "the others"), both),
-        )
-    ]  # fmt: skip
-
-
-def _table(titles: Sequence[str], rows: Sequence[ET.Element]) -> ET.Element:
-    head = e("thead", None, e("tr", None, *(e("th", None, title) for title in titles)))
-    table = e("table", {"class": "verdicts"}, head, e("tbody", None, *rows))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
+    tables = [
+        component("table", head, rows, texts=len(head))
+        for head, rows in ((titles, claimed), (("", "there are", "so it is", "the others"), code))
+    ]
+    return [_SECTION.format(tables[0], SIMULATED, SIMULATED_UNITS * 0.05, count, tables[1])]
 
 
 def claims() -> list[str]:
@@ -100,13 +97,10 @@ def claims() -> list[str]:
     >>> claims()
     ['R1_all', 'R2_all', 'R3_all', 'R4_all']
     """
-    from handover.model import handover_network
-
     return [query.id for query in handover_network().queries if query.id.endswith(SUFFIX)]
 
 
-def _verifier() -> Callable[[str], ET.Element]:
-    from handover.model import handover_network
+def _verifier() -> Callable[[str], Row]:
     from rvmon.timed.model.expressions import PathFormula
     from rvmon.timed.model.network import Chance
     from rvmon.timed.model.operators import PathOp
@@ -116,7 +110,7 @@ def _verifier() -> Callable[[str], ET.Element]:
     network = handover_network()
     queries = {query.id: query for query in network.queries}
 
-    def row(name: str) -> ET.Element:
+    def row(name: str) -> Row:
         requirement = name.removesuffix(SUFFIX)
         some, every = (verify(network, queries[query]).holds for query in (requirement, name))
         claim, query = queries[name], queries[requirement]
@@ -125,23 +119,15 @@ def _verifier() -> Callable[[str], ET.Element]:
         horizon = SIMULATED_UNITS if goal.bound is None else goal.bound
         chance = Chance(PathOp.FINALLY, goal.body, horizon, SIMULATED, sign=None, level=0.0)
         share = sample(network, replace(query, formula=chance), seed=1)
-        return e(
-            "tr",
-            None,
-            e("th", {"scope": "row"}, requirement),
-            e("td", None, checked_text(some)),
-            e("td", None, f"{100 * share.value:.1f} % "
-              f"({interval_text(round(share.value * share.runs), share.runs)})"),
-            e("td", None, checked_text(every)),
-            e("td", {"class": "text", "title": claim.text}, claim.remark),
-        )  # fmt: skip
+        interval = interval_text(round(share.value * share.runs), share.runs)
+        remark = Markup('<span title="{}">{}</span>').format(claim.text, claim.remark)
+        shown = f"{100 * share.value:.1f} % ({interval})"
+        return requirement, checked_text(some), shown, checked_text(every), remark
 
     return row
 
 
 def _conformer() -> Callable[[AbstractTest], Conformance]:
-    from handover.model import handover_network
-
     network = handover_network()
     return lambda test: check_run(network, run_test(test, robot=ROBOT))
 
@@ -176,45 +162,37 @@ def _follower() -> Callable[[str], frozenset[str]]:
     return shown
 
 
-def _edge_rows(shown: frozenset[str]) -> list[ET.Element]:
+def _edge_rows(shown: frozenset[str]) -> list[Row]:
     """By automaton, how many of its edges the robot's runs have shown, and the others."""
     argued = {one.item: one.reason for one in UNREACHABLE if one.group == EDGES}
     edges: dict[str, list[str]] = {}
     for name in _witnesses().groups[0].items:
         edges.setdefault(name.partition(":")[0], []).append(name)
-    return [
-        e(
-            "tr",
-            None,
-            e("th", {"scope": "row"}, f"edges of {automaton}"),
-            e("td", None, str(len(names))),
-            e("td", None, f"{sum(name in shown for name in names)} played"),
-            e("td", {"class": "text"}, "; ".join(
-                f"{name.partition(': ')[2]} ({argued.get(name, 'not shown')})"
-                for name in names if name not in shown
-            )),
-        )
-        for automaton, names in edges.items()
-    ]  # fmt: skip
+    rows: list[Row] = []
+    for automaton, names in edges.items():
+        others = [
+            f"{name.partition(': ')[2]} ({argued.get(name, 'not shown')})"
+            for name in names
+            if name not in shown
+        ]
+        played = f"{len(names) - len(others)} played"
+        rows.append((f"edges of {automaton}", str(len(names)), played, "; ".join(others)))
+    return rows
 
 
-def _row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> ET.Element:
+def _strategy_row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> Row:
     """How many runs of a strategy conform, and where the others leave the model."""
-    conforming = sum(found.conforms is True for _, found in pairs)
-    parts: list[Child] = []
+    others = []
     for test, found in pairs:
         if found.conforms is not True:
             address = addresses.get((ROBOT, test.name))
-            name: Child = test.name if address is None else e("a", {"href": address}, test.name)
-            parts += ["; " if parts else "", name, f" does not: {_where(found)}"]
-    return e(
-        "tr",
-        None,
-        e("th", {"scope": "row"}, f"runs, {pairs[0][0].strategy}"),
-        e("td", None, str(len(pairs))),
-        e("td", None, f"{conforming} conform"),
-        e("td", {"class": "text"}, *parts),
-    )
+            link = Markup('<a href="{}">{}</a>').format(address, test.name)
+            others.append(
+                Markup("{} does not: {}").format(link if address else test.name, _where(found))
+            )
+    conforming = f"{len(pairs) - len(others)} conform"
+    strategy = pairs[0][0].strategy
+    return f"runs, {strategy}", str(len(pairs)), conforming, Markup("; ").join(others)
 
 
 def _where(found: Conformance) -> str:

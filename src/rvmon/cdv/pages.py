@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -15,7 +16,7 @@ from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.gate import judge_test
 from rvmon.cdv.output import RUNS, SMALLEST, TESTS, typed
 from rvmon.cdv.plan import Job, Outcome, Played, Results
-from rvmon.cdv.play import Bench, Recorded, player
+from rvmon.cdv.play import Bench, Recorded, player, spooled
 from rvmon.cdv.shrink import (
     Shrunk,
     failure_of,
@@ -130,6 +131,7 @@ def write_pages(
     jobs: int | None,
     progress: Callable[[float], None],
     shrinks: bool = False,
+    spool: Path | None = None,
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
 
@@ -143,6 +145,7 @@ def write_pages(
         jobs: processes that write pages; default: one per core.
         progress: called with how many pages are written.
         shrinks: tests with a page that fail, and are not made to, are shrunk to `smallest/`.
+        spool: has what was recorded of tests, which are not played again then.
 
     Returns:
         The tests that came out otherwise when they were played again for their pages.
@@ -158,7 +161,7 @@ def write_pages(
     ]
     written = parallel.execute(
         [_page_of(one, folder, results, shrinks=shrinks) for one in wanted],
-        partial(_writer, folder, judged),
+        partial(_writer, folder, judged, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
     )
@@ -231,7 +234,7 @@ def _page_of(one: Played, folder: Path, results: Results, *, shrinks: bool) -> _
 
 
 def _writer(
-    folder: Path, robots: Mapping[str, Robot]
+    folder: Path, robots: Mapping[str, Robot], spool: Path | None
 ) -> Callable[[_Page], tuple[Mapping[str, Verdict], Shrunk[Test] | None]]:
     """What writes a page, and returns the verdicts on its test and, if it is shrunk, the result."""
     specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
@@ -242,7 +245,9 @@ def _writer(
         """A run that many pages may compare theirs with: it is kept."""
         key = job.robot, job.test.name
         if key not in compared:
-            compared[key] = play_again(job.test, benches[job.robot], wants_scene=False).judged
+            bench = benches[job.robot]
+            again = _spooled(spool, job) or play_again(job.test, bench, wants_scene=False)
+            compared[key] = again.judged
         return compared[key]
 
     def shrunk_of(page: _Page) -> Shrunk[Test] | None:
@@ -254,7 +259,7 @@ def _writer(
 
     def write(page: _Page) -> tuple[Mapping[str, Verdict], Shrunk[Test] | None]:
         robot = page.job.robot
-        replay = play_again(page.job.test, benches[robot])
+        replay = _spooled(spool, page.job) or play_again(page.job.test, benches[robot])
         shrunk = shrunk_of(page)
         text = replay_page(
             replay,
@@ -269,6 +274,14 @@ def _writer(
         return replay.recorded.report.verdicts, shrunk
 
     return write
+
+
+def _spooled(spool: Path | None, job: Job) -> Replay | None:
+    """What was recorded of a test as it was played; `None`: it was played elsewhere, or before."""
+    if spool is None or not (path := spooled(spool, job)).exists():
+        return None
+    recorded: Recorded = pickle.loads(path.read_bytes())  # noqa: S301 - a folder of this process
+    return Replay(job.test, recorded)
 
 
 def _smallest(page: _Page, shrunk: Shrunk[Test] | None) -> Child:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import pickle
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rvmon.cdv.campaign import Campaign, Robot
@@ -39,6 +41,7 @@ def player(
     code: Code | None,
     control: Callable[[Any], Test | None] | None,
     judges: Mapping[str, Judge] | None = None,
+    spool: Path | None = None,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
     """What plays a job in this process: its outcome, and that of its control.
 
@@ -47,6 +50,7 @@ def player(
         code: whose coverage is measured.
         control: makes the control of a test.
         judges: of the robots, where they are made already.
+        spool: a folder of this user alone that gets what was recorded, for pages of all runs.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
@@ -58,13 +62,21 @@ def player(
     }
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
-        bench = benches[job.robot]
-        outcome = outcome_of(bench.play(job.test))
+        bench, keeps = benches[job.robot], spool is not None
+        recorded = bench.play(job.test, keeps=keeps, wants_scene=keeps)
+        if spool is not None:
+            spooled(spool, job).write_bytes(pickle.dumps(recorded))
+        outcome = outcome_of(recorded)
         with blamed(f"test `{job.test.name}`: its control cannot be made"):
             beside = None if control is None else control(job.test)
         return outcome, None if beside is None else outcome_of(bench.play(beside))
 
     return played
+
+
+def spooled(spool: Path, job: Job) -> Path:
+    """The file of what was recorded of a test."""
+    return spool / f"{job.robot}-{job.test.name}"
 
 
 class Judge(NamedTuple):
@@ -223,6 +235,7 @@ def execute(
     controls: bool = True,
     kept: Unfinished | None = None,
     progress: Progress | None = None,
+    spool: Path | None = None,
 ) -> Results:
     """Play all tests of a plan.
 
@@ -235,6 +248,7 @@ def execute(
         controls: also play the controls of tests.
         kept: where each test is kept as soon as it was played; those before are not played again.
         progress: called as each test is finished.
+        spool: as for `player`.
 
     Raises:
         RvmonError: a system cannot be made, or no process be begun.
@@ -246,7 +260,9 @@ def execute(
     played: list[Played] = []
     cut_short = "" if kept is None or kept.shard is None else f"shard {kept.shard}"
     try:
-        with closing(outcomes(plan.campaign, left, jobs=jobs, controls=controls)) as results:
+        with closing(
+            outcomes(plan.campaign, left, jobs=jobs, controls=controls, spool=spool)
+        ) as results:
             for job in tests:
                 before = known.get((job.test.name, job.robot))
                 if before is not None:
@@ -268,6 +284,7 @@ def outcomes(
     *,
     jobs: int | str | None = None,
     controls: bool = True,
+    spool: Path | None = None,
 ) -> Generator[tuple[Outcome, Outcome | None], None, None]:
     """Play tests, in this order; each outcome comes with that of its control.
 
@@ -276,6 +293,7 @@ def outcomes(
         tests: taken from as processes have time.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
+        spool: as for `player`.
 
     Raises:
         RvmonError: a system cannot be made, or no process be begun.
@@ -284,7 +302,7 @@ def outcomes(
     judges = {name: judge_of(robot) for name, robot in campaign.robots.items()}
     return parallel.execute(
         tests,
-        partial(player, campaign.robots, campaign.code, control, judges),
+        partial(player, campaign.robots, campaign.code, control, judges, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="test",
         instead=partial(_without_result, judges),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace, _SubParsersAction
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -155,7 +156,9 @@ def run_tests(campaign: Campaign, arguments: Namespace) -> int:
     robots = names_of(given.get("robot"), tuple(campaign.robots), "robot")
     strategies = names_of(given.get("strategy"), tuple(campaign.strategies), "strategy")
     campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
-    conducted = conduct(campaign, strategies, arguments, _words(arguments, "strategy"))
+    with ExitStack() as stack:
+        words = _words(arguments, "strategy")
+        conducted = conduct(campaign, strategies, arguments, words, stack)
     show(campaign, conducted, given.get("format", "text"))
     is_fine = _held(campaign, conducted.judged(strict=arguments.strict), arguments)
     return INTERRUPTED if conducted.interrupted else int(not is_fine)

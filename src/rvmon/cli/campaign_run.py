@@ -5,8 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_page import choose_examples
@@ -70,6 +72,7 @@ def conduct(
     strategies: Sequence[str],
     arguments: Namespace,
     words: Sequence[object],
+    stack: ExitStack,
 ) -> Conducted:
     """Plan, load the requirements, play, count, write.
 
@@ -78,6 +81,7 @@ def conduct(
         strategies: that make tests.
         arguments: those of `add_campaign_options`.
         words: the command that runs it again, and its other options.
+        stack: closes what was needed meanwhile.
 
     Raises:
         TestError: there is nothing to be played.
@@ -114,12 +118,15 @@ def conduct(
         planned = len(kept.jobs)
         if kept.known:
             warn(f"{len(kept.known)} of {planned} tests were played before")
+    jobs, spool = arguments.dask or arguments.jobs, None
+    if folder is not None and arguments.pages == "all":  # each is recorded as it is played
+        spool = Path(stack.enter_context(TemporaryDirectory(prefix="rvmon-")))
     with bar("tests", planned) as show:
-        results = execute(chosen, jobs=arguments.dask or arguments.jobs, kept=kept, progress=show)
+        results = execute(chosen, jobs=jobs, kept=kept, progress=show, spool=spool)
     if kept is not None and kept.shard is not None and len(results.played) == planned:
         warn(f"{kept.path}: the same command without --shard joins what lies beside it")
         return written(results, specs, None, arguments, again)
-    conducted = written(results, specs, folder, arguments, again)
+    conducted = written(results, specs, folder, arguments, again, spool)
     if texts is not None and results.cut_short:
         warn(f"{arguments.evidence}: not written: evidence is of whole campaigns")
     elif texts is not None:
@@ -164,6 +171,7 @@ def written(
     folder: Path | None,
     arguments: Namespace,
     again: str,
+    spool: Path | None = None,
 ) -> Conducted:
     """Count what came out, and write it to a folder.
 
@@ -173,6 +181,7 @@ def written(
         folder: for tables, tests and pages; `None` writes nothing.
         arguments: those of `add_playing_options`.
         again: the command that runs the tests again.
+        spool: has what was recorded of tests, so that they are not played again for their pages.
     """
     campaign = results.plan.campaign
     summary = summarise(results, specs)
@@ -197,6 +206,7 @@ def written(
             jobs=arguments.jobs,
             progress=show,
             shrinks=arguments.shrink,
+            spool=spool,
         )
     if otherwise:
         warn(

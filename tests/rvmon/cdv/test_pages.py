@@ -43,6 +43,27 @@ def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsy
     assert "played again, these came out otherwise: moody" in capsys.readouterr().err
 
 
+def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
+    """Each test is played once, and its page is the one that a second play would give."""
+
+    class Counted(type(campaign().robots["toy"].system())):
+        def play(self, test, observer):
+            with (tmp_path / "played").open("a") as file:
+                file.write(f"{test.name}\n")
+            return super().play(test, observer)
+
+    tests = (("low", {"level": 1.0}), ("high", {"level": 6.0}))
+    robots = {"toy": cdv.Robot(Counted, spec)}
+    words = ["run", "--jobs", "2", "--out", "out"]
+    main(campaign(*tests, robots=robots), words)
+    again = {path.name: path.read_text() for path in (tmp_path / "out" / "runs").iterdir()}
+    assert (tmp_path / "played").read_text().split().count("high") == 2
+    (tmp_path / "played").unlink()
+    main(campaign(*tests, robots=robots), [*words, "--pages", "all"])
+    assert {path.name: path.read_text() for path in (tmp_path / "out" / "runs").iterdir()} == again
+    assert sorted((tmp_path / "played").read_text().split()) == ["high", "low"]
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
