@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,15 +12,16 @@ from handover.campaign.closing import closing
 from handover.campaign.flow_chart import flow_chart
 from handover.campaign.gates import expected_failures, gates
 from handover.campaign.model_page import model_sections
-from handover.campaign.strategies import STRATEGIES
 from handover.campaign.system import Handover, without_loss
 from handover.campaign.table1 import paper_table, robot_tables, table_document
 from handover.checker import SPECS, situations_path, spec_path
 from handover.collector.code import TRANSITIONS, robot_code
-from handover.generator.abstract_test import AbstractTest
-from handover.generator.model_based import save_templates
+from handover.generator.abstract_test import AbstractTest, directed
+from handover.generator.disturbed import disturbed
+from handover.generator.model_based import model_based, save_templates
+from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot.handover import STATES
-from rvmon.cdv import Campaign, Control, Robot
+from rvmon.cdv import Campaign, Control, Robot, Strategy
 from rvmon.cdv.output import TEMPLATES
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
@@ -28,6 +29,17 @@ from rvmon.errors import not_installed
 
 FOREMOST = ("R1", "R2", "R3", "R4", "R5")
 """The paper's requirements, which both robots are judged by."""
+
+STRATEGIES: Mapping[str, Strategy] = {
+    "pseudorandom": pseudorandom,
+    "constrained": constrained,
+    "model-based": model_based,
+    "model-based-shortest": partial(model_based, policy="shortest"),
+    "model-based-fastest": partial(model_based, policy="fastest"),
+    "disturbed": disturbed,
+    "directed": lambda _count, _seed: directed(),  # files: all of them, always the same
+}
+"""The strategies, in the order of the columns of a table."""
 
 ROBOTS = {
     "correct": "Correct robot",

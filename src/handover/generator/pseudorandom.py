@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from typing import get_args
+from typing import Literal, get_args
 
 from handover.generator.abstract_test import (
     AbstractTest,
@@ -49,7 +49,7 @@ def pseudorandom(count: int, seed: int) -> tuple[AbstractTest, ...]:
     >>> [len(test.actions) for test in pseudorandom(3, seed=1)]
     [11, 11, 5]
     """
-    return tuple(_pseudorandom_test(_rng("pseudorandom", seed, i), i) for i in range(count))
+    return tuple(_test("pseudorandom", seed, place, (), LENGTH) for place in range(count))
 
 
 def constrained(count: int, seed: int) -> tuple[AbstractTest, ...]:
@@ -60,35 +60,24 @@ def constrained(count: int, seed: int) -> tuple[AbstractTest, ...]:
     >>> all(test.actions[:6] == PREFIX for test in constrained(3, seed=1))
     True
     """
-    return tuple(_constrained_test(_rng("constrained", seed, i), i) for i in range(count))
+    return tuple(_test("constrained", seed, place, PREFIX, TAIL_LENGTH) for place in range(count))
 
 
-def _rng(strategy: str, seed: int, index: int) -> random.Random:
-    return random.Random(f"{strategy}/{seed}/{index}")  # noqa: S311  # repeatable, not secret
-
-
-def _pseudorandom_test(rng: random.Random, index: int) -> AbstractTest:
-    actions = _random_actions(rng, rng.randint(*LENGTH))
+def _test(
+    strategy: Literal["pseudorandom", "constrained"],
+    seed: int,
+    place: int,
+    prefix: tuple[Action, ...],
+    lengths: tuple[int, int],
+) -> AbstractTest:
+    rng = random.Random(f"{strategy}/{seed}/{place}")  # noqa: S311  # repeatable, not secret
+    actions = tuple(_random_action(rng) for _ in range(rng.randint(*lengths)))
     return AbstractTest(
-        name=f"pseudorandom-{index:03}",
-        strategy="pseudorandom",
+        name=f"{strategy}-{place:03}",
+        strategy=strategy,
         seed=rng.getrandbits(32),
-        actions=actions,
+        actions=prefix + actions,
     )
-
-
-def _constrained_test(rng: random.Random, index: int) -> AbstractTest:
-    actions = _random_actions(rng, rng.randint(*TAIL_LENGTH))
-    return AbstractTest(
-        name=f"constrained-{index:03}",
-        strategy="constrained",
-        seed=rng.getrandbits(32),
-        actions=PREFIX + actions,
-    )
-
-
-def _random_actions(rng: random.Random, count: int) -> tuple[Action, ...]:
-    return tuple(_random_action(rng) for _ in range(count))
 
 
 def _random_action(rng: random.Random) -> Action:

@@ -191,7 +191,6 @@ def _known(figures: RobotSummary) -> Iterator[str]:
 TESTS = "tests"
 TEMPLATES = "templates"
 RUNS = "runs"
-SMALLEST = "smallest"
 """Folders of a campaign's folder."""
 
 TEXT_COLUMNS = 100
@@ -226,7 +225,7 @@ def dated_files(folder: Path) -> dict[Path, int]:
     """The files in folders of a campaign's folder, each with the instant of its last change."""
     return {
         path: path.stat().st_mtime_ns
-        for part in (TESTS, TEMPLATES, RUNS, SMALLEST)
+        for part in (TESTS, TEMPLATES, RUNS)
         for path in (folder / part).rglob("*")
         if path.is_file()
     }

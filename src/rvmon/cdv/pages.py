@@ -13,24 +13,16 @@ from pathlib import Path
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.campaign_page import Examples, campaign_page, comparable_jobs
 from rvmon.cdv.coverage import write_coverage
-from rvmon.cdv.gate import judge_test
-from rvmon.cdv.output import RUNS, SMALLEST, TESTS, typed
-from rvmon.cdv.plan import Job, Outcome, Played, Results
-from rvmon.cdv.play import Bench, Recorded, player, spooled
+from rvmon.cdv.output import RUNS, TESTS, typed
+from rvmon.cdv.plan import Job, Played, Results
+from rvmon.cdv.play import Bench, Recorded, spooled
 from rvmon.cdv.shrink import (
-    Shrunk,
     failure_of,
-    regression_test,
-    removed,
-    save_regression,
-    shrink,
-    small_name,
 )
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
-from rvmon.report.folder import made
 from rvmon.report.markup import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
@@ -74,7 +66,7 @@ def replay_page(
     command: str,
     others: Sequence[JudgedRun] = (),
     back: str = "",
-    smallest: Child = None,
+    smallest: str = "",
 ) -> str:
     """The page of one test.
 
@@ -85,11 +77,11 @@ def replay_page(
         command: replays it.
         others: runs that a failed attempt can be held against.
         back: address of the campaign's page.
-        smallest: the smallest test that fails alike, or how to find it.
+        smallest: the command that finds the smallest test that fails alike.
     """
     facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
-    if smallest is not None:
-        facts.append(("smallest test that fails alike", smallest))
+    if smallest:
+        facts.append(("smallest test that fails alike", e("code", None, smallest)))
     return run_page(
         RunPage(
             run=replay.judged,
@@ -130,7 +122,6 @@ def write_pages(
     examples: Examples,
     jobs: int | None,
     progress: Callable[[float], None],
-    shrinks: bool = False,
     spool: Path | None = None,
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
@@ -144,7 +135,6 @@ def write_pages(
         examples: the tests that get a page.
         jobs: processes that write pages; default: one per core.
         progress: called with how many pages are written.
-        shrinks: tests with a page that fail, and are not made to, are shrunk to `smallest/`.
         spool: has what was recorded of tests, which are not played again then.
 
     Returns:
@@ -160,7 +150,7 @@ def write_pages(
         if (one.job.robot, one.job.test.name) in shown and one.job.robot in judged
     ]
     written = parallel.execute(
-        [_page_of(one, folder, results, shrinks=shrinks) for one in wanted],
+        [_page_of(one, folder, results) for one in wanted],
         partial(_writer, folder, judged, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
@@ -169,12 +159,9 @@ def write_pages(
     otherwise: list[str] = []
     with closing(written):
         pairs = zip(wanted, written, strict=True)
-        for number, (one, (verdicts, shrunk)) in enumerate(pairs, start=1):
+        for number, (one, verdicts) in enumerate(pairs, start=1):
             test = one.job.test.name
             addresses[one.job.robot, test] = _address(one.job)
-            if shrunk is not None:
-                small = regression_test(campaign, one.job, shrunk)
-                save_regression(campaign, small, made(folder / SMALLEST))
             if verdicts != one.outcome.verdicts:
                 otherwise.append(test)
             progress(number)
@@ -207,36 +194,32 @@ class _Page:
         command: replays it.
         others: tests that passed what it failed.
         shrink: shrinks it; empty: there is no failure.
-        failed: its outcome, if it is to be shrunk now.
     """
 
     job: Job
     command: str
     others: tuple[Job, ...]
     shrink: str
-    failed: Outcome | None
 
 
-def _page_of(one: Played, folder: Path, results: Results, *, shrinks: bool) -> _Page:
+def _page_of(one: Played, folder: Path, results: Results) -> _Page:
     campaign = results.plan.campaign
     verdicts = one.outcome.verdicts
     failed = [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
     others = comparable_jobs(one.job, failed, results.played) if failed else ()
     fails = bool(one.job.test.removable) and failure_of(one.outcome) is not None
-    is_known = one.job.test.mutation is not None or not judge_test(one, ()).wrong
     return _Page(
         one.job,
         _command("replay", folder, one.job, campaign),
         tuple(others),
         _command("shrink", folder, one.job, campaign) if fails else "",
-        one.outcome if shrinks and fails and not is_known else None,
     )
 
 
 def _writer(
     folder: Path, robots: Mapping[str, Robot], spool: Path | None
-) -> Callable[[_Page], tuple[Mapping[str, Verdict], Shrunk[Test] | None]]:
-    """What writes a page, and returns the verdicts on its test and, if it is shrunk, the result."""
+) -> Callable[[_Page], Mapping[str, Verdict]]:
+    """What writes a page, and returns the verdicts on its test."""
     specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
     benches = {name: Bench(name, robots[name], spec) for name, spec in specs.items()}
     compared: dict[tuple[str, str], JudgedRun] = {}
@@ -250,17 +233,9 @@ def _writer(
             compared[key] = again.judged
         return compared[key]
 
-    def shrunk_of(page: _Page) -> Shrunk[Test] | None:
-        if page.failed is None:
-            return None
-        robot = page.job.robot
-        play = player({robot: robots[robot]}, None, None)
-        return shrink(page.job.test, page.failed, lambda test: play(Job(test, robot))[0])
-
-    def write(page: _Page) -> tuple[Mapping[str, Verdict], Shrunk[Test] | None]:
+    def write(page: _Page) -> Mapping[str, Verdict]:
         robot = page.job.robot
         replay = _spooled(spool, page.job) or play_again(page.job.test, benches[robot])
-        shrunk = shrunk_of(page)
         text = replay_page(
             replay,
             robot,
@@ -268,10 +243,10 @@ def _writer(
             command=page.command,
             others=[compared_with(job) for job in page.others],
             back=f"../{REPORT}",
-            smallest=_smallest(page, shrunk),
+            smallest=page.shrink,
         )
         write_whole(folder / _address(page.job), text)
-        return replay.recorded.report.verdicts, shrunk
+        return replay.recorded.report.verdicts
 
     return write
 
@@ -282,16 +257,6 @@ def _spooled(spool: Path | None, job: Job) -> Replay | None:
         return None
     recorded: Recorded = pickle.loads(path.read_bytes())  # noqa: S301 - a folder of this process
     return Replay(job.test, recorded)
-
-
-def _smallest(page: _Page, shrunk: Shrunk[Test] | None) -> Child:
-    """The way to the smallest test that fails alike, or the command that finds it."""
-    if shrunk is None:
-        return e("code", None, page.shrink) if page.shrink else None
-    test = page.job.test
-    address = f"../{SMALLEST}/{small_name(test)}.json"
-    link = e("a", {"href": address}, removed(test, shrunk.test))
-    return e("span", None, link, f", in which {shrunk.failure}")
 
 
 def _address(job: Job) -> str:

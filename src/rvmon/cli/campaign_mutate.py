@@ -7,9 +7,8 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.plan import plan
@@ -62,15 +61,13 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
     return int(bool(wrong) or (arguments.strict and report.survives))
 
 
-@dataclass(frozen=True, slots=True)
-class _Mutants:
+class _Mutants(NamedTuple):
     code: list[Mutant]
     spec: list[SpecMutant]
     equivalent: dict[str, str]
 
 
 def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
-    """The mutants that are asked for."""
     from rvmon.cdv.mutation.baseline import mutated_code, mutated_spec
     from rvmon.cdv.mutation.python_mutants import code_mutants
     from rvmon.cdv.mutation.spec_mutants import spec_mutants
@@ -100,7 +97,6 @@ def _reported(
     found: _Mutants,
     arguments: Namespace,
 ) -> MutationReport:
-    """What each suite sees of the mutants."""
     from rvmon.cdv.mutation.baseline import mutated_spec, record_suite
     from rvmon.cdv.mutation.play import play_mutants
     from rvmon.cdv.mutation.report import MutationReport, SuiteTried
@@ -139,7 +135,6 @@ def _reported(
 def _suites(
     campaign: Campaign, strategies: Sequence[str], arguments: Namespace
 ) -> dict[str, Sequence[Test]]:
-    """The tests of each suite, by its name."""
     tests = arguments.tests
     if isinstance(tests, Path):
         if arguments.strategy is not None:

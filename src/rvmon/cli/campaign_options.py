@@ -54,11 +54,6 @@ def _add_playing_options(parser: ArgumentParser) -> None:
         default="examples",
         help="of which runs to write a page: an example of each count, or all (%(default)s)",
     )
-    parser.add_argument(
-        "--shrink",
-        action="store_true",
-        help="with --out, shrink the tests with a page that fail, and are not made to",
-    )
 
 
 def add_closing_options(parser: ArgumentParser) -> None:

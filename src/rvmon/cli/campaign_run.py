@@ -109,7 +109,6 @@ def conduct(
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
     if arguments.suite is not None:
         amount = ["--suite", arguments.suite]
-    amount += ["--shrink"] if arguments.shrink else []
     same = [command, *amount, *others]
     again = typed(campaign.program, [*same, "--out", arguments.out])
     kept = None
@@ -205,7 +204,6 @@ def written(
             examples=examples,
             jobs=arguments.jobs,
             progress=show,
-            shrinks=arguments.shrink,
             spool=spool,
         )
     if otherwise:

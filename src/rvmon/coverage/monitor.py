@@ -8,11 +8,11 @@ from typing import Any
 
 from rvmon import native
 from rvmon.coverage.bins import Bins
-from rvmon.coverage.core_run import CoverageRun
 from rvmon.coverage.model import Hits, Model, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.monitor import Monitor
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recording import RecordingRun
 from rvmon.monitor.core.snapshot import Options
@@ -21,6 +21,14 @@ from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
+from rvmon.verdict.report import Report, report_of
+
+
+class _CoverageRun(Monitor):
+    """Takes samples as every monitor does, and makes no report."""
+
+    def _reported(self, end: int | None) -> Report:
+        return report_of((), (), end=end)
 
 
 class SpecCoverage:
@@ -151,7 +159,7 @@ class CoverageMonitor:
     def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
         self._watched = watched
         self._runs = [
-            CoverageRun(planned, compiled, Options(settle, sources, None))
+            _CoverageRun(planned, compiled, Options(settle, sources, None))
             for compiled, planned in watched.planned.items()
         ]
 

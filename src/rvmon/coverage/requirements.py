@@ -5,21 +5,72 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from struct import iter_unpack
+from typing import NamedTuple
+
+import numpy as np
 
 from rvmon import native
-from rvmon.coverage.core_run import Judged, Passages, attempts_of, passages_of
 from rvmon.coverage.model import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.explain.graph import Graph, graph_of
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.planned import PlannedCore, kept_of, planned_as
+from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore, kept_of, planned_as
+from rvmon.monitor.core.recorded import RECORD
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+
+Passages = Mapping[tuple[int, int], Hit]
+"""From a location of an automaton to one; from the first to itself: attempts began."""
+
+_OPEN = DECISIONS.index(Decision.OPEN)
+
+
+class Judged(NamedTuple):
+    """An attempt of which there surely was a trigger.
+
+    Attributes:
+        triggered: ticks.
+        decided: the same; `None` if it was not.
+        verdict: that it got.
+    """
+
+    triggered: int
+    decided: int | None
+    verdict: Verdict
+
+
+def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:
+    """The attempts of each requirement, but those in doubt."""
+    found: dict[str, list[Judged]] = {name: [] for name in ids}
+    records = np.frombuffer(run.records()[0], RECORD)
+    records = records[records["in_doubt"] == 0]
+    columns = ("requirement", "triggered", "decided", "verdict", "decision")
+    for number, triggered, decided, verdict, decision in zip(
+        *(records[column].tolist() for column in columns), strict=True
+    ):
+        at = None if decision == _OPEN else decided
+        found[ids[number]].append(Judged(triggered, at, VERDICTS[verdict]))
+    return found
+
+
+def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
+    """Where attempts of each requirement went in its automaton; as `attempts_of`."""
+    found: dict[str, Passages] = {}
+    for number, name in enumerate(ids):
+        locations, counted = run.passages(number)
+        found[name] = {
+            divmod(place, locations): Hit(count, first)
+            for place, (count, first) in enumerate(iter_unpack("=qq", counted))
+            if count
+        }
+    return found
 
 
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from types import CodeType
 
@@ -47,7 +47,7 @@ def mutants(
         raise RvmonError(f"{path}: {error.strerror}") from None
     except (SyntaxError, ValueError) as error:
         raise RvmonError(f"{path}: not Python: {error}") from None
-    chosen = [one for one in OPERATORS if not operators or one.name in operators]
+    chosen = {one: change for one, change in OPERATORS.items() if not operators or one in operators}
     strings = Strings(tree)
     ordinals: Counter[tuple[str, str]] = Counter()
     for name, body in _scopes(tree, "", constants):
@@ -98,11 +98,11 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _changes(
-    source: str, node: ast.AST, scope: Scope, operators: Collection[Operator]
+    source: str, node: ast.AST, scope: Scope, operators: Mapping[str, Operator]
 ) -> Iterator[tuple[str, str, str, str]]:
     """Kind, the code before and after, and the file after, of all changes to a node."""
-    for operator in operators:
-        for target, text in operator.changes(node, scope):
+    for kind, operator in operators.items():
+        for target, text in operator(node, scope):
             changed = _replaced(source, target, text)
             before, after = ast.unparse(target), ast.unparse(ast.parse(text))
             if before == after:
@@ -110,7 +110,7 @@ def _changes(
             if isinstance(target, ast.Constant | ast.Set):
                 # A constant says nothing by itself.
                 before, after = (_line(code, target.lineno) for code in (source, changed))
-            yield operator.name, before, after, changed
+            yield kind, before, after, changed
 
 
 def _line(source: str, number: int) -> str:

@@ -14,8 +14,7 @@ Sources of the operators, by the letters that the table cites:
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 _DEFINED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
@@ -130,20 +129,8 @@ def _below(node: ast.AST) -> Iterator[ast.AST]:
 Change = tuple["ast.expr | ast.stmt", str]
 """The node to replace, and the code to put there."""
 
-
-@dataclass(frozen=True, slots=True)
-class Operator:
-    """A kind of change.
-
-    Attributes:
-        name: in words.
-        literature: what the literature calls it, and where; empty: it is ours.
-        changes: of a node.
-    """
-
-    name: str
-    literature: str
-    changes: Callable[[ast.AST, Scope], Iterator[Change]]
+Operator = Callable[[ast.AST, "Scope"], Iterator[Change]]
+"""A kind of change: those of a node."""
 
 
 _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
@@ -308,25 +295,25 @@ def _wait(node: ast.AST, _: Scope) -> Iterator[Change]:
             yield wait, f"2 * ({ast.unparse(wait)})"
 
 
-OPERATORS = (
-    Operator("comparison", "ROR, relational operator replacement (KO, OLRUZ)", _comparison),
-    Operator("and/or", "LCR, logical connector replacement (KO, OLRUZ)", _and_or),
-    Operator("dropped operand", "ODL, operator deletion (DOA)", _dropped_operand),
-    Operator("dropped not", "COD, conditional operator deletion (DH)", _dropped_not),
-    Operator("off by one", "AOD, arithmetic operator deletion (DH)", _off_by_one),
-    Operator("operator", "AOR, arithmetic operator replacement (KO, OLRUZ)", _operator),
-    Operator("constant", "CRP, constant replacement (KO)", _constant),
-    Operator("number", "CRP, constant replacement (KO)", _number),
-    Operator("string", "CRP, constant replacement (KO)", _string),
-    Operator("swapped branches", "COI, conditional operator insertion (DH)", _swapped_branches),
-    Operator("negated condition", "COI, conditional operator insertion (DH)", _negated_condition),
-    Operator("function", "", _function),
-    Operator("dropped statement", "SDL, statement deletion (KO, DOL)", _dropped_statement),
-    Operator("dropped assignment", "SDL, statement deletion (KO, DOL)", _dropped_assignment),
-    Operator("dropped block", "SDL, statement deletion (KO, DOL)", _dropped_block),
-    Operator("dropped return", "SDL, statement deletion (KO, DOL)", _dropped_return),
-    Operator("early return", "RSR, return statement replacement (KO)", _early_return),
-    Operator("doubled statement", "", _doubled_statement),
-    Operator("wait", "MXT, a wait's time is modified (BCD)", _wait),
-)
+OPERATORS: Mapping[str, Operator] = {
+    "comparison": _comparison,  # ROR, relational operator replacement (KO, OLRUZ)
+    "and/or": _and_or,  # LCR, logical connector replacement (KO, OLRUZ)
+    "dropped operand": _dropped_operand,  # ODL, operator deletion (DOA)
+    "dropped not": _dropped_not,  # COD, conditional operator deletion (DH)
+    "off by one": _off_by_one,  # AOD, arithmetic operator deletion (DH)
+    "operator": _operator,  # AOR, arithmetic operator replacement (KO, OLRUZ)
+    "constant": _constant,  # CRP, constant replacement (KO)
+    "number": _number,  # CRP, constant replacement (KO)
+    "string": _string,  # CRP, constant replacement (KO)
+    "swapped branches": _swapped_branches,  # COI, conditional operator insertion (DH)
+    "negated condition": _negated_condition,  # COI, conditional operator insertion (DH)
+    "function": _function,
+    "dropped statement": _dropped_statement,  # SDL, statement deletion (KO, DOL)
+    "dropped assignment": _dropped_assignment,  # SDL, statement deletion (KO, DOL)
+    "dropped block": _dropped_block,  # SDL, statement deletion (KO, DOL)
+    "dropped return": _dropped_return,  # SDL, statement deletion (KO, DOL)
+    "early return": _early_return,  # RSR, return statement replacement (KO)
+    "doubled statement": _doubled_statement,
+    "wait": _wait,  # MXT, a wait's time is modified (BCD)
+}
 """In the order in which they are shown."""

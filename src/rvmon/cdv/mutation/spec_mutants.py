@@ -46,22 +46,6 @@ from rvmon.spec.print.printer import format_duration, format_formula
 from rvmon.trace.time import TICKS_PER_UNIT
 from rvmon.verdict.verdict import Verdict
 
-
-@dataclass(frozen=True, slots=True)
-class SpecOperator:
-    """A kind of change of a formula.
-
-    Attributes:
-        name: in words.
-        literature: what the literature calls it, and where; empty: it is ours.
-        changes: of a formula, at its outermost operator.
-    """
-
-    name: str
-    literature: str
-    changes: Callable[[Formula], Iterator[Formula]]
-
-
 _CONNECTIVES = {
     BinaryOp.AND: BinaryOp.OR,
     BinaryOp.OR: BinaryOp.AND,
@@ -174,17 +158,17 @@ def _no_deadline(formula: Formula) -> Iterator[Formula]:
             yield replace(formula, interval=Interval(low))
 
 
-SPEC_OPERATORS = (
-    SpecOperator("connective", "LRO, logical operator reference (BOY)", _connective),
-    SpecOperator("dropped operand", "MCO, missing condition (BOY)", _dropped_operand),
-    SpecOperator("dropped not", "ENO, expression negation (BOY)", _dropped_not),
-    SpecOperator("negated", "SNO, simple expression negation (BOY)", _negated),
-    SpecOperator("comparison", "RRO, relational operator reference (BOY)", _comparison),
-    SpecOperator("threshold", "", _threshold),
-    SpecOperator("temporal operator", "", _temporal),
-    SpecOperator("bound", "change of a guard's constant (ALN)", _bound),
-    SpecOperator("no deadline", "guard dropped (ALN)", _no_deadline),
-)
+SPEC_OPERATORS: Mapping[str, Callable[[Formula], Iterator[Formula]]] = {
+    "connective": _connective,  # LRO, logical operator reference (BOY)
+    "dropped operand": _dropped_operand,  # MCO, missing condition (BOY)
+    "dropped not": _dropped_not,  # ENO, expression negation (BOY)
+    "negated": _negated,  # SNO, simple expression negation (BOY)
+    "comparison": _comparison,  # RRO, relational operator reference (BOY)
+    "threshold": _threshold,
+    "temporal operator": _temporal,
+    "bound": _bound,  # change of a guard's constant (ALN)
+    "no deadline": _no_deadline,  # guard dropped (ALN)
+}
 """In the order in which they are applied."""
 
 
@@ -196,9 +180,9 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']
     """
-    for operator in SPEC_OPERATORS:
-        for changed in operator.changes(formula):
-            yield operator.name, changed
+    for name, change in SPEC_OPERATORS.items():
+        for changed in change(formula):
+            yield name, changed
     match formula:
         case Unary(operand=operand) | Amount(value=None, operand=operand):
             for name, changed in changes(operand):
