@@ -210,7 +210,7 @@ if __name__ == "__main__":
 
 @pytest.mark.process
 def test_a_campaign_shrinks_what_fails_and_its_page_says_so(spec, tmp_path, monkeypatch, capsys):
-    """The page says how the smallest test is found; that of pytest fails until the robot is fixed."""
+    """The page says how the smallest test is found; its test fails until the robot is fixed."""
     script, out = tmp_path / "jumps.py", tmp_path / "out"
     script.write_text(CAMPAIGN)
 
