@@ -162,7 +162,7 @@ def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
     told = re.search(r"([\d,]+) s of them with physics", " ".join(capsys.readouterr().out.split()))
     page = (tmp_path / "out/report.html").read_text()
     assert told is not None
-    assert f"{told[1]} s of physics" in page
+    assert f"{told[1]} s of them with physics" in page
 
 
 def test_a_strategy_of_another_robot_is_refused(capsys):

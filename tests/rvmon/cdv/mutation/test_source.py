@@ -54,9 +54,8 @@ def test_operators(tmp_path, kind, body, after):
 
 
 def test_every_operator_is_tried():
-    """None is without a case above, and each name is there once."""
-    assert {kind for kind, _, _ in CHANGES} == {one.name for one in OPERATORS}
-    assert len({one.name for one in OPERATORS}) == len(OPERATORS)
+    """None is without a case above."""
+    assert {kind for kind, _, _ in CHANGES} == set(OPERATORS)
 
 
 @pytest.mark.parametrize(
