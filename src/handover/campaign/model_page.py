@@ -85,7 +85,7 @@ def model_sections(
         code.append(_strategy_row([(test, next(found)) for test in own], addresses))
     titles = ("", "some run shows it", "random runs that do", "all runs keep to it", "that is")
     tables = [
-        component("table", head, rows, texts=len(head))
+        component("named_rows", head, rows)
         for head, rows in ((titles, claimed), (("", "there are", "so it is", "the others"), code))
     ]
     return [_SECTION.format(tables[0], SIMULATED, SIMULATED_UNITS * 0.05, count, tables[1])]

@@ -33,7 +33,7 @@ class Examples:
 
     Attributes:
         jobs: without repetition, in the order of the plan.
-        by_cell: the first test behind each count that is not zero.
+        by_cell: a test behind each count that is not zero.
     """
 
     jobs: tuple[Job, ...]
@@ -43,7 +43,7 @@ class Examples:
 def choose_examples(
     played: Sequence[Played], *, also: Collection[str] = (), every: bool = False
 ) -> Examples:
-    """The first test behind each count, every one with a planted fault, and what came out wrong.
+    """Few tests that stand behind all counts, those with a planted fault, and what came out wrong.
 
     A test that hung, or ended its process, has no page: it cannot be played again here.
 
@@ -52,22 +52,35 @@ def choose_examples(
         also: names of tests that get a page whatever became of them.
         every: whether all others are shown as well.
     """
-    by_cell: dict[Cell, Job] = {}
-    shown: dict[tuple[str, str], Job] = {}
-    for one in played:
-        job, outcome = one.job, one.outcome
-        if outcome.ending in (Ending.HUNG, Ending.LOST):
-            continue
-        wanted = every or job.test.name in also
-        wanted |= job.test.mutation is not None or outcome.error is not None
-        wanted |= bool(differences(job.test.expected, outcome.verdicts))
-        if job.test.mutation is None:
-            for requirement, verdict in outcome.verdicts.items():
-                cell = (job.robot, job.test.strategy, requirement, verdict)
-                wanted |= by_cell.setdefault(cell, job) is job
-        if wanted:
-            shown[job.robot, job.test.name] = job
-    return Examples(tuple(shown.values()), by_cell)
+    playable = [one for one in played if one.outcome.ending not in (Ending.HUNG, Ending.LOST)]
+    shown = {
+        place
+        for place, one in enumerate(playable)
+        if every
+        or one.job.test.name in also
+        or one.job.test.mutation is not None
+        or one.outcome.error is not None
+        or differences(one.job.test.expected, one.outcome.verdicts)
+    }
+    cells = [_cells_of(one) for one in playable]
+    by_cell = {
+        cell: playable[place].job for place in sorted(shown, reverse=True) for cell in cells[place]
+    }
+    left = set().union(*cells) - by_cell.keys()
+    while left:
+        place = max(range(len(cells)), key=lambda one: (len(cells[one] & left), -one))
+        shown.add(place)
+        by_cell |= dict.fromkeys(cells[place] & left, playable[place].job)
+        left -= cells[place]
+    return Examples(tuple(playable[place].job for place in sorted(shown)), by_cell)
+
+
+def _cells_of(one: Played) -> set[Cell]:
+    """The counts that a test is part of; with a planted fault it counts in none."""
+    job = one.job
+    if job.test.mutation is not None:
+        return set()
+    return {(job.robot, job.test.strategy, *verdict) for verdict in one.outcome.verdicts.items()}
 
 
 def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -> list[Job]:
