@@ -11,6 +11,7 @@ from rvmon.timed.language.bodies import Bodies, number, variable_type
 from rvmon.timed.language.layout import (
     Extents,
     Value,
+    check_count,
     count_of,
     default_of,
     laid_out,
@@ -99,11 +100,7 @@ class Functions:
             ModelError: the arguments do not fit, or the function calls itself.
         """
         text: syntax.FunctionText = symbol.written
-        if len(text.parameters) != len(written.arguments):
-            count = len(text.parameters)
-            message = f"`{text.name}` takes {count} argument{'' if count == 1 else 's'}"
-            message += f", {len(written.arguments)} given"
-            raise model_error("TA015", message, written.span)
+        check_count(text.name, text.parameters, written.arguments, written.span)
         bound: list[Symbol | None] = []
         values: list[Expression] = []
         chosen: list[Expression] = []

@@ -10,7 +10,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.declare import Findings, check_range
 from rvmon.timed.language.document import Document
-from rvmon.timed.language.layout import MAX_VALUES, count_of, refuse_double, values_of
+from rvmon.timed.language.layout import MAX_VALUES, check_count, count_of, refuse_double, values_of
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import leaves
 from rvmon.timed.model.operators import BaseType
@@ -120,10 +120,7 @@ def _bind(
         fix = did_you_mean(family.template.name, list(families))
         message = f"no template `{family.template.name}`"
         raise model_error("TA002", message, family.template.span, fix)
-    if len(target.parameters) != len(family.arguments):
-        count = len(target.parameters)
-        message = f"`{target.name}` takes {count} argument{'' if count == 1 else 's'}"
-        raise model_error("TA015", f"{message}, {len(family.arguments)} given", family.span)
+    check_count(target.name, target.parameters, family.arguments, family.span)
     bound: list[Symbol] = []
     own = Scope(top)  # a parameter's type may speak of the parameters before it
     for parameter, written in zip(target.parameters, family.arguments, strict=True):

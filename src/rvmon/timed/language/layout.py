@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Sized
 from dataclasses import replace
 from math import prod
 from typing import Any, Protocol
@@ -158,6 +158,14 @@ def values_of(kind: ResolvedType, span: Span) -> range:
         fix = "give a small range: int[low, high]"
         raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, fix)
     return range(kind.low, kind.high + 1)
+
+
+def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> None:
+    """Refuse too few or too many arguments."""
+    count = len(parameters)
+    if count != len(arguments):
+        message = f"`{name}` takes {count} argument{'' if count == 1 else 's'}"
+        raise model_error("TA015", f"{message}, {len(arguments)} given", span)
 
 
 def refuse_double(name: str, span: Span, scope: Scope) -> None:

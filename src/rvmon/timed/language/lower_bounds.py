@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.expressions import ClockCompare, ClockOp, Constant, Reset
+from rvmon.timed.model.expressions import ClockCompare, ClockOp, Constant
 from rvmon.timed.model.guards import resets_in
-from rvmon.timed.model.network import Automaton, Channel, Edge, Guard
+from rvmon.timed.model.network import Automaton, Channel, Edge
 from rvmon.timed.model.rules import model_error
 
 _LOWER = (ClockOp.GE, ClockOp.GT)
@@ -35,14 +35,18 @@ def without_lower_bounds(
 def _without(
     automaton: Automaton, others: Sequence[Automaton], channels: Sequence[Channel]
 ) -> Automaton:
-    lower = [_lower(place.invariant) for place in automaton.locations]
+    lower = [
+        [bound for bound in place.invariant.clocks if bound.op in _LOWER]
+        for place in automaton.locations
+    ]
     if not any(lower):
         return automaton
     for place, bounds in zip(automaton.locations, lower, strict=True):
         for bound in bounds:
             if not isinstance(bound.bound, Constant):
                 raise _refusal("the lower bound of this invariant is not constant", place.span)
-            if any(bound.clock == r.clock for a in others for e in a.edges for r in _resets(e)):
+            sets = (r for a in others for e in a.edges for r in resets_in(e.updates))
+            if any(bound.clock == reset.clock for reset in sets):
                 message = "an invariant bounds a clock from below that another automaton sets"
                 raise _refusal(message, place.span)
     start = automaton.locations[automaton.initial]
@@ -50,26 +54,17 @@ def _without(
         message = "an invariant of the initial location is false at time 0"
         raise model_error("TA014", message, start.span, "weaken it, or start elsewhere")
     edges = [_guarded(edge, lower[edge.target], channels) for edge in automaton.edges]
-    locations = tuple(
-        replace(place, invariant=_upper(place.invariant)) for place in automaton.locations
+    locations = []
+    for place in automaton.locations:
+        upper = tuple(bound for bound in place.invariant.clocks if bound.op not in _LOWER)
+        locations.append(replace(place, invariant=replace(place.invariant, clocks=upper)))
+    return replace(
+        automaton, locations=tuple(locations), edges=tuple(e for e in edges if e is not None)
     )
-    return replace(automaton, locations=locations, edges=tuple(e for e in edges if e is not None))
 
 
 def _refusal(message: str, span: Span | None) -> Exception:
     return model_error("TA009", message, span, "put it on the guards of the edges that lead here")
-
-
-def _lower(invariant: Guard) -> list[ClockCompare]:
-    return [bound for bound in invariant.clocks if bound.op in _LOWER]
-
-
-def _upper(invariant: Guard) -> Guard:
-    return replace(invariant, clocks=tuple(b for b in invariant.clocks if b.op not in _LOWER))
-
-
-def _resets(edge: Edge) -> list[Reset]:
-    return list(resets_in(edge.updates))
 
 
 def _holds(bound: ClockCompare, value: int) -> bool:
@@ -83,7 +78,7 @@ def _guarded(
     """The edge, taken only where the bounds hold behind it; `None` if they never do."""
     added: list[ClockCompare] = []
     for bound in bounds:
-        resets = [reset for reset in _resets(edge) if reset.clock == bound.clock]
+        resets = [reset for reset in resets_in(edge.updates) if reset.clock == bound.clock]
         if not resets:
             added.append(bound)
             continue

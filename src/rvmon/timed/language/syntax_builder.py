@@ -202,14 +202,8 @@ class SyntaxBuilder(QueryBuilder):
         low, high = items or (None, None)
         return TypeText(BaseType.INT, self._span(meta), low, high)
 
-    def bool_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        return TypeText(BaseType.BOOL, self._span(meta))
-
-    def clock_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        return TypeText(BaseType.CLOCK, self._span(meta))
-
-    def channel_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        return TypeText(BaseType.CHANNEL, self._span(meta))
+    def plain_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        return TypeText(BaseType(items[0]), self._span(meta))
 
     def record_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         fields = _all(items, syntax.Declaration)

@@ -10,7 +10,7 @@ from rvmon.automaton.construct import Budget as TableBudget
 from rvmon.automaton.construct import DoesNotCloseError, construct
 from rvmon.automaton.location import NOW
 from rvmon.formula.alphabet import alphabet_of
-from rvmon.formula.core import horizon
+from rvmon.formula.core import horizon, looks_back
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation
@@ -135,6 +135,8 @@ def _problem(
     alphabet = alphabet_of(obligation.owed)
     labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
+    if looks_back(obligation.owed):
+        raise NotExpressibleError("it looks back from what lies ahead")
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
     if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):

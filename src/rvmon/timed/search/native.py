@@ -243,17 +243,15 @@ def _rounded(constraint: Constraint, *, uppers: bool) -> Constraint:
     )
 
 
+_ENDINGS = {
+    _End.REACHED: Ending.REACHED,
+    _End.DEAD: Ending.DEADLOCK,
+    _End.IDLE: Ending.IDLE,
+    _End.STUCK: Ending.TIME_LOCK,
+    _End.LOOP: Ending.LOOP,
+    _End.ZENO: Ending.ZENO_LOOP,
+}
+
+
 def _ending(end: _End, last: State) -> Ending:
-    match end:
-        case _End.DEAD:
-            return Ending.TIME_LOCK if last.is_time_bounded else Ending.DEADLOCK
-        case _End.IDLE:
-            return Ending.IDLE
-        case _End.STUCK:
-            return Ending.TIME_LOCK
-        case _End.LOOP:
-            return Ending.LOOP
-        case _End.ZENO:
-            return Ending.ZENO_LOOP
-        case _:
-            return Ending.REACHED
+    return Ending.TIME_LOCK if end is _End.DEAD and last.is_time_bounded else _ENDINGS[end]
