@@ -27,6 +27,9 @@ from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 
 MANIFEST = Path(__file__).with_name("uppaal_originals.txt")
+_WORDS = re.compile(r" \(\d+ places\)|`[^`]*`|\d+")
+"""What differs between findings of one kind."""
+
 _MODEL = re.compile(r"  ([0-9a-f]{16}) (.+)")
 
 
@@ -72,9 +75,7 @@ def main() -> None:
         try:
             network = load_network(path)
         except ModelError as error:
-            reasons.update(
-                {(d.code, re.sub(r"`[^`]*`|\d+", "…", d.message)) for d in error.diagnostics}
-            )
+            reasons.update({(d.code, _WORDS.sub("", d.message)) for d in error.diagnostics})
             continue
         read += 1
         queries["left out"] += sum(warning.code == "TA020" for warning in network.warnings)

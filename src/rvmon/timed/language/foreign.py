@@ -37,8 +37,8 @@ _RATES: Reason = (
 )
 _TEXTS: Reason = ("texts are not supported", "use numbers")
 _PRIORITIES: Reason = (
-    "priorities are not supported",
-    "order the steps by guards or by committed locations",
+    "priorities are not supported: a step would depend on which others the clocks forbid",
+    "order the steps by guards on variables, or by committed locations",
 )
 
 _DECLARING: dict[str, Reason] = {
