@@ -29,7 +29,7 @@ bin_without_values = Breach(
 bin_needs_expression = Breach(
     BIN,
     "`{}` is no formula, and the coverpoint has no expression",
-    "write `coverpoint NAME = expression {…}`",
+    "write `coverpoint NAME = expression {{…}}`",
 )
 looks_ahead = Breach(
     BIN,
@@ -52,7 +52,7 @@ sampled_apart = Breach(
     "name the instants of the cross: add `upon` to it",
 )
 unwanted_in_point = Breach(
-    BIN, "a coverpoint marks its bins inside the brackets", "write `{ignore name: values}`"
+    BIN, "a coverpoint marks its bins inside the brackets", "write `{{ignore name: values}}`"
 )
 
 
@@ -62,21 +62,14 @@ def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     return finding(CROSS, f"no coverpoint named `{name}`", span, fix=fix)
 
 
-def same_point(span: Span, name: str) -> Diagnostic:
-    """A cross that names a coverpoint twice."""
-    return finding(CROSS, f"`{name}` stands twice in one cross", span, fix="name it once")
+same_point = Breach(CROSS, "`{}` stands twice in one cross", "name it once")
 
 
-def too_many_combinations(span: Span, count: int) -> Diagnostic:
-    """A cross that is too large."""
-    return finding(
-        CROSS,
-        f"{count:,} combinations are more than {MOST_COMBINATIONS:,}",
-        span,
-        fix="cross fewer coverpoints, or give them fewer bins",
-    )
-
-
+too_many_combinations = Breach(
+    CROSS,
+    f"{{1:,}} combinations are more than {MOST_COMBINATIONS:,}",
+    "cross fewer coverpoints, or give them fewer bins",
+)
 bad_condition = Breach(
     CROSS,
     "`{}` is no condition on bins",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.rule import Breach, Rule, finding
 
 DEEPEST = 20
 """Longer chains of imports are refused."""
@@ -16,24 +16,16 @@ IMPORT = Rule("RV016", "import", Severity.ERROR)
 RULES = (IMPORT,)
 
 
-def unreadable(span: Span, target: str, reason: str) -> Diagnostic:
-    """A file that cannot be read."""
-    return finding(
-        IMPORT,
-        f"cannot read `{target}`: {reason}",
-        span,
-        fix="the path is relative to the file that imports",
-    )
+unreadable = Breach(
+    IMPORT, "cannot read `{1}`: {2}", "the path is relative to the file that imports"
+)
 
 
-def outside(span: Span, target: str, root: str) -> Diagnostic:
-    """A file that does not belong to the project."""
-    return finding(
-        IMPORT,
-        f"cannot read `{target}`: it lies outside {root}, the folder of the project",
-        span,
-        fix="copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
-    )
+outside = Breach(
+    IMPORT,
+    "cannot read `{1}`: it lies outside {2}, the folder of the project",
+    "copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
+)
 
 
 def unknown_library(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
@@ -46,22 +38,14 @@ def unknown_library(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     )
 
 
-def circle(here: Span, first: Span) -> Diagnostic:
-    """Files that import each other."""
-    return finding(
-        IMPORT,
-        "files import each other in a circle",
-        here,
-        Label(first, "it starts here"),
-        fix="move what both need into a third file",
-    )
-
-
-def too_deep(span: Span) -> Diagnostic:
-    """A chain of imports that is too long."""
-    return finding(
-        IMPORT,
-        f"imports are nested more than {DEEPEST} levels deep",
-        span,
-        fix="import the last file directly",
-    )
+circle = Breach(
+    IMPORT,
+    "files import each other in a circle",
+    "move what both need into a third file",
+    "it starts here",
+)
+too_deep = Breach(
+    IMPORT,
+    f"imports are nested more than {DEEPEST} levels deep",
+    "import the last file directly",
+)

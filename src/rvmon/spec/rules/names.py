@@ -4,24 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.rule import Breach, Rule, finding
 
 RESERVED_NAME = Rule("RV010", "reserved-name", Severity.ERROR)
 
 
-def reserved(span: Span) -> Diagnostic:
-    """A name was expected."""
-    return finding(
-        RESERVED_NAME,
-        f"`{span.text}` is a word of the language, expected a name",
-        span,
-        fix=f"choose another name or quote it: `` `{span.text}` ``",
-    )
-
-
+reserved = Breach(
+    RESERVED_NAME,
+    "`{}` is a word of the language, expected a name",
+    "choose another name or quote it: `` `{}` ``",
+)
 DOUBLE_NAME = Rule("RV011", "double-name", Severity.ERROR)
 
 UNKNOWN_NAME = Rule("RV012", "unknown-signal", Severity.ERROR)
@@ -45,15 +40,8 @@ RULES = (
 )
 
 
-def double(name: str, kind: str, here: Span, first: Span) -> Diagnostic:
-    """A second declaration; `kind` says what of, such as `requirement`."""
-    return finding(
-        DOUBLE_NAME,
-        f"{kind} `{name}` is declared twice",
-        here,
-        Label(first, "first here"),
-        fix="rename one of them",
-    )
+double = Breach(DOUBLE_NAME, "{2} `{1}` is declared twice", "rename one of them", "first here")
+"""A second declaration: its name, and what of, such as `requirement`."""
 
 
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
@@ -75,9 +63,7 @@ def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
     return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, fix=fix)
 
 
-def unknown_function(span: Span, name: str, fix: str) -> Diagnostic:
-    """A call of nothing."""
-    return finding(UNKNOWN_FUNCTION, f"no function or macro named `{name}`", span, fix=fix)
+unknown_function = Breach(UNKNOWN_FUNCTION, "no function or macro named `{1}`", "{2}")
 
 
 def recursive(names: list[str], span: Span) -> Diagnostic:
@@ -91,19 +77,10 @@ def recursive(names: list[str], span: Span) -> Diagnostic:
     )
 
 
-def double_item(word: str, here: Span, first: Span) -> Diagnostic:
-    """A second item of a kind that stands once in a file."""
-    return finding(DOUBLE_NAME, f"a file has one `{word}` item", here, Label(first, "first here"))
+double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
 
 
-def built_in(span: Span) -> Diagnostic:
-    """A macro with the name of a function."""
-    return finding(
-        DOUBLE_NAME,
-        f"`{span.text}` is a function of the language",
-        span,
-        fix="choose another name",
-    )
+built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose another name")
 
 
 def unused(span: Span, kind: str) -> Diagnostic:

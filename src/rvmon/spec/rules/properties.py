@@ -41,16 +41,11 @@ no_path_formula = Breach(
 path_in_number = Breach(PATH_OUTSIDE, "a path quantifier stands inside `{}`")
 
 
-def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
-    """A name that may be a slip."""
-    return finding(
-        FOREIGN_NAME,
-        f"`{name}` is no name of this file and is taken for a clock or location of a model",
-        span,
-        fix=close,
-    )
-
-
+foreign_name = Breach(
+    FOREIGN_NAME,
+    "`{1}` is no name of this file and is taken for a clock or location of a model",
+    "{2}",
+)
 no_property = Breach(
     NO_RESPONSE,
     "there is no property to derive the monitor from",
@@ -126,16 +121,7 @@ def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
     return finding(NO_RESPONSE, message, span, fix="write the requirement with `upon` and `then`")
 
 
-def no_role(span: Span, name: str) -> Diagnostic:
-    """A name without a role."""
-    return finding(
-        NO_RESPONSE,
-        f"`{name}` is declared neither `input` nor `output`",
-        span,
-        fix="declare its role",
-    )
-
-
+no_role = Breach(NO_RESPONSE, "`{1}` is declared neither `input` nor `output`", "declare its role")
 no_output = Breach(
     NO_RESPONSE,
     "the property reads no output: the system has no obligation",

@@ -62,17 +62,24 @@ class Breach:
 
     Attributes:
         rule: the rule.
-        message: one sentence: what is wrong; `{}` is the text of the place, shortened.
-        fix: how to fix it, or empty.
+        message: one sentence: what is wrong; `{}` is the text of the place, shortened, `{1}` and
+            so on what else is given.
+        fix: how to fix it, or empty; filled in like the message.
+        other: what is said of a second place.
     """
 
     rule: Rule
     message: str
     fix: str = ""
+    other: str = ""
 
-    def __call__(self, span: Span) -> Diagnostic:
-        """The finding at a place."""
-        return finding(self.rule, self.message.format(short(span.text)), span, fix=self.fix)
+    def __call__(self, *given: object) -> Diagnostic:
+        """The finding at the first place that is given."""
+        place, *others = [one for one in given if isinstance(one, Span)]
+        words = [short(place.text), *(one for one in given if not isinstance(one, Span))]
+        labels = [Label(other, self.other) for other in others]
+        message, fix = self.message.format(*words), self.fix.format(*words)
+        return finding(self.rule, message, place, *labels, fix=fix)
 
 
 MOST = 100

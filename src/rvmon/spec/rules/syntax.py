@@ -89,26 +89,16 @@ def comparison_chain(left: Span, first: str, middle: Span, second: str, right: S
     )
 
 
-def too_deep(span: Span, limit: int) -> Diagnostic:
-    """More levels of nesting than are read."""
-    return finding(
-        TOO_DEEP,
-        f"this is nested more than {limit} levels deep",
-        span,
-        fix="split it into several requirements",
-    )
+too_deep = Breach(
+    TOO_DEEP, "this is nested more than {1} levels deep", "split it into several requirements"
+)
 
 
-def too_large(span: Span, limit: int) -> Diagnostic:
-    """More operators than are read, macros expanded."""
-    return finding(
-        TOO_DEEP,
-        f"this has more than {limit:,} operators once its macros are expanded",
-        span,
-        fix="split it into several requirements",
-    )
-
-
+too_large = Breach(
+    TOO_DEEP,
+    "this has more than {1:,} operators once its macros are expanded",
+    "split it into several requirements",
+)
 too_much_work = Breach(
     TOO_DEEP,
     "the macros of this file expand to more than can be checked",

@@ -74,33 +74,22 @@ def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
     )
 
 
-def not_positive(span: Span, what: str) -> Diagnostic:
-    """A duration of 0 where it makes no sense; `what` names its use."""
-    return finding(
-        EMPTY_INTERVAL, f"{what} must be longer than 0", span, fix="give it some time: `1 ms`"
-    )
+not_positive = Breach(EMPTY_INTERVAL, "{1} must be longer than 0", "give it some time: `1 ms`")
+"""A duration of 0 where it makes no sense: its use."""
 
 
-def late_weak_window(operator: str, span: Span) -> Diagnostic:
-    """`W` or `M` with a window after now."""
-    return finding(
-        LATE_WEAK_WINDOW,
-        f"`{operator}` takes no window that starts after 0",
-        span,
-        fix="let it start at 0, or write it with `U` or `R`",
-    )
+late_weak_window = Breach(
+    LATE_WEAK_WINDOW,
+    "`{1}` takes no window that starts after 0",
+    "let it start at 0, or write it with `U` or `R`",
+)
 
 
-def step_in_held_time(operator: str, span: Span) -> Diagnostic:
-    """`X` or `Y` in held time."""
-    return finding(
-        STEP_IN_HELD_TIME,
-        f"`{operator}` has no meaning in `time held`: it would speak of the next nanosecond",
-        span,
-        fix="give a duration (`within`, `once[0, D]`) or declare `time sampled`",
-    )
-
-
+step_in_held_time = Breach(
+    STEP_IN_HELD_TIME,
+    "`{1}` has no meaning in `time held`: it would speak of the next nanosecond",
+    "give a duration (`within`, `once[0, D]`) or declare `time sampled`",
+)
 ago_of_samples = Breach(
     STEP_IN_HELD_TIME,
     "`{}` asks for an instant at which there may be no sample",
@@ -108,11 +97,8 @@ ago_of_samples = Breach(
 )
 
 
-def no_window(operator: str, span: Span) -> Diagnostic:
-    """An interval at an operator that takes none."""
-    return finding(
-        NO_WINDOW,
-        f"`{operator}` takes no interval",
-        span,
-        fix="use `eventually`, `always`, `once` or `historically` with it",
-    )
+no_window = Breach(
+    NO_WINDOW,
+    "`{1}` takes no interval",
+    "use `eventually`, `always`, `once` or `historically` with it",
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding, short
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 NO_VALUE = Rule("RV028", "no-value-to-capture", Severity.WARNING)
 
@@ -17,15 +17,11 @@ ONCE_CAPTURED = Rule("RV049", "captured-once", Severity.WARNING)
 RULES = (NO_VALUE, AT_TRIGGER, AT_FIRST, ONCE_CAPTURED)
 
 
-def no_value(span: Span, event: str) -> Diagnostic:
-    """A capture of a field of an event that the trigger does not speak of."""
-    return finding(
-        NO_VALUE,
-        f"`{short(span.text)}` has no value unless `{event}` occurs at the trigger, which does "
-        "not require it",
-        span,
-        fix=f"let `{event}` trigger it: `upon {event} and …`",
-    )
+no_value = Breach(
+    NO_VALUE,
+    "`{0}` has no value unless `{1}` occurs at the trigger, which does not require it",
+    "let `{1}` trigger it: `upon {1} and …`",
+)
 
 
 def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic:

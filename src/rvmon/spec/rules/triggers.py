@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
@@ -54,26 +54,18 @@ end_in_scope = Breach(
 )
 
 
-def one_instant(span: Span) -> Diagnostic:
-    """A consequent without a word of time."""
-    text = short(span.text)
-    return finding(
-        ONE_INSTANT,
-        f"`{text}` is checked at one instant only",
-        span,
-        fix=f"write for how long or until when (`within D`, `for D`), or `immediately {text}`",
-    )
+one_instant = Breach(
+    ONE_INSTANT,
+    "`{}` is checked at one instant only",
+    "write for how long or until when (`within D`, `for D`), or `immediately {}`",
+)
 
 
-def bare_instant(span: Span) -> Diagnostic:
-    """A requirement that is one formula, without a word of time."""
-    text = short(span.text)
-    return finding(
-        ONE_INSTANT,
-        f"`{text}` is checked at one instant only, the start of the run",
-        span,
-        fix=f"did you mean `always ({text})`? If the start is meant, write `immediately ({text})`",
-    )
+bare_instant = Breach(
+    ONE_INSTANT,
+    "`{0}` is checked at one instant only, the start of the run",
+    "did you mean `always ({0})`? If the start is meant, write `immediately ({0})`",
+)
 
 
 def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
@@ -88,15 +80,9 @@ def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
     )
 
 
-def double_clause(word: str, here: Span, first: Span) -> Diagnostic:
-    """A second clause of a kind."""
-    return finding(
-        DOUBLE_CLAUSE,
-        f"a requirement has one `{word}` clause",
-        here,
-        Label(first, "first here"),
-        fix="join them, or remove one",
-    )
+double_clause = Breach(
+    DOUBLE_CLAUSE, "a requirement has one `{1}` clause", "join them, or remove one", "first here"
+)
 
 
 def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
@@ -105,14 +91,11 @@ def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
     return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, fix=fix)
 
 
-def bad_run_share(span: Span) -> Diagnostic:
-    """A share of runs that no sample can decide, or that is no percentage."""
-    return finding(
-        RUN_SHARE,
-        f"`{short(span.text)}` is no percentage between 0 and 100",
-        span,
-        fix="write `in at least 95 % of runs`; for all runs the clause is left out",
-    )
+bad_run_share = Breach(
+    RUN_SHARE,
+    "`{}` is no percentage between 0 and 100",
+    "write `in at least 95 % of runs`; for all runs the clause is left out",
+)
 
 
 def never_read(span: Span, kind: str) -> Diagnostic:

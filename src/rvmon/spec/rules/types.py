@@ -66,16 +66,11 @@ compared_truth = Breach(
 )
 
 
-def age_alone(span: Span) -> Diagnostic:
-    """`age(x)` other than compared with a duration."""
-    return finding(
-        WRONG_TYPE,
-        f"`{short(span.text)}` can only be compared with a constant duration, by < <= > >=",
-        span,
-        fix=f"write `{short(span.text)} > 200 ms`",
-    )
-
-
+age_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant duration, by < <= > >=",
+    "write `{} > 200 ms`",
+)
 now_alone = Breach(
     WRONG_TYPE,
     "`{}` is not what `now` is for: it is compared with a duration, by < <= > >=",
@@ -118,27 +113,18 @@ extreme_alone = Breach(
 )
 
 
-def count_of_state(span: Span) -> Diagnostic:
-    """A count of what holds for a while, at each tick."""
-    text = short(span.text)
-    return finding(
-        WRONG_TYPE,
-        f"in `time held` `{text}` holds at every nanosecond of a stretch, and is not counted",
-        span,
-        fix=f"count where it begins, `rise({text})`, or measure it: `duration({text}, …)`",
-    )
+count_of_state = Breach(
+    WRONG_TYPE,
+    "in `time held` `{0}` holds at every nanosecond of a stretch, and is not counted",
+    "count where it begins, `rise({0})`, or measure it: `duration({0}, …)`",
+)
 
 
-def amount_of_future(span: Span, name: str) -> Diagnostic:
-    """An amount of what is not known at once."""
-    return finding(
-        WRONG_TYPE,
-        f"`{name}` is of the past, and `{short(span.text)}` speaks of the future",
-        span,
-        fix="count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
-    )
-
-
+amount_of_future = Breach(
+    WRONG_TYPE,
+    "`{1}` is of the past, and `{0}` speaks of the future",
+    "count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
+)
 choice_alone = Breach(
     WRONG_TYPE,
     "`{}` is a choice, expected one number",
@@ -146,34 +132,24 @@ choice_alone = Breach(
 )
 
 
-def many_outcomes(span: Span, most: int) -> Diagnostic:
-    """Choices within choices."""
-    return finding(
-        WRONG_TYPE,
-        f"`{short(span.text)}` chooses between more than {most} numbers",
-        span,
-        fix="split it into several requirements",
-    )
-
-
+many_outcomes = Breach(
+    WRONG_TYPE,
+    "`{0}` chooses between more than {1} numbers",
+    "split it into several requirements",
+)
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
 )
 
 
-def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
-    """Too many or too few arguments; `takes` says how many, in words."""
-    return finding(
-        WRONG_ARGUMENTS,
-        f"`{name}` takes {takes}, {given} given",
-        span,
-        fix="arguments are separated by commas",
-    )
+argument_count = Breach(
+    WRONG_ARGUMENTS, "`{1}` takes {2}, {3} given", "arguments are separated by commas"
+)
+"""Too many or too few: the function, how many it takes, in words, and how many are given."""
 
 
-def argument_kind(span: Span, name: str, needed: str) -> Diagnostic:
-    """An argument of the wrong kind; `needed` says which kind is needed, with its article."""
-    return finding(WRONG_ARGUMENTS, f"`{name}` needs {needed}, `{short(span.text)}` is none", span)
+argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, `{0}` is none")
+"""An argument of the wrong kind: the function, and which is needed, with its article."""
 
 
 def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
@@ -193,32 +169,18 @@ def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
     )
 
 
-def power_of_unit(span: Span, unit: str) -> Diagnostic:
-    """A power of something with a unit that is not known beforehand."""
-    return finding(
-        UNIT_MISMATCH,
-        f"`{short(span.text)}` leaves open which power of [{unit}] comes out",
-        span,
-        fix="write a whole number up to 9, or divide the base by one of its units",
-    )
+power_of_unit = Breach(
+    UNIT_MISMATCH,
+    "`{0}` leaves open which power of [{1}] comes out",
+    "write a whole number up to 9, or divide the base by one of its units",
+)
 
 
-def mismatch(span: Span, left: str, right: str, doing: str) -> Diagnostic:
-    """Units of different kinds; `doing` is `compared with` and the like."""
-    return finding(
-        UNIT_MISMATCH,
-        f"[{left}] {doing} [{right}]",
-        span,
-        fix="both sides need units of the same kind",
-    )
+mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of the same kind")
+"""Units of different kinds: both, and `compared with` and the like."""
 
 
-def missing_unit(span: Span, unit: str) -> Diagnostic:
-    """A plain number where a unit is needed."""
-    text = short(span.text)
-    return finding(
-        MISSING_UNIT, f"`{text}` needs a unit", span, fix=f"did you mean `{text} {unit}`?"
-    )
+missing_unit = Breach(MISSING_UNIT, "`{0}` needs a unit", "did you mean `{0} {1}`?")
 
 
 def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
@@ -231,14 +193,11 @@ def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
     )
 
 
-def no_root(span: Span, unit: str) -> Diagnostic:
-    """A root of a unit that has none."""
-    return finding(
-        UNIT_MISMATCH,
-        f"[{unit}] has no square root",
-        span,
-        fix="the root of a square has a unit: `sqrt(x * x + y * y)`",
-    )
+no_root = Breach(
+    UNIT_MISMATCH,
+    "[{1}] has no square root",
+    "the root of a square has a unit: `sqrt(x * x + y * y)`",
+)
 
 
 def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
@@ -247,17 +206,11 @@ def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
     return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, fix=fix)
 
 
-def swallowed_name(span: Span, number: str) -> Diagnostic:
-    """A name that is read as the unit of the number before it."""
-    name = short(span.text)
-    return finding(
-        UNKNOWN_UNIT,
-        f"`{name}` is read as the unit of `{number}`, and there is no such unit",
-        span,
-        fix=f"give the number its unit: `{number} s {name}`",
-    )
-
-
+swallowed_name = Breach(
+    UNKNOWN_UNIT,
+    "`{0}` is read as the unit of `{1}`, and there is no such unit",
+    "give the number its unit: `{1} s {0}`",
+)
 out_of_range = Breach(
     OUT_OF_RANGE,
     "`{}` is out of range",
