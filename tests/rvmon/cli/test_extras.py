@@ -20,7 +20,7 @@ LACKING = [
     ("pyarrow", "compare v.parquet v.parquet", "arrow"),
     ("mcap", "run base.rv base.csv --mcap v.mcap", "mcap"),
     ("rosbags", "run base.rv base.bag", "ros"),
-    ("rosbags", "bind base.rv base.bag", "ros"),
+    ("rosbags", "init base.bag --for base.rv", "ros"),
     ("backports", "run base.rv base.csv.zst", "zstd"),
     ("distributed", "run base.rv base.csv --dask localhost:1", "dask"),
     ("paho", "watch base.rv mqtt://localhost/robot", "mqtt"),

@@ -172,8 +172,7 @@ def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
         survivor: a mutant that is not killed.
         reading: as `readers` gives it.
 
-    >>> from dataclasses import dataclass, field
-    from pathlib import Path
+    >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.mutant import Mutant
     >>> mutant = Mutant(Path("a.py"), 3, "constant", "x = 3", "x = 4", "x = 4")
     >>> question(Tried(mutant, 2, 2, (), Difference("t", 1_500_000_000, "beep", "", "True")), {})
