@@ -336,7 +336,7 @@ def load(
     """
     path = Path(path)
     if path.suffix != ".rv":
-        from rvmon.readers.recording import FORMATS
+        from rvmon.readers.messages.forms import FORMATS
 
         if path.suffix.lower() in FORMATS:
             expected = "a recording by its name; a specification (.rv) is expected here"

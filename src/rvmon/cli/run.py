@@ -155,13 +155,14 @@ def run(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     from rvmon.cli.judging import spec_and_options
     from rvmon.readers.found import found_recordings
-    from rvmon.readers.joined import JOINT
+    from rvmon.readers.places import JOINT
 
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
-    if arguments.join:
-        traces = [JOINT.join(traces)]
+    if arguments.join:  # a folder goes by its own name, and not by those of all that is in it
+        given = arguments.traces
+        traces = [JOINT.join(given if len(given) > 1 else [*given, ""])]
     if arguments.shard is not None:
         traces = _share(arguments, traces)
     _refuse_places(arguments, traces, spec)

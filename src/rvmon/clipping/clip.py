@@ -9,10 +9,10 @@ from typing import Any
 from rvmon.clipping.piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.csv_rows import Layout, read_layout
-from rvmon.readers.messages.forms import MESSAGE_FORMATS
+from rvmon.readers.messages.forms import FORMATS, MESSAGE_FORMATS
 from rvmon.readers.parquet import parquet_batches, parquet_file
 from rvmon.readers.places import endings_of, local_path
-from rvmon.readers.recording import FORMATS, JOINED, format_of
+from rvmon.readers.recording import JOINED, format_of
 from rvmon.readers.tables import arrow_cells
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp

@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rvmon.errors import TraceError
-from rvmon.readers.messages.forms import form_of_folder
+from rvmon.readers.messages.forms import FORMATS, form_of_folder
 from rvmon.readers.places import endings_of, is_address, matching_addresses
-from rvmon.readers.recording import FORMATS
 
 _MAGIC = frozenset("*?[")
 

@@ -18,9 +18,6 @@ from rvmon.trace.health import Health
 from rvmon.trace.sample import Outage, Recording, Sample
 from rvmon.trace.schema import Schema
 
-JOINT = " + "
-"""Between the paths of files that are one recording."""
-
 
 class File(Recording, Protocol):
     """One of the files; see `rvmon.readers.recording.FileRecording`."""

@@ -19,6 +19,9 @@ from rvmon.readers.values import first_line
 PACKED = (".gz", ".zst")
 """Endings of text that is packed."""
 
+JOINT = " + "
+"""Between the paths, of files and of folders of files, that are one recording; also behind one."""
+
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
 
 
@@ -91,7 +94,8 @@ def named_errors(path: str | Path) -> Iterator[None]:
         ) from None
     except TraceError as error:
         message = str(error)
-        placed = message if message.startswith(str(path)) else f"{path}: {message}"
+        told = tuple(filter(None, str(path).split(JOINT)))
+        placed = message if message.startswith(told) else f"{path}: {message}"
         raise type(error)(placed) from None
     except OSError as error:
         raise TraceError(cannot_read(path, error)) from None

@@ -20,15 +20,16 @@ from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
-from rvmon.readers.joined import JOINT, Joined, schemas_of
+from rvmon.readers.found import found_recordings
+from rvmon.readers.joined import Joined, schemas_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import (
     ARRAYS,
-    MESSAGE_FORMATS,
+    FORMATS,
     MESSAGE_FORMS,
     form_of_folder,
 )
-from rvmon.readers.places import endings_of, is_address, local_path, named_errors, opened
+from rvmon.readers.places import JOINT, endings_of, is_address, local_path, named_errors, opened
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
@@ -39,15 +40,6 @@ from rvmon.trace.stamps import stamps_of
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
     from rvmon.readers.messages.file import MessageFile
-
-FORMATS = {
-    ".csv": "csv",
-    ".jsonl": "jsonl",
-    ".ndjson": "jsonl",
-    ".parquet": "parquet",
-    **MESSAGE_FORMATS,
-}
-"""File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
 JOINED = "joined"
 """The format of several files that are one recording: `odom.csv + status.csv`."""
@@ -114,7 +106,7 @@ class FileRecording:
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end
         elif self._format == JOINED:
-            paths = self.path.split(JOINT)
+            paths = list(found_recordings(filter(None, self.path.split(JOINT))))
             of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
             files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
             parts = [FileRecording(*one, ordered=ordered) for one in files]

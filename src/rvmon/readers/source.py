@@ -8,7 +8,8 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from rvmon.readers.joined import JOINT, Joined
+from rvmon.readers.joined import Joined
+from rvmon.readers.places import JOINT
 from rvmon.readers.rows import Rows
 from rvmon.trace.sample import Outage, Recording, Sample, Trace
 from rvmon.trace.schema import Schema

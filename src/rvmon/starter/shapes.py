@@ -13,11 +13,12 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
-from rvmon.readers.joined import JOINT, topics_of
+from rvmon.readers.found import found_recordings
+from rvmon.readers.joined import topics_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
-from rvmon.readers.places import local_path, named_errors, opened
+from rvmon.readers.places import JOINT, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, format_of, messages_of
 from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
@@ -41,7 +42,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     """
     form = format_of(path)
     if form == JOINED:
-        return _of_files(path.split(JOINT), stamps)
+        return _of_files(list(found_recordings(filter(None, path.split(JOINT)))), stamps)
     if form in MESSAGE_FORMS:
         return message_shapes(messages_of(path))
     with named_errors(path):

@@ -88,6 +88,10 @@ def test_a_file_says_where_its_error_is(tmp_path, capsys):
     (tmp_path / "s.rv").write_text("signal speed : real\nrequirement R\n  always speed < 9\n")
     assert main(["run", str(tmp_path / "s.rv"), str(tmp_path), "--join"]) == 2
     assert f"{tmp_path / 'a.csv'}: line 3: column `speed`: `x` is not" in capsys.readouterr().err
+    (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
+    words = ["run", str(tmp_path / "s.rv"), str(tmp_path), "--join", "--report"]
+    assert main([*words, str(tmp_path / "pages")]) == 0
+    assert capsys.readouterr().out.startswith(f"{tmp_path} + ")  # by its own name
     (tmp_path / "a.csv").write_text("t,speed\n1,1\n0,1\n")
     with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 3: time goes backwards"):
         rvmon.load(tmp_path / "s.rv").evaluate([tmp_path / "a.csv", tmp_path / "b.csv"])

@@ -23,6 +23,15 @@ MESSAGE_FORMATS = {
 }
 """File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
 
+FORMATS = {
+    ".csv": "csv",
+    ".jsonl": "jsonl",
+    ".ndjson": "jsonl",
+    ".parquet": "parquet",
+    **MESSAGE_FORMATS,
+}
+"""File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
+
 DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
 """Endings of files that say what frames of CAN hold."""
 
