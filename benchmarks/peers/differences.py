@@ -8,31 +8,22 @@ Every row is run on both sides; a peer that answers otherwise than written here 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import spelling
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.positions import Question, answers, ask_oracle
 from benchmarks.peers.ways import Cell, Columns
-from tests.tools.build import (
-    always,
-    compared,
-    eventually,
-    fall,
-    historically,
-    no,
-    once,
-    p,
-    previous,
-    q,
-    two,
-    x,
-)
 
+from rvmon import loads
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import TimeModel
+
+TABLE = Path(__file__).with_name("differences.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,235 +50,33 @@ class Difference:
     columns: Columns
     theirs: Sequence[Cell] | str
     same: Formula
-    time: TimeModel = TimeModel.SAMPLED
+    time: TimeModel
 
 
-_T, _F = True, False
-_P = "(v_p > 0.5)"
-_Q = "(v_q > 0.5)"
-_NAN = float("nan")
+def _read() -> Iterator[Difference]:
+    for one in tomllib.loads(TABLE.read_text(encoding="utf-8"))["difference"]:
+        columns = {name: _known(cells) for name, cells in one["trace"].items()}
+        answer = one["answer"]
+        spec = loads(
+            f"time {one['time']}\nsignal p, q : bool\nsignal x : real\n"
+            f"requirement R\n  upon start then {one['same']}\n"
+        ).checked
+        yield Difference(
+            *one["peer"],
+            reading=one["reading"],
+            formula=one["formula"],
+            columns=columns,
+            theirs=answer if isinstance(answer, str) else _known(answer),
+            same=spec.requirements["R"].consequent,
+            time=spec.time,
+        )
 
-DIFFERENCES = (
-    Difference(
-        "reelay",
-        "reelay",
-        "discrete",
-        "what is not known is false, its negation true",
-        "not{v_p}",
-        {"p": [None, _T, None]},
-        [_T, _F, _T],
-        no(p),
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "discrete",
-        "`[0:0]` is read as `[0:]`",
-        "once[0:0]{v_p}",
-        {"p": [_T, _F]},
-        [_T, _T],
-        once(p, 0, 0),
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "discrete",
-        "what follows a whole formula is dropped in silence: `xor`, `<->`, a second `->`",
-        "{v_p} xor {v_q}",
-        {"p": [_T, _T], "q": [_T, _F]},
-        [_T, _T],
-        two(p, "xor", q),
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "discrete",
-        "a syntax error ends the process",
-        "v_p",
-        {"p": [_T]},
-        "its process ended",
-        p,
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "discrete robustness",
-        "`since` from above 0 does not ask for its left operand at all instants",
-        "{v_p > 0.5} since[1:1] {v_q > 0.5}",
-        {"p": [_F, _F], "q": [_T, _T]},
-        [_F, _T],
-        two(p, "S", q, 1, 1),
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "dense",
-        "`since` wants its left operand now, even where the right one is true now",
-        "{v_p} since {v_q}",
-        {"p": [_F, _F], "q": [_T, _T]},
-        [_F, _F],
-        two(p, "S", q),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "dense",
-        "dense time: the left operand is wanted between the ticks, too",
-        "{v_p} since[1:1] {v_q}",
-        {"p": [_F, _T, _T], "q": [_T, _T, _T]},
-        [_F, _F, _T],
-        two(p, "S", q, 1, 1),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "reelay",
-        "reelay",
-        "dense sparse",
-        "the Python package does not print a change to false and back within one stretch of input",
-        "once[1:4]{v_p}",
-        {"p": [_T, _F, _F, _F, _F, _T, _T, _T]},
-        [_F, _T, _T, _T, _T, _T, _T, _T],
-        once(p, 1, 4),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "nothing is open at the end: what is beyond it fulfils `always`, not `eventually`",
-        f"eventually[0:2]{_P}",
-        {"p": [_F, _F]},
-        [_F, _F],
-        eventually(p, 0, 2),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "the same, for `always`",
-        f"always[0:2]{_P}",
-        {"p": [_T, _T]},
-        [_T, _T],
-        always(p, 0, 2),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "`prev` is true at the first position (`s_prev` is false there, as ours)",
-        f"prev{_P}",
-        {"p": [_F, _F]},
-        [_T, _F],
-        previous(p),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "`fall` is true at the first position where its operand is false",
-        f"fall{_P}",
-        {"p": [_F, _F]},
-        [_T, _F],
-        fall(p),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "robustness of `iff` and of `==` is never above 0: true looks as undecided",
-        f"{_P} iff {_Q}",
-        {"p": [_T, _T], "q": [_T, _F]},
-        [None, _F],
-        two(p, "<->", q),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete",
-        "NaN counts or not, by the order in which it is met",
-        "once[0:1](v_x > 0.5)",
-        {"x": [0.0, _NAN, 0.0]},
-        [_F, _F, None],
-        once(compared(x, ">", 0.5), 0, 1),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "dense",
-        "`until` and `since` want the left operand also at the instant of the right one",
-        f"{_P} until[0:3] {_Q}",
-        {"p": [_T, _F, _F, _F], "q": [_F, _T, _F, _F]},
-        [_F, _F, _F, _F],
-        two(p, "U", q, 0, 3),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "dense",
-        "a first stretch of `since` with robustness -inf is lost: operators above do not see it",
-        f"historically[0:1]({_P} since (once[1:1]{_P}))",
-        {"p": [_T, _T, _T]},
-        [None, _T, _T],
-        historically(two(p, "S", once(p, 1, 1)), 0, 1),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "dense",
-        "the same: so `or` is false there although its other operand is true",
-        f"once[1:1](({_P} since (once[1:1]{_P})) or {_Q})",
-        {"p": [_T, _T, _T], "q": [_T, _T, _T]},
-        [_F, _F, _T],
-        once(two(two(p, "S", once(p, 1, 1)), "or", q), 1, 1),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "discrete online",
-        "a timed formula that stands twice is moved on twice a sample",
-        f"(not(once[0:1]{_P})) and s_prev(once[0:1]{_P})",
-        {"p": [_T, _F, _F]},
-        [_F, _F, _F],
-        fall(once(p, 0, 1)),
-    ),
-    Difference(
-        "rtamt",
-        "rtamt",
-        "dense online",
-        "future operators have no effect: the operand itself is answered",
-        f"always[0:1]{_P}",
-        {"p": [_T, _F, _T, _T]},
-        [_T, _F, _T, _T],
-        always(p, 0, 1),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "mstlo-python",
-        "mstlo",
-        "DelayedQualitative",
-        "`until` wants the left operand also at the instant of the right one",
-        f"{_P} U[0, 1] {_Q}",
-        {"p": [_T, _F, _F], "q": [_F, _T, _F]},
-        [_F, _F, None],
-        two(p, "U", q, 0, 1),
-        TimeModel.HELD,
-    ),
-    Difference(
-        "mstlo-python",
-        "mstlo",
-        "DelayedQualitative",
-        "NaN fulfils `>=` (read as `not <`) and not `>`",
-        "v_x >= 0.5",
-        {"x": [1.0, _NAN, 0.0]},
-        [_T, _T, _F],
-        compared(x, ">=", 0.5),
-        TimeModel.HELD,
-    ),
-)
+
+def _known(cells: Sequence[Cell | str]) -> list[Cell]:
+    return [None if cell == "?" else cell for cell in cells]
+
+
+DIFFERENCES = tuple(_read())
 
 
 def answer(peer: Peer, difference: Difference) -> list[Cell] | str:
