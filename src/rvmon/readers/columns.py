@@ -6,14 +6,12 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rvmon.errors import TraceError
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
 from rvmon.readers.naming import stamps_among
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
-from rvmon.readers.tables import cells_of, is_of_dates
+from rvmon.readers.tables import cells_of, is_of_dates, is_of_durations, nanoseconds_of
 from rvmon.readers.values import plain
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample
@@ -65,9 +63,8 @@ class TableRecording:
         given = columns[stamps.column]
         if not stamps.is_stated and is_of_dates(given):
             stamps = Stamps(stamps.column, "iso", is_stated=True)
-        elif getattr(getattr(given, "dtype", None), "kind", "") == "m":  # durations since a start
-            whole = np.asarray(given, "timedelta64[ns]").astype(np.int64)
-            self.columns = {**columns, stamps.column: whole}
+        elif is_of_durations(given):
+            self.columns = {**columns, stamps.column: nanoseconds_of(given)}
             stamps = Stamps(stamps.column, "ns", is_stated=True)
         self.layout: Layout = layout_of(header, stamps, schema)
         self.names: frozenset[str] | None = self.layout.names

@@ -16,7 +16,7 @@ from rvmon.readers.columns import rows_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.line_chunks import is_short_of_memory
 from rvmon.readers.rows import Row
-from rvmon.readers.tables import arrow_cells, is_of_dates
+from rvmon.readers.tables import arrow_cells, is_of_dates, is_of_durations, nanoseconds_of
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Schema, Stamps
 
@@ -108,8 +108,11 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
     fields = parquet_file(path).schema_arrow
     layout = read_layout(list(fields.names), schema)
     stamps = layout.stamps
-    if not stamps.is_stated and is_of_dates(fields.field(stamps.column)):
+    field = fields.field(stamps.column)
+    if not stamps.is_stated and is_of_dates(field):
         return replace(layout, stamps=Stamps(stamps.column, "iso", is_stated=True))
+    if is_of_durations(field):
+        return replace(layout, stamps=Stamps(stamps.column, "ns", is_stated=True))
     return layout
 
 
@@ -120,12 +123,16 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         RvmonError: there is no pyarrow.
         TraceError: with the row's number, or it is damaged.
     """
+    import pyarrow
+
     from rvmon.readers.cells import batch_of, cells_of_arrow
     from rvmon.readers.table_batch import instants
 
     layout = parquet_layout(path, schema)
     row = 0
     for stamps, *arrays in parquet_batches(path, columns_read(layout)):
+        if is_of_durations(stamps):
+            stamps = pyarrow.array(nanoseconds_of(stamps), pyarrow.int64())
         try:
             times = instants(stamps, layout.stamps)
             cells = {

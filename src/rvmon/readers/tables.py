@@ -10,6 +10,8 @@ import reprlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from rvmon.errors import TraceError, not_installed
 
 
@@ -123,6 +125,32 @@ def is_of_dates(column: Any) -> bool:
     """
     dtype = getattr(column, "dtype", getattr(column, "type", None))
     return getattr(dtype, "kind", None) == "M" or str(dtype).startswith(("Datetime", "timestamp["))
+
+
+def is_of_durations(column: Any) -> bool:
+    """Whether the cells of a column are times since a start, by its type.
+
+    >>> import numpy
+    >>> is_of_durations(numpy.array([1], "timedelta64[s]")), is_of_durations([0.5])
+    (True, False)
+    """
+    dtype = getattr(column, "dtype", getattr(column, "type", None))
+    return getattr(dtype, "kind", None) == "m" or str(dtype).startswith(("Duration", "duration["))
+
+
+def nanoseconds_of(column: Any) -> Any:
+    """Durations as whole nanoseconds; one that is none is None.
+
+    >>> import numpy
+    >>> nanoseconds_of(numpy.array([1, "NaT"], "timedelta64[us]"))
+    [1000, None]
+    """
+    found = np.asarray(column, "timedelta64[ns]")
+    whole = found.astype(np.int64)
+    gone = np.isnat(found)
+    if not gone.any():
+        return whole
+    return [None if none else int(one) for none, one in zip(gone, whole, strict=True)]
 
 
 def _without_missing(series: Any, cells: list[Any]) -> list[Any]:
