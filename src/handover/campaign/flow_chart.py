@@ -75,7 +75,6 @@ def _box(label: str, state: str, top: float, coverage: BlockCoverage) -> ET.Elem
 
 
 def _step(transition: Transition, figures: StrategySummary) -> ET.Element:
-    """A line to the next state below."""
     start, end = _top(transition[0]) + BOX_HEIGHT, _top(transition[1])
     line = f"M{CENTRE} {start}V{end - 5}"
     tip = f"M{CENTRE} {end}l-4 -7h8z"

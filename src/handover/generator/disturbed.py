@@ -32,7 +32,6 @@ LONGEST = 24
 
 
 def _pause(shortest_s: float, longest_s: float) -> Acts:
-    """Wait for a uniform time."""
     return lambda rng: [SetParam("time", round(rng.uniform(shortest_s, longest_s) / 0.05))]
 
 

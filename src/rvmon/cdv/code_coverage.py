@@ -117,7 +117,6 @@ def branches_name(block: str) -> str:
 
 
 def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
-    """The groups with the path of each."""
     groups = []
     for block in code.blocks:
         file = files[block.path]

@@ -114,7 +114,6 @@ def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
 
 
 def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
-    """The tests of a strategy."""
     with blamed(f"strategy `{strategy}` cannot make its tests"):
         made = [*campaign.strategies[strategy](tests, seed)]
     for test in made:

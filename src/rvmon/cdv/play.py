@@ -212,7 +212,6 @@ def outcome_of(recorded: Recorded) -> Outcome:
 
 
 def _reasons(report: Report) -> dict[str, str]:
-    """The first failure of each requirement that failed."""
     failed = (name for name, verdict in report.verdicts.items() if verdict is Verdict.FAIL)
     first = {name: next(report.of(name, Verdict.FAIL), None) for name in failed}
     return {name: shown_line(str(attempt)) for name, attempt in first.items() if attempt}

@@ -145,7 +145,6 @@ def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None
 
 
 def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
-    """A checksum of all that outcomes depend on."""
     campaign = plan.campaign
     return journal.checksum(
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],

@@ -95,7 +95,6 @@ def conduct_closing(
 
 
 def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
-    """What was kept, as the results of a campaign."""
     tests = [one.job.test for one in closed.suite]
     plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
     seconds = sum(one.outcome.seconds for one in closed.suite)

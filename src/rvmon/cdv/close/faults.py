@@ -112,7 +112,6 @@ def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
 
 
 def _fewest(killers: Killers) -> list[str]:
-    """The fewest tests that kill all of these mutants."""
     mutants = [identity for identity, names in killers.items() if names]
     tests = sorted({name for names in killers.values() for name in names})
     rows = [

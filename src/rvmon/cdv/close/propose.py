@@ -191,7 +191,6 @@ class Proposer:
         return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
     def _drawn(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
-        """The next test of a strategy."""
         while self._streams:
             name = self._learned.choose(self._rng, "strategy", [*self._streams], drawn)
             new = next(self._streams[name], None)
@@ -201,7 +200,6 @@ class Proposer:
         return None
 
     def _taken(self, test: Test, goal: Goal, drawn: Sequence[Draw]) -> Proposal:
-        """A test of a strategy as it is."""
         origin = f"{test.name} of {test.strategy}"
         return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
 

@@ -67,7 +67,6 @@ def _suite_text(closed: Closed) -> str:
 
 
 def _trade(trade: Trade) -> Table:
-    """What each choice of tests sees of planted faults."""
     from rich.table import Table
 
     title = f"Of {trade.mutants + trade.held_out} mutants of the code are killed"

@@ -227,7 +227,6 @@ class Mutator:
         return values
 
     def _fresh(self, kind: inspect.Type, path: str, rng: random.Random, drawn: list[Draw]) -> Any:
-        """Any value of a type."""
         match kind:
             case inspect.NoneType():
                 return None
@@ -260,7 +259,6 @@ class Mutator:
 
 
 def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
-    """Whether values of a type can be drawn."""
     match kind:
         case inspect.UnionType():
             return any(_can_make(one, depth) for one in kind.types)
