@@ -103,14 +103,12 @@ class NetworkPlan:
         nodes: operands before operators, the root last.
         places: the place of each formula.
         leaves: the places of those that read a letter, with what they read.
-        inner: those of the others, each with its place, in the same order.
         looks_back: whether something speaks of what was before an attempt began.
     """
 
     nodes: tuple[Node, ...]
     places: dict[Core, int]
     leaves: tuple[tuple[int, Literal | Constant], ...]
-    inner: tuple[tuple[int, Junction | Window | Sweep | Shift], ...]
     looks_back: bool
 
     def sweep_of(self, node: Shift) -> Sweep:
@@ -152,9 +150,8 @@ def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
         planning.place(formula)
     nodes = tuple(planning.nodes)
     leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
-    inner = tuple((place, node) for place, node in enumerate(nodes) if not isinstance(node, Leaf))
     looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
-    return NetworkPlan(nodes, planning.places, leaves, inner, looks_back)
+    return NetworkPlan(nodes, planning.places, leaves, looks_back)
 
 
 class _Planning:
