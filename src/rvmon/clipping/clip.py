@@ -8,9 +8,14 @@ from typing import Any
 
 from rvmon.clipping.piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.errors import RvmonError, TraceError
-from rvmon.readers.csv_rows import Layout, read_layout
+from rvmon.readers.csv_rows import Layout
 from rvmon.readers.messages.forms import FORMATS, MESSAGE_FORMATS
-from rvmon.readers.parquet import parquet_batches, parquet_file
+from rvmon.readers.parquet import (
+    numbers_of_durations,
+    parquet_batches,
+    parquet_file,
+    parquet_layout,
+)
 from rvmon.readers.places import endings_of, local_path
 from rvmon.readers.recording import JOINED, format_of
 from rvmon.readers.tables import arrow_cells
@@ -102,13 +107,13 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
     import pyarrow
     from pyarrow import parquet
 
-    layout = read_layout(list(schema.names), piece.schema)
+    layout = parquet_layout(path, piece.schema)
     copied = Copied()
     with parquet.ParquetWriter(out, schema) as writer:
         if piece.held:
             writer.write_table(_start(piece, layout, schema))
         for arrays in parquet_batches(path, list(schema.names)):
-            stamps = arrow_cells(arrays[layout.time])
+            stamps = arrow_cells(numbers_of_durations(arrays[layout.time]))
             instants = [ticks_of_stamp(stamp, layout.stamps) for stamp in stamps]
             kept = [t for t in instants if piece.holds(t)]
             if kept:
@@ -143,6 +148,8 @@ def _stamp(ticks: int, stamps: Stamps, kind: Any) -> Any:
     if pyarrow.types.is_timestamp(kind):
         exact = pyarrow.array([ticks], pyarrow.timestamp("ns", kind.tz))
         return exact.cast(kind, safe=False)
+    if pyarrow.types.is_duration(kind):
+        return pyarrow.array([ticks], pyarrow.duration("ns")).cast(kind, safe=False)
     if stamps.unit == "iso":
         return pyarrow.array([stamp_text(ticks, stamps)]).cast(kind)
     number = stamp_number(ticks, stamps)

@@ -116,6 +116,15 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
     return layout
 
 
+def numbers_of_durations(column: Any) -> Any:
+    """A column of stamps; durations in it as nanoseconds, which `parquet_layout` takes them for."""
+    import pyarrow
+
+    if not is_of_durations(column):
+        return column
+    return pyarrow.array(nanoseconds_of(column), pyarrow.int64())
+
+
 def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a file in order: as columns, if they hold what is declared, else one by one.
 
@@ -123,16 +132,13 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         RvmonError: there is no pyarrow.
         TraceError: with the row's number, or it is damaged.
     """
-    import pyarrow
-
     from rvmon.readers.cells import batch_of, cells_of_arrow
     from rvmon.readers.table_batch import instants
 
     layout = parquet_layout(path, schema)
     row = 0
-    for stamps, *arrays in parquet_batches(path, columns_read(layout)):
-        if is_of_durations(stamps):
-            stamps = pyarrow.array(nanoseconds_of(stamps), pyarrow.int64())
+    for given, *arrays in parquet_batches(path, columns_read(layout)):
+        stamps = numbers_of_durations(given)
         try:
             times = instants(stamps, layout.stamps)
             cells = {

@@ -141,3 +141,22 @@ def test_a_bag_is_not_replaced(base, capsys):
     words = ["clip", "base.rv", "bag", "R2", "-o", "b", "--allow-missing"]
     assert main(words) == 2
     assert "cannot write b: it is there, and a bag is a new folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("kind", "second"), [("datetime64[ms]", 1000), ("timedelta64[ms]", 1000), ("timedelta64[s]", 1)]
+)
+def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, capsys, kind, second):
+    """It keeps its type; the values that are brought along have a stamp of it."""
+    pyarrow = pytest.importorskip("pyarrow")
+    numpy = pytest.importorskip("numpy")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    speed = numpy.where(numpy.arange(100) < 50, 0.5, 2.0)
+    columns = {"t": (numpy.arange(100) * second).astype(kind), "speed": speed}
+    parquet.write_table(pyarrow.table(columns), "a.parquet")
+    (base / "v.rv").write_text("spec s\nsignal speed : real\nrequirement R1\n  always speed <= 1")
+    assert main(["clip", "v.rv", "a.parquet", "R1#1", "--out", "b.parquet"]) == 0
+    assert "40 s to 55 s" in capsys.readouterr().out
+    piece = parquet.read_table("b.parquet")
+    assert piece.schema == parquet.read_table("a.parquet").schema
+    assert main(["run", "v.rv", "b.parquet", "--quiet"]) == 1
