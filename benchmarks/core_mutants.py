@@ -1,12 +1,13 @@
 """Does the core's C hold a line that no test needs? Seeded mutants of it, run on recorded cases.
 
     python -m benchmarks.core_mutants --count 30 --seed 1 [FILE …]
+    python -m benchmarks.core_mutants --cases FILE
 
 Of each file so many changes are drawn, evenly over their kinds. Each is compiled alone, linked with
-the others, and judges the cases of `benchmarks.core_recording`, of which the law and the core say
-the same (core_replay.c): it is killed if it says anything else, crashes or hangs. What does not
-compile is not counted, nor what a compiler makes the same code of. Prints each that survives, and
-the counts of each file; exits 1 if any does.
+the others, and judges random cases, written as bytes, of which the law and the core say the same
+(core_replay.c; `--cases` writes them alone): it is killed if it says anything else, crashes or
+hangs. What does not compile is not counted, nor what a compiler makes the same code of. Prints each
+that survives, and the counts of each file; exits 1 if any does.
 """
 
 from __future__ import annotations
@@ -16,24 +17,117 @@ import itertools
 import random
 import re
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from benchmarks.core_recording import recorded
+from tests.tools.differential import cases_of, disagreements
+from tests.tools.forms import Compiler, Maker
 
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.core import amalgamate
+from rvmon.monitor import CompiledSpec
+from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.testing.case import Case
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
 
 ROOT = Path(__file__).resolve().parent.parent
 CORE = Path(amalgamate.FOLDER)
 REPLAY = Path(__file__).with_name("core_replay.c")
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
+
+
+_NO, _UNKNOWN, _YES = 0, 1, 2
+_NO_TIME = -(1 << 63)
+_NOTHING = (0, 0)
+
+PROFILE = Profile(crowded=5, many=8, wide=20)
+TRACES = TraceProfile(sparse=12, long=8)
+TRACES_EACH = 4
+
+
+def recorded(pairs: int, seed: object) -> bytes:
+    """So many random cases, less those that the core does not judge, or judges otherwise."""
+    return written(
+        case
+        for number in range(pairs // TRACES_EACH)
+        for case in cases_of(
+            f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15, letters=8
+        )
+    )
+
+
+def written(cases: Iterable[Case]) -> bytes:
+    """Cases, less those that the core does not judge, or not as the law has it."""
+    found: list[bytes] = []
+    compiler = Compiler()
+    make = Maker("c", compiler)
+    last: CompiledSpec | None = None
+    for case in cases:
+        if make(case) is None or disagreements(case, make):
+            continue
+        compiled = compiler(case.spec)
+        planned = planned_core(compiled)
+        words = [*_case(planned, case)]
+        plan = planned.packed.data if compiled is not last else b""
+        last = compiled
+        found.append(struct.pack("<q", len(plan)) + plan + struct.pack(f"<{len(words)}q", *words))
+    return struct.pack("<q", len(found)) + b"".join(found)
+
+
+def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
+    absent = [
+        number
+        for name, number in planned.numbers.items()
+        if case.names is not None and name not in case.names
+    ]
+    yield from (len(absent), *absent, _NO_TIME if case.end is None else case.end, len(case.actions))
+    for action in case.actions:
+        if isinstance(action, Sample):
+            updates = [*_updates(planned, action.values)]
+            yield from (0, action.t, len(updates), *(word for one in updates for word in one))
+        else:
+            yield from (1, action)
+
+
+def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequence[int]]:
+    """Of each update: name, what it says, a number, how many fields, these."""
+    for name, value in values.items():
+        number, kind = planned.numbers[name], planned.packed.signals.get(name)
+        if kind is not None:
+            known = _number(planned, kind, value)  # type: ignore[arg-type]
+            yield (number, _YES if known[0] else _UNKNOWN, *known, 0)
+        elif isinstance(value, tuple):
+            for payload in value:
+                yield (number, _YES, *_NOTHING, *_payload(planned, name, payload))
+        elif isinstance(value, Mapping):
+            yield (number, _YES, *_NOTHING, *_payload(planned, name, value))
+        else:
+            yield (number, _UNKNOWN if value is None else _YES if value else _NO, *_NOTHING, 0)
+
+
+def _payload(planned: PlannedCore, event: str, payload: Mapping[str, Scalar]) -> Sequence[int]:
+    kinds = {field: kind for (of, field), kind in planned.packed.fields.items() if of == event}
+    numbers = [_number(planned, kind, payload.get(field)) for field, kind in kinds.items()]
+    return [len(numbers), *(word for one in numbers for word in one)]
+
+
+def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
+    """Its kind and bits as `rv_number` has them."""
+    if value is None or value != value:
+        return _NOTHING
+    if kind is Kind.REAL:
+        return 2, struct.unpack("<q", struct.pack("<d", float(value)))[0]
+    return 1, planned.packed.labels[str(value)] if kind is Kind.LABEL else int(value)
 
 
 def sources() -> list[Path]:
@@ -184,7 +278,11 @@ def main(words: list[str]) -> int:
     parser.add_argument("--count", type=int, default=30, help="of each file")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_200)
+    parser.add_argument("--cases", type=Path, metavar="FILE", help="write the cases, and no more")
     options = parser.parse_args(words)
+    if options.cases:
+        options.cases.write_bytes(recorded(options.pairs, options.seed))
+        return 0
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), recorded(options.pairs, options.seed))

@@ -1,4 +1,4 @@
-/* Has the core judge what benchmarks/core_recording.py has written, and says in one line of each case
+/* Has the core judge what benchmarks/core_mutants.py has written, and says in one line of each case
  * what came of it. So mutants of the core are compared with it, and builds for other machines.
  *
  * A case is judged step by step, asked now and then what is open and due; the same after a reset,

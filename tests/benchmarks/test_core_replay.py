@@ -6,8 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 import pytest
-from benchmarks.core_mutants import CORE, REPLAY, Trial, c_mutants, draw, sources
-from benchmarks.core_recording import recorded
+from benchmarks.core_mutants import CORE, REPLAY, Trial, c_mutants, draw, recorded, sources
 
 pytestmark = pytest.mark.compiler
 
