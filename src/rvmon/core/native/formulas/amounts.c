@@ -112,6 +112,7 @@ uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand)
     if (worse->apart) {
         may_hold = step_amount(r, better, n, t, operand != IS_FALSE, &other);
     }
-    timers_set(&r->wake, n->timer, least(due, other));
+    due = least(due, other);
+    timers_set(&r->wake, n->timer, (due > t) ? due : NEVER); /* forged stretches are no matter */
     return (uint8_t)((holds ? 1U : 0U) + (may_hold ? 1U : 0U)); /* what holds may hold */
 }

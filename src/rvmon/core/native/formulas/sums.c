@@ -370,6 +370,6 @@ uint8_t node_sum(run *r, const node_plan *n, int64_t t, uint8_t operand)
     if (a.limit.kind != RV_UNKNOWN) {
         due = sum_flips_at(r, s, x, n, &a, t, found == IS_TRUE);
     }
-    timers_set(&r->wake, n->timer, due);
+    timers_set(&r->wake, n->timer, (due > t) ? due : NEVER); /* forged stretches are no matter */
     return found;
 }

@@ -137,6 +137,38 @@ static void carry_sum(carrier *c, exact_sum *x)
     }
 }
 
+static void demand_amount(carrier *c, const run *r, const stretches *s)
+{
+    int32_t i;
+    for (i = 0; (i < s->count) && !is_lost(c); i++) {
+        const stretch *one = &s->at[(s->head + i) & (s->room - 1)];
+        demand(c, (one->begin > -LIMIT) && (one->begin < LIMIT) && (one->end >= one->begin - step_of(r))
+                  && (one->end < LIMIT));
+    }
+    demand(c, (s->total < LIMIT) && (!s->growing || (s->count > 0)));
+}
+
+/* What is counted lies within the bounds of time; of numbers, there is one for each stretch. */
+static void demand_amounts(carrier *c, const run *r)
+{
+    int32_t i;
+    for (i = 0; (i < r->part->plan->nodes.count) && !is_lost(c); i++) {
+        const node_plan *n = &r->part->nodes[i];
+        if ((n->op != NODE_AMOUNT) && (n->op != NODE_SUM)) {
+            continue;
+        }
+        demand_amount(c, r, &r->past[2 * n->slot]);
+        if (n->op == NODE_SUM) {
+            demand(c, (r->past[2 * n->slot].count == r->past[2 * n->slot + 1].count)
+                      && (r->sums[n->sum].lost < LIMIT));
+        } else if (r->past[2 * n->slot].apart) {
+            demand_amount(c, r, &r->past[2 * n->slot + 1]);
+        } else {
+            /* There is one reading. */
+        }
+    }
+}
+
 /* What looks back; a second reading is there only if it is another. */
 static void carry_past(carrier *c, run *r)
 {
@@ -158,6 +190,7 @@ static void carry_past(carrier *c, run *r)
             carry_stretches(c, &r->past[2 * i + 1]);
         }
     }
+    demand_amounts(c, r);
 }
 
 /* The nodes that are to be worked out. */
