@@ -60,7 +60,7 @@ extension:  ## package the extension of VS Code, from locked dependencies: dist/
 	@cd editors/vscode && npm ci --silent --no-audit --no-fund && npm run --silent package -- -o ../../dist/rvmon.vsix
 
 release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
-	@$(BIN)/python -m benchmarks.release
+	@$(BIN)/python .ci/release.py
 
 fuzz: $(VENV)/.dev  ## feed damaged input to all readers, and to the native core, for SECONDS=600 each
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \

@@ -22,7 +22,6 @@ from benchmarks.agreement import Agreement, Referee, peers_in
 from benchmarks.attempts import OpenAttempts, measure_open
 from benchmarks.contenders import contenders
 from benchmarks.files import measure_files
-from benchmarks.findings import Findings
 from benchmarks.measure import Plan, Result, measure
 from benchmarks.peers import differences
 from benchmarks.peers.client import PeerError
@@ -30,7 +29,7 @@ from benchmarks.peers.environment import prepare
 from benchmarks.peers.native import build
 from benchmarks.processes import measure_process
 from benchmarks.r2u2 import table as many_beside_r2u2
-from benchmarks.render import render
+from benchmarks.results import Findings, render
 from benchmarks.workload import Workload
 
 from benchmarks import suite

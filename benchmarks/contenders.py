@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
-from benchmarks.ours import always_text, scaled, specification
+from benchmarks.ours import always_text, specification
 from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
 from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.environment import HOME, Environment
 from benchmarks.peers.native import LETTERS, Native, packed
 from benchmarks.workload import Workload
+from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
 
 OURS = Path(__file__).parent / "peers" / "with_rvmon.py"
@@ -111,10 +112,10 @@ def contenders(environment: Environment, native: Native, section: str) -> Iterat
         ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
         ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
         ("mstlo", "mstlo-python", "mstlo", _up_to(100, _future_of_mstlo)),
-        ("sentil", "sentil", "sentil", _future_of_sentil),
+        ("sentil", "sentil", "sentil", _of_sentil),
     )
     for label, package, worker, request in peers:
-        if package in environment.versions and (section != "batch" or label == "reelay"):
+        if package in environment.versions:
             yield Worker(label, Peer(environment.python, worker), request)
     if native.binary is not None and section == "batch":
         yield NativeReelay(native.binary)
@@ -166,8 +167,8 @@ def _future_of_mstlo(workload: Workload, rows: int) -> dict[str, Any]:
     return _rows(workload, rows, _future(workload, dialects.MSTLO), "DelayedQualitative")
 
 
-def _future_of_sentil(workload: Workload, rows: int) -> dict[str, Any]:
-    formulas = [f"always[0, inf]({f})" for f in _future(workload, dialects.SENTIL)]
+def _of_sentil(workload: Workload, rows: int) -> dict[str, Any]:
+    formulas = [f"always[0, inf]({f})" for f in _translated(workload, dialects.SENTIL)]
     return _rows(workload, rows, formulas, "discrete")
 
 

@@ -69,7 +69,7 @@ def measure_files(
     Args:
         rows: of the large file.
         many: files of `EACH` rows.
-        repeats: passes of each task, beside a first one that does not count.
+        repeats: passes of each task; if several, beside a first one that does not count.
         environment: may have DuckDB.
         folder: for the files.
     """
@@ -80,7 +80,7 @@ def measure_files(
     installed = as_installed(folder)
     for what in dict.fromkeys(task.what for task in tasks):
         own = [task for task in tasks if task.what == what and not task.refusal]
-        for number in range(-1, repeats):
+        for number in range(-1 if repeats > 1 else 0, repeats):
             for task in own:
                 _pass(task, installed, counts=number >= 0)
         refused += [task for task in own if task.refusal]

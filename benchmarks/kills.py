@@ -4,9 +4,10 @@ r"""Kill processes that have others work for them, at random instants: what live
 
 Each kind of parent is killed so often by SIGKILL and by SIGTERM, in turn. Prints how many of its
 processes live 2 s later, how many files are half written, how many bear a name that says that they
-are not finished, and how the parents ended. `rvmon watch --state` is begun again after each kill,
-and its verdicts compared with those of one that nobody kills. Exits 1 if something lives, is half
-written, lost or changed. Needs Linux's /proc.
+are not finished, and how the parents ended. `rvmon watch --state`, `rvmon run --resume` and a
+campaign are begun again after each kill, until they come to an end: what they write is compared
+with what they write undisturbed, but for the seconds that it took. Exits 1 if something lives, is
+half written, lost or changed. Needs Linux's /proc.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import argparse
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -23,7 +25,6 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -49,45 +50,25 @@ event e
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Parent:
-    """A command that begins others, in a folder with the inputs."""
-
-    label: str
-    words: tuple[str, ...]
-
-
-RVMON = (sys.executable, "-m", "rvmon")
-PARENTS = (
-    Parent("rvmon run --jobs", (*RVMON, "run", "s.rv", *["t.csv"] * 6, "--jobs", "2")),
-    Parent("rvmon run --report", (*RVMON, "run", "s.rv", "few.csv", "--report", "out")),
-    Parent(
-        "rvmon run",
-        (*RVMON, "run", "s.rv", "many.csv", "--format", "json"),
-    ),
-    Parent(
-        "handover run",
-        (
-            sys.executable,
-            "-m",
-            "handover.cli",
-            "run",
-            "--tests",
-            "16",
-            "--jobs",
-            "2",
-            "--out",
-            "out",
-        ),
-    ),
-    Parent(
-        "differential",
-        (sys.executable, "-m", "benchmarks.differential", "--pairs", "4000", "--workers", "2"),
-    ),
-)
+PARENTS = {
+    "rvmon run --jobs": "rvmon run s.rv t.csv t.csv t.csv t.csv t.csv t.csv --jobs 2",
+    "rvmon run --report": "rvmon run s.rv few.csv --report out",
+    "rvmon run": "rvmon run s.rv many.csv --format json",
+    "handover run": "handover.cli run --tests 16 --jobs 2 --out out",
+    "differential": "benchmarks.differential verdicts --count 4000 --jobs 2",
+}
+"""Modules with arguments that begin other processes, in a folder with the inputs."""
 
 WATCH = "rvmon watch --state"
 """It is killed again and again until it has judged its lines."""
+
+RESUMED = {
+    "rvmon run --resume": "rvmon run s.rv . --jobs 2 --resume --out out/v.csv",
+    "handover run, resumed": "handover.cli run --tests 40 --legacy --jobs 2 --out out",
+}
+"""Ended again and again, with all that they began, until they come to an end."""
+
+SECONDS = re.compile(rb'("seconds": ?|simulated in |\bin )[\d.]+|"spent": ?[\d.]+')
 
 
 def inputs(folder: Path) -> None:
@@ -100,16 +81,20 @@ def inputs(folder: Path) -> None:
             file.writelines(f"{k / 100:.2f},{k // 3 % 2},{int(k % 9 == 0)}\n" for k in range(rows))
 
 
+def _words(parent: str) -> list[str]:
+    return [sys.executable, "-m", *parent.split(" ")]
+
+
 class Trial:
     """One folder in which parents of one kind are killed.
 
     Args:
-        parent: the kind.
+        parent: its module with arguments.
         folder: with the inputs.
     """
 
-    def __init__(self, parent: Parent, folder: Path) -> None:
-        self.parent = parent
+    def __init__(self, parent: str, folder: Path) -> None:
+        self.words = _words(parent)
         self.folder = folder
         began = time.perf_counter()
         self.begun(folder / "cache", "first").wait()
@@ -127,7 +112,7 @@ class Trial:
             MARK: mark,
         }
         return subprocess.Popen(
-            self.parent.words,
+            self.words,
             cwd=self.folder,
             env=environment,
             stdout=subprocess.DEVNULL,
@@ -203,28 +188,93 @@ def _is_half_written(path: Path) -> bool:
     return not body.endswith(b"\n")
 
 
+RESUMED_SPEC = """spec resumed
+signal x : real
+requirement R1
+  always (x > 1 -> eventually[0, 50 s] x < -1)
+"""
+
+
+def _write_recordings(folder: Path, count: int, rows: int, dice: random.Random) -> None:
+    (folder / "s.rv").write_text(RESUMED_SPEC)
+    for number in range(count):
+        lines = [f"{row},{dice.gauss(0, 1):.3f}" for row in range(rows)]
+        (folder / f"r{number:03}.csv").write_text("\n".join(["t,x", *lines, ""]))
+
+
+def _written(folder: Path) -> dict[str, bytes]:
+    """Tables and tests; pages and databases hold when and how they were made."""
+    return {
+        str(path.relative_to(folder)): SECONDS.sub(b"", path.read_bytes())
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in (".csv", ".json", ".tex")
+    }
+
+
+def _resumed(words: list[str], folder: Path, kills: int, dice: random.Random) -> str:
+    """Run a command undisturbed, then another way to the same; what is to be told."""
+    out = folder / "out"
+    options = {"cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    began = time.monotonic()
+    subprocess.run(words, check=False, **options)
+    took = time.monotonic() - began
+    known = _written(out)
+    shutil.rmtree(out)
+    out.mkdir()
+    done = on_the_way = finished = 0
+    while done < kills:
+        with subprocess.Popen(words, start_new_session=True, **options) as process:
+            try:
+                process.wait(dice.uniform(0.1, took))
+                finished += 1
+            except subprocess.TimeoutExpired:
+                done += 1
+                os.killpg(process.pid, signal.SIGKILL)
+        left = [path for path in out.rglob("*") if path.suffix in (".journal", ".unfinished")]
+        on_the_way += bool(left)
+        if not left and _written(out) != known and _written(out):
+            return f"DIFFERS after {done} kills"
+        if not left:
+            shutil.rmtree(out)
+            out.mkdir()
+    subprocess.run(words, check=False, **options)
+    same = "same" if _written(out) == known else "DIFFERS"
+    return f"{done} kills, {on_the_way} left something, {finished} came to an end: {same}"
+
+
 def main(argv: Sequence[str]) -> int:
     """Kill, count and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--kills", type=int, default=50, help="of each kind of parent")
     parser.add_argument("--seed", type=int, default=1)
-    labels = [*(parent.label for parent in PARENTS), WATCH]
+    labels = [*PARENTS, *RESUMED, WATCH]
     parser.add_argument("--only", choices=labels, nargs="+", default=labels, metavar="KIND")
     options = parser.parse_args(argv)
     bad = 0
-    for parent in PARENTS:
-        if parent.label not in options.only:
+    for label, parent in PARENTS.items():
+        if label not in options.only:
             continue
-        rng = random.Random(f"{options.seed} {parent.label}")
+        rng = random.Random(f"{options.seed} {label}")
         with tempfile.TemporaryDirectory() as folder:
             inputs(Path(folder))
             trial = Trial(parent, Path(folder))
             for number in range(options.kills):
                 trial.kill(number, rng.uniform(0, trial.span))
-        print(f"{parent.label}: {options.kills} kills within {trial.span:.1f} s", flush=True)
+        print(f"{label}: {options.kills} kills within {trial.span:.1f} s", flush=True)
         for what, count in sorted(trial.found.items()):
             print(f"  {what}: {count}", flush=True)
             bad += count * what.endswith(("survivors", "half written"))
+    for what in RESUMED:
+        if what not in options.only:
+            continue
+        dice = random.Random(options.seed)
+        with tempfile.TemporaryDirectory() as name:
+            out = Path(name) / "out"
+            out.mkdir()
+            _write_recordings(Path(name), 200, 2000, dice)
+            told = _resumed(_words(RESUMED[what]), Path(name), options.kills, dice)
+        bad += "DIFFERS" in told
+        print(f"{what}: {told}", flush=True)
     if WATCH in options.only:
         with tempfile.TemporaryDirectory() as folder:
             killed_watch.written(Path(folder), options.seed, 40 * options.kills)

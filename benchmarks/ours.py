@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import assert_never
 
 from rvmon.spec.checked.formula import (
@@ -62,28 +61,6 @@ def text(formula: Formula) -> str:
             return f"({format_formula(formula)})"
         case _:
             assert_never(formula)
-
-
-def scaled(formula: Formula, factor: int) -> Formula:
-    """The formula with all its bounds so many times as large."""
-    match formula:
-        case Unary(operand=operand, interval=interval):
-            wider = _scaled_interval(interval, factor)
-            return replace(formula, operand=scaled(operand, factor), interval=wider)
-        case Binary(left=left, right=right, interval=interval):
-            wider = _scaled_interval(interval, factor)
-            return replace(
-                formula, left=scaled(left, factor), right=scaled(right, factor), interval=wider
-            )
-        case _:
-            return formula
-
-
-def _scaled_interval(interval: Interval | None, factor: int) -> Interval | None:
-    if interval is None:
-        return None
-    high = None if interval.high is None else interval.high * factor
-    return Interval(interval.low * factor, high)
 
 
 def _window(interval: Interval | None) -> str:

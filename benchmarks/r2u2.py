@@ -26,7 +26,7 @@ from benchmarks.contenders import COLUMNS, STEPS, Contender, Pass, our_worker
 from benchmarks.measure import Plan, measure
 from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.positions import Question, answers, ask_monitor
-from benchmarks.render import ratio_text, time_text
+from benchmarks.results import ratio_text, time_text
 from benchmarks.workload import Workload
 
 from benchmarks import suite

@@ -149,9 +149,10 @@ def _under(value: float, name: str = "x") -> Formula:
 
 
 def batches(rows: int) -> Iterator[Workload]:
-    """Families for columns in memory: many and few rows that change."""
+    """Families for columns in memory: many and few rows that change, and a tenth of the rows."""
     for name, high in _BATCHED:
         yield _family("batch", name, high, rows)
+        yield _family("batch", name, high, rows // 10)
 
 
 def processed(rows: int) -> Iterator[Workload]:
@@ -164,4 +165,4 @@ def _family(section: str, name: str, high: int, rows: int) -> Workload:
     family = next(family for family in timescales.FAMILIES if family.name == name)
     columns = timescales.trace(family, high, rows)
     formula = family.past(timescales.low_bound(high), high)
-    return Workload(section, f"{name} {high}", "past", (formula,), columns)
+    return Workload(section, f"{name} {high}, {rows:,} rows", "past", (formula,), columns)

@@ -1,27 +1,90 @@
-"""The command of the differential test: which forms, which figures."""
+"""The command that compares ours with something independent."""
 
 from __future__ import annotations
 
+import re
+
 import pytest
-from benchmarks.differential import main, parse
+from benchmarks.comparisons import monitors
+from benchmarks.differential import COMPARISONS, main
+
+FEW = {
+    "verdicts": (
+        6,
+        ["traces=4", "online_every=6", "forms=c,c rows,c+next,c+interrupt"],
+        "pairs",
+        24,
+    ),
+    "robustness": (2, [], "measured by arrays", 16),
+    "coverage": (3, [], "pairs", 30),
+    "long": (40, ["samples=1000"], "samples", 30_000),
+    "forecasts": (5, ["words=5"], "formulas", 5),
+    "fillings": (20, ["stretches=true", "fillings=3"], "verdict P", 1),
+    "doors": (2, [], "CSV", 8),
+    "lost": (8, ["doors=csv,stdin"], "csv: runs", 8),
+    "networks": (2, [], "runs checked as concrete runs", 10),
+    "logics": (2, [], "CTL: true", 2),
+    "damage": (20, [], "refused", 5),
+}
+"""How many, settings, and a count with what it is at least."""
 
 
-@pytest.mark.slow
-def test_several_forms_share_the_cases(capsys: pytest.CaptureFixture[str]) -> None:
-    """Each form, and each way of driving it, has its own count of disagreements."""
-    forms = ["--form", "c", "c rows", "--interrupt", "--next"]
-    assert main([*forms, "--pairs", "24", "--traces", "4", "--online-every", "6"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    figures = [line for line in lines if " judged " in line]
-    assert [one.split(" judged ")[0].strip() for one in figures] == [
-        *("c", "c rows", "c+next", "c+interrupt"),
-    ]
-    assert all("judged 24, refused 0, disagreements 0" in one for one in figures)
+def test_each_is_tried() -> None:
+    """All but those that ask other monitors, which are not installed here."""
+    assert COMPARISONS.keys() - FEW.keys() == {"peers", "peers-robustness"}
 
 
-@pytest.mark.parametrize("name", ["abacus", "c rows+next", "c+later", "+next"])
-def test_a_form_that_does_not_exist(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def counts(printed: str) -> dict[str, int]:
+    """The table."""
+    found = re.findall(r"^  (\S.*?)  +([\d,]+)$", printed, re.MULTILINE)
+    return {name: int(figure.replace(",", "")) for name, figure in found}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("name", FEW)
+def test_a_few_of_each(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each comparison tries something, and finds nothing."""
+    count, given, what, least = FEW[name]
+    settings = ["--set", *given] if given else []
+    assert main([name, "--count", str(count), *settings]) == 0
+    found = counts(capsys.readouterr().out)
+    assert found["disagreements"] == 0
+    assert found[what] >= least
+    if name == "verdicts":
+        assert {found[f"judged by {form}"] for form in given[-1][6:].split(",")} == {24}
+    if name == "long":
+        assert min(found[f"attempts {verdict}"] for verdict in "PF") > 50
+        assert found["judged by an automaton"]
+        assert found["judged by a network"]
+
+
+@pytest.mark.law
+def test_what_disagrees_is_shown(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is counted, shrunk and printed; the exit code is 1."""
+    monkeypatch.setattr(monitors, "margins", lambda *_: {})
+    assert main(["robustness", "--count", "1", "--show", "1"]) == 1
+    printed = capsys.readouterr().out
+    assert counts(printed)["disagreements"] > 1
+    assert printed.count("=" * 72) == 1
+    assert "expected None" in printed
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["verdicts", "--set", "forms=abacus"], "no form `abacus`: there are c, c rows"),
+        (["verdicts", "--set", "forms=c rows+next"], "no form `c rows+next`"),
+        (["coverage", "--set", "depth=2"], "no setting `depth`: there are none"),
+        (["long", "--set", "depth=2"], "no setting `depth`: there are samples"),
+        (["fillings", "--set", "time=never"], "never"),
+    ],
+)
+def test_a_setting_that_does_not_exist(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     """It is named, with those that there are."""
     with pytest.raises(SystemExit):
-        parse(["--form", name])
-    assert f"no form `{name}`: there are c, " in capsys.readouterr().err
+        main(words)
+    assert told in capsys.readouterr().err

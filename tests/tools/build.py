@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from dataclasses import replace
 from typing import Any
 
 from rvmon.spec.checked.formula import (
@@ -128,6 +129,28 @@ _TEMPORAL = (
     BinaryOp.STRONG_RELEASE,
     BinaryOp.SINCE,
 )
+
+
+def scaled(formula: Formula, factor: int) -> Formula:
+    """The formula with all its bounds so many times as large."""
+    match formula:
+        case Unary(operand=operand, interval=interval):
+            wider = _scaled_interval(interval, factor)
+            return replace(formula, operand=scaled(operand, factor), interval=wider)
+        case Binary(left=left, right=right, interval=interval):
+            wider = _scaled_interval(interval, factor)
+            return replace(
+                formula, left=scaled(left, factor), right=scaled(right, factor), interval=wider
+            )
+        case _:
+            return formula
+
+
+def _scaled_interval(interval: Interval | None, factor: int) -> Interval | None:
+    if interval is None:
+        return None
+    high = None if interval.high is None else interval.high * factor
+    return Interval(interval.low * factor, high)
 
 
 def compared(left: Numeric, op: str, right: Numeric | float | str) -> Formula:

@@ -80,3 +80,12 @@ def differences(expected: Report, actual: Report) -> list[str]:
 def _show(report: Report, name: str) -> str:
     verdict = report.verdicts.get(name)
     return "none" if verdict is None else verdict.value
+
+
+def frame_differences(expected: Report, actual: Report) -> list[str]:
+    """One line per disagreement on where the trace begins and ends."""
+    return [
+        f"{what} of the trace: {getattr(expected, what)}, got {getattr(actual, what)}"
+        for what in ("origin", "end")
+        if getattr(expected, what) != getattr(actual, what)
+    ]

@@ -15,16 +15,12 @@ from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.syntax import intervals
 from rvmon.verdict.attempt import Attempt, Decision
-from tests.tools.chains import random_chain
-from tests.tools.compare import differences
+from tests.tools.compare import differences, frame_differences
 from tests.tools.drive import Monitored, drive
-from tests.tools.features import Feature, features
-from tests.tools.frame import frame_differences
+from tests.tools.forms import HeldBack
 from tests.tools.health import health_differences
-from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
-from tests.tools.kinds import kinds_of
-from tests.tools.letters import random_letters
+from tests.tools.law import names_read
 from tests.tools.online import (
     differences_after_end,
     is_online,
@@ -32,97 +28,64 @@ from tests.tools.online import (
     online_differences,
 )
 from tests.tools.shrink import shrink
+from tests.tools.special_specs import random_chain, random_letters
+
+MANY = 20
+"""Requirements that are many."""
 
 MakeMonitor = Callable[[Case], Monitored | None]
 """A fresh monitor for the spec and the sources of a case; `None`: it judges no such specs."""
 
 
 @dataclass(slots=True)
-class Mix:
-    """What cases were made of; mixes of parts add up.
+class Campaign:
+    """What cases were made of, and what came of them; those of parts add up.
 
     Attributes:
-        pairs: of a specification and a trace.
-        attempts: by verdict.
-        decisions: by what settled them.
-        on_bound: attempts that the prefix decided at a window's last instant, or a tick later.
-        late: attempts that the prefix decided after the third sample.
-        kinds: of the pairs, each of which may be of several (see `tests.tools.kinds`).
-        features: of the specifications: operators with what they met.
-    """
-
-    pairs: int = 0
-    attempts: Counter[str] = field(default_factory=Counter)
-    decisions: Counter[str] = field(default_factory=Counter)
-    on_bound: int = 0
-    late: int = 0
-    kinds: Counter[str] = field(default_factory=Counter)
-    features: Counter[Feature] = field(default_factory=Counter)
-
-    def add(self, other: Mix) -> None:
-        """Take in the figures of another part."""
-        self.pairs += other.pairs
-        self.attempts += other.attempts
-        self.decisions += other.decisions
-        self.on_bound += other.on_bound
-        self.late += other.late
-        self.kinds += other.kinds
-        self.features += other.features
-
-    def count(self, judgement: Judgement) -> None:
-        """Take in a case."""
-        spec = judgement.case.spec
-        self.pairs += 1
-        self.features.update(features(spec))
-        self.kinds.update(kinds_of(judgement.case, judgement.report))
-        third = (
-            max(sample.t for sample in judgement.case.samples[:3]) if judgement.case.samples else 0
-        )
-        for attempt in judgement.report.attempts:
-            self.attempts[attempt.verdict.value] += 1
-            self.decisions[attempt.decision.value] += 1
-            self.late += attempt.decision is Decision.PREFIX and (attempt.decided or 0) > third
-            self.on_bound += decided_on_bound(spec, attempt)
-
-
-@dataclass(slots=True)
-class Tally:
-    """What came of one engine; tallies of parts add up.
-
-    Attributes:
-        pairs: cases judged.
-        refused: further cases, whose specification the engine does not judge.
+        counts: `pairs` of a specification and a trace, and of what kinds they were; attempts by
+            verdict and by what settled them; of each engine, what it `judged`, and `refused`.
         disagreements: one text each, with seed, differences and the shrunk case.
     """
 
-    pairs: int = 0
-    refused: int = 0
+    counts: Counter[str] = field(default_factory=Counter)
     disagreements: list[str] = field(default_factory=list)
 
-    def add(self, other: Tally) -> None:
-        """Take in the figures of another part."""
-        self.pairs += other.pairs
-        self.refused += other.refused
+    def add(self, other: Campaign) -> None:
+        """Take in another part."""
+        self.counts += other.counts
         self.disagreements += other.disagreements
 
+    def count(self, judgement: Judgement) -> None:
+        """Take in what a case is made of, by what the law says of it."""
+        case, spec, report = judgement.case, judgement.case.spec, judgement.report
+        counts, third = self.counts, max((s.t for s in case.samples[:3]), default=0)
+        requirements = spec.requirements.values()
+        read = {name for one in requirements for name in names_read(one)}
+        kinds = {
+            spec.time.value: True,
+            "outages": bool(case.outages),
+            "unknown values": any(None in s.values.values() for s in case.samples),
+            "late first values": any(_is_late(case, name) for name in read & spec.signals.keys()),
+            "doubt": any(attempt.in_doubt for attempt in report.attempts),
+            "keys": any(one.for_each for one in requirements),
+            "captures": any(one.captures for one in requirements),
+            "many requirements": len(requirements) >= MANY,
+        }
+        counts["pairs"] += 1
+        counts.update(f"pairs with {kind}" for kind, is_of in kinds.items() if is_of)
+        for attempt in report.attempts:
+            counts[f"attempts {attempt.verdict.value}"] += 1
+            counts[f"settled by {attempt.decision.value}"] += 1
+            late = attempt.decision is Decision.PREFIX and (attempt.decided or 0) > third
+            counts["decided after the third sample"] += late
+            counts["decided on a bound"] += decided_on_bound(spec, attempt)
 
-@dataclass(slots=True)
-class Campaign:
-    """What was judged, and what came of each engine; parts add up."""
 
-    mix: Mix
-    tallies: dict[str, Tally]
-
-    @property
-    def disagreements(self) -> list[str]:
-        """Those of all engines."""
-        return [text for tally in self.tallies.values() for text in tally.disagreements]
-
-    def add(self, other: Campaign) -> None:
-        """Take in the figures of another part."""
-        self.mix.add(other.mix)
-        for name, tally in other.tallies.items():
-            self.tallies.setdefault(name, Tally()).add(tally)
+def _is_late(case: Case, name: str) -> bool:
+    """Whether the first known value of a signal comes behind the first sample."""
+    told = ((one.t, one.values.get(name)) for one in case.samples)
+    first = next((t for t, value in told if value is not None and value == value), None)
+    return first is not None and first > case.samples[0].t
 
 
 def cases_of(
@@ -201,23 +164,6 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
 
 
 def campaign(
-    make: MakeMonitor,
-    seeds: Iterable[object],
-    profile: Profile,
-    traces: TraceProfile,
-    *,
-    each: int = 1,
-    online_every: int = 10,
-    shrunk: int = 3,
-) -> Tally:
-    """Judge the cases of each seed with one engine and the oracle; see `campaign_of`."""
-    found = campaign_of(
-        {"": make}, seeds, profile, traces, each=each, online_every=online_every, shrunk=shrunk
-    )
-    return found.tallies[""]
-
-
-def campaign_of(
     engines: Mapping[str, MakeMonitor],
     seeds: Iterable[object],
     profile: Profile,
@@ -239,11 +185,11 @@ def campaign_of(
         each: so many traces for the specification of each seed, which is compiled once.
         online_every: in every so many-th case the return values of all calls are checked too;
             0 for none.
-        shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
+        shrunk: so many disagreements are shrunk and shown, the others only named.
         windows: see `cases_of`.
         letters: see there, too.
     """
-    campaign = Campaign(Mix(), {name: Tally() for name in engines})
+    found = Campaign()
     cases = (
         (seed, case)
         for seed in seeds
@@ -252,18 +198,16 @@ def campaign_of(
     for index, (seed, case) in enumerate(cases):
         asked = online_every > 0 and index % online_every == 0
         judgement = Judgement(case)
-        campaign.mix.count(judgement)
+        found.count(judgement)
         for name, make in engines.items():
-            tally = campaign.tallies[name]
-            found = _found(judgement, make, asked)
-            tally.refused += found is None
-            tally.pairs += found is not None
-            if found:
-                lines = [f"{name} seed {seed}".lstrip(), *found]
-                if len(tally.disagreements) < shrunk:
+            wrong = _found(judgement, make, asked)
+            found.counts[f"{'refused' if wrong is None else 'judged'} by {name}"] += 1
+            if wrong:
+                lines = [f"{name}, seed {seed}", *wrong]
+                if len(found.disagreements) < shrunk:
                     lines.append(_shrunk(case, make, asked))
-                tally.disagreements.append("\n".join(lines))
-    return campaign
+                found.disagreements.append("\n".join(lines))
+    return found
 
 
 def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:

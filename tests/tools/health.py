@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from rvmon.spec.checked.formula import (
     BoundAtom,
-    Compare,
     Constant,
-    EventAtom,
-    FieldValue,
-    Numeric,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    UpdateValue,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.law.sample_words import heard
-from rvmon.testing.law.syntax import parts_of, subformulas
+from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.word import Word
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
+from tests.tools.law import names_read
 
 
 def expected_health(case: Case, word: Word) -> list[Health]:
@@ -47,7 +40,7 @@ def readers_of(spec: CheckedSpec) -> dict[str, tuple[str, ...]]:
     """The requirements that speak of a name, by name."""
     readers: dict[str, tuple[str, ...]] = {}
     for requirement in spec.requirements.values():
-        for name in names_in(requirement):
+        for name in names_read(requirement, keys=False):
             readers[name] = (*readers.get(name, ()), requirement.id)
     return readers
 
@@ -96,34 +89,6 @@ def may_be_simplified(requirement: Requirement, time: TimeModel) -> bool:
         for formula in (requirement.trigger, requirement.consequent)
         for part in subformulas(formula)
     )
-
-
-def names_in(requirement: Requirement) -> Iterator[str]:
-    """The signals and events that a requirement speaks of, each once."""
-    found: dict[str, None] = {}
-    for formula in (requirement.trigger, requirement.consequent):
-        for part in subformulas(formula):
-            match part:
-                case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
-                    found[name] = None
-                case Compare(left=left, right=right):
-                    found.update(dict.fromkeys(_named([left, right])))
-                case _:
-                    pass
-    found.update(dict.fromkeys(_named(capture.value for capture in requirement.captures)))
-    return iter(found)
-
-
-def _named(expressions: Iterable[Numeric]) -> Iterator[str]:
-    for expression in expressions:
-        for part in parts_of(expression):
-            match part:
-                case SignalValue(name=name) | UpdateValue(name=name):
-                    yield name
-                case FieldValue(event=event):
-                    yield event
-                case _:
-                    pass
 
 
 Found = tuple[HealthKind, str, str, int, int | None]

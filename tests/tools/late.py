@@ -2,46 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from rvmon.spec.checked.formula import (
-    Compare,
-    EventAtom,
-    FieldValue,
-    Numeric,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    UpdateValue,
-)
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.law.sample_words import heard
-from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
-
-
-def names_read(requirement: Requirement) -> frozenset[str]:
-    """The signals and events that a requirement reads anywhere."""
-    return frozenset(_names(requirement))
-
-
-def _names(requirement: Requirement) -> Iterator[str]:
-    expressions: list[Numeric] = [capture.value for capture in requirement.captures]
-    if requirement.for_each is not None:
-        expressions.append(requirement.for_each.value)
-    for formula in (requirement.trigger, requirement.consequent):
-        for part in subformulas(formula):
-            match part:
-                case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
-                    yield name
-                case Compare(left=left, right=right):
-                    expressions += [left, right]
-    for expression in expressions:
-        for value in parts_of(expression):
-            match value:
-                case SignalValue(name=name) | UpdateValue(name=name) | FieldValue(event=name):
-                    yield name
+from tests.tools.law import names_read
 
 
 def is_touched(

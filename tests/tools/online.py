@@ -13,7 +13,7 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from tests.tools.compare import Key, Outcome, key_of
 from tests.tools.drive import Monitored, OnlineMonitor, feed
-from tests.tools.held_back import HeldBack
+from tests.tools.forms import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.moments import moments
 from tests.tools.waiting import Waiting

@@ -102,10 +102,6 @@ class Progression:
             )
         return self._location(residual), sources
 
-    def stays(self, _: Token, __: int, ___: int) -> bool:
-        """No: no edge is worked out before it is taken."""
-        return False
-
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
         """For each clock of a location the ages from which on it acts differently."""
         return self._locations[location].cuts
@@ -114,7 +110,3 @@ class Progression:
         """The truth once time has come to `t` and no position came."""
         index, anchors = token
         return value(after(self._locations[index].residual, [t - anchor for anchor in anchors]))
-
-    def residual(self, location: int) -> Residual:
-        """What is owed at a location."""
-        return self._locations[location].residual

@@ -15,7 +15,7 @@ from rvmon.monitor.core.recorded import report_of_run
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
-from tests.tools.lost import Found, Lost, told
+from tests.tools.drive import Found, Lost, told
 
 HEAD = 32
 """Bytes of the head of a snapshot; the last eight are the hash of what follows."""

@@ -13,8 +13,8 @@ from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
-from tests.tools.late import names_read
 from tests.tools.law import judge as oracle
+from tests.tools.law import names_read
 from tests.tools.refill import refilled
 
 

@@ -28,15 +28,13 @@ from tests.tools.build import (
     spec_of,
     timeline,
 )
-from tests.tools.compare import differences
+from tests.tools.compare import differences, frame_differences
 from tests.tools.differential import (
     campaign,
-    campaign_of,
     decided_on_bound,
     disagreements,
 )
 from tests.tools.drive import drive
-from tests.tools.frame import frame_differences
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge, word
@@ -147,22 +145,22 @@ class Forgetful(Echo):
 
 
 def run(make: type[Echo], pairs: int = 60) -> list[str]:
-    tally = campaign(make, range(pairs), Profile(), TraceProfile(), online_every=2, shrunk=1)
-    return tally.disagreements
+    echo = {"echo": make}
+    found = campaign(echo, range(pairs), Profile(), TraceProfile(), online_every=2, shrunk=1)
+    return found.disagreements
 
 
 def test_no_disagreement_with_itself() -> None:
     """A monitor that does as the oracle does has no disagreement, online neither."""
-    found = campaign_of({"echo": Echo}, range(60), Profile(), TraceProfile(), online_every=1)
+    found = campaign({"echo": Echo}, range(60), Profile(), TraceProfile(), online_every=1)
     assert found.disagreements == []
-    assert found.tallies["echo"].pairs == found.mix.pairs == 60
-    assert sum(found.mix.attempts.values()) == sum(found.mix.decisions.values()) > 60
+    assert found.counts["judged by echo"] == found.counts["pairs"] == 60
 
 
 def test_wrong_instant_is_found_and_shrunk() -> None:
     """An instant that is off by one is found, and shown in a case of a few lines."""
     first = run(LateDeadline)[0]
-    assert first.startswith("seed ")
+    assert first.startswith("echo, seed ")
     shown = first.split("shrunk:")[1]
     assert "F" in shown
     assert shown.count("sample ") <= 2

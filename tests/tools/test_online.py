@@ -20,15 +20,14 @@ from rvmon.testing.law.attempts import is_upon_end
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.build import always, eventually, no, p, q, requirement, spec_of, timeline, two
 from tests.tools.compare import outcomes
-from tests.tools.differential import campaign_of, case_of
+from tests.tools.differential import campaign, case_of
 from tests.tools.drive import drive
+from tests.tools.forms import HeldBack, Maker
 from tests.tools.health import health_differences
-from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
 from tests.tools.moments import Moment, moments
 from tests.tools.online import online_differences
-from tests.tools.ways import Maker
 
 pytestmark = pytest.mark.law
 
@@ -110,7 +109,7 @@ def test_a_moment_of_a_run_is_the_run_up_to_there(time: TimeModel) -> None:
 def test_samples_in_portions() -> None:
     """Portions of a sample with one stamp come to the same, a stamp later."""
     makers = {way: Maker(f"c+{way}") for way in ("next", "next+interrupt")}
-    found = campaign_of(makers, range(25), Profile(), TraceProfile(), online_every=3)
+    found = campaign(makers, range(25), Profile(), TraceProfile(), online_every=3)
     assert found.disagreements == []
 
 

@@ -85,7 +85,7 @@ def paper_table() -> VerdictTable:
 
 
 SPREAD_FILE = "spread.json"
-"""Beside this module; `python -m benchmarks.table1_bands --seeds 10 --write` writes it."""
+"""Beside this module; `python -m benchmarks.table1 bands --seeds 10 --write` writes it."""
 
 
 class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -127,7 +127,7 @@ def spread_text() -> str:
             parts.append(f"{strategy} {', '.join(varying)}")
     return (
         f"Over the seeds {found.first} to {found.last}, with 100 tests of each random strategy, P "
-        f"varies: {'; '.join(parts)} (python -m benchmarks.table1_bands)."
+        f"varies: {'; '.join(parts)} (python -m benchmarks.table1 bands)."
     )
 
 

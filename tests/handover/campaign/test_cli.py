@@ -332,11 +332,11 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
         return execute(chosen, **{**options, "progress": press_ctrl_c})
 
     monkeypatch.setattr(campaign_run, "execute", interrupted)
-    assert main(["run", "--tests", "60", "--jobs", jobs, "--out", str(tmp_path)]) == 130
+    assert main(["run", "--tests", "20", "--jobs", jobs, "--out", str(tmp_path)]) == 130
     content = json.loads((tmp_path / "table.json").read_text())
     partial = content["partial"]
     assert partial["why"] == "interrupted"
-    assert 0 < partial["finished"] < partial["planned"] == 120
+    assert 0 < partial["finished"] < partial["planned"] == 40
     strategies = content["robots"]["correct"]["strategies"].values()
     assert sum(strategy["tests"] for strategy in strategies) == partial["finished"]
     assert len(list((tmp_path / "tests").iterdir())) == partial["finished"]
@@ -358,7 +358,7 @@ sys.exit(cli.main())
 """Says when it has begun: nobody answers for an interrupt while Python itself starts."""
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("seconds", [0.0, 0.6])
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]

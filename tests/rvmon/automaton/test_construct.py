@@ -5,7 +5,7 @@ from random import Random
 import pytest
 from tests.tools.build import always, eventually, no, p, q, r, requirement, two
 from tests.tools.progression import Progression
-from tests.tools.stepped import TableMachine, run
+from tests.tools.stepped import TableMachine
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.diagram import LetterDiagram
@@ -15,7 +15,6 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.spec.checked.formula import SignalAtom
-from rvmon.trace.time import NEVER
 
 SECOND = 10**9
 
@@ -83,59 +82,6 @@ def test_construction_is_deterministic():
         second.class_of,
         second.targets,
     )
-
-
-class Counted:
-    """A machine that counts its steps."""
-
-    def __init__(self, machine):
-        self.machine = machine
-        self.start = machine.start
-        self.steps = 0
-
-    def step(self, token, t, letter):
-        self.steps += 1
-        return self.machine.step(token, t, letter)
-
-    def cuts(self, location):
-        return self.machine.cuts(location)
-
-    def time_value(self, token, t):
-        return self.machine.time_value(token, t)
-
-    def residual(self, location):
-        return self.machine.residual(location)
-
-
-@pytest.mark.parametrize("scale", [1, 10**6])
-@pytest.mark.parametrize("kind", ["table", "progression"])
-def test_held_time_is_jumped_over(kind, scale):
-    """The number of steps in a stretch does not depend on the length of a tick's worth."""
-    owed, alphabet = core(always(two(p, "->", always(q, 0, 30 * scale))))
-    machine = (
-        TableMachine(construct(owed, alphabet, Budget()))
-        if kind == "table"
-        else Progression(owed, alphabet)
-    )
-    counted = Counted(machine)
-    holds = alphabet.size - 1
-    token, due = counted.start, 0
-    for letter, length in ((holds, 100), (holds - 1, 10), (holds, 50)):
-        token, due, _ = run(counted, token, letter, due, due + length * scale - 1, 1)
-        due = min(due, 10**18)
-    assert counted.steps <= 12
-
-
-def test_a_stretch_is_due_when_a_kept_clock_crosses():
-    """A pending deadline makes the stretch due one tick after it, a settled loop never."""
-    owed, alphabet = core(eventually(p, 0, 30))
-    machine = TableMachine(construct(owed, alphabet, Budget()))
-    _, due, _ = run(machine, machine.start, 0, 10, 20, 1)
-    assert due == 41
-    owed, alphabet = core(always(p))
-    machine = TableMachine(construct(owed, alphabet, Budget()))
-    _, due, _ = run(machine, machine.start, 1, 10, 20, 1)
-    assert due == NEVER
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from random import Random
 
 import pytest
-from tests.tools.scale import retimed
+from tests.tools.build import scaled
 
 from rvmon.automaton.automaton import Automaton, end_clauses
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
@@ -78,5 +78,5 @@ def test_an_automaton_of_a_known_shape_is_that_of_its_formula(part):
 def _retimed(spec: CheckedSpec, factor: int) -> Iterator[tuple[Next, Alphabet]]:
     factory = Factory()
     for one in spec.requirements.values():
-        formulas = [retimed(part, lambda d: d * factor) for part in (one.trigger, one.consequent)]
+        formulas = [scaled(part, factor) for part in (one.trigger, one.consequent)]
         yield from owed_by(Requirement(one.id, one.mode, *formulas, pulse=one.pulse), factory)

@@ -10,8 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from tests.tools.core_forms import column_of
-from tests.tools.forms import Compiler
+from tests.tools.forms import Compiler, column_of
 
 from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, PlannedCore, planned_core

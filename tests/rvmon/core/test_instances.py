@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 from tests.tools.differential import disagreements
-from tests.tools.ways import Maker
+from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.testing.case import Case

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.tools.differential import campaign_of, case_of
+from tests.tools.differential import campaign, case_of
 from tests.tools.forms import Compiler, Maker
 from tests.tools.late import after_late
 from tests.tools.law import judge
@@ -469,6 +469,6 @@ def test_random_outages_are_judged_as_the_law_has_it(time):
     compiler = Compiler()
     makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
     traces = TraceProfile(sparse=10, outages=80)
-    found = campaign_of(makers, seeds, profile, traces, each=5)
+    found = campaign(makers, seeds, profile, traces, each=5)
     assert not found.disagreements, found.disagreements[0]
-    assert found.mix.kinds["outage"] > 60
+    assert found.counts["pairs with outages"] > 60

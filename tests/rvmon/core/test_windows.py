@@ -3,9 +3,9 @@
 import random
 
 import pytest
-from tests.tools.chains import random_chain
 from tests.tools.differential import disagreements
-from tests.tools.ways import Maker
+from tests.tools.forms import Maker
+from tests.tools.special_specs import random_chain
 
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 

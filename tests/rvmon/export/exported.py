@@ -6,7 +6,9 @@ import struct
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -55,7 +57,7 @@ class Exported:
 
     def compile(self, command: Sequence[str]) -> None:
         """Compile the program, by a compiler with its options."""
-        sources = [str(DRIVER), "rvmon_core.c"]
+        sources = [str(DRIVER), str(Path(_core(tuple(command)).name) / "rvmon_core.o")]
         line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
         subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
@@ -116,6 +118,17 @@ class Exported:
         rows = np.frombuffer(records, RECORD)
         values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]
+
+
+@cache
+def _core(command: tuple[str, ...]) -> TemporaryDirectory[str]:
+    """A folder with the core as an object, which takes longest; it is the same for all cases."""
+    folder: TemporaryDirectory[str] = TemporaryDirectory()
+    for name, text in core_files().items():
+        Path(folder.name, name).write_text(text, encoding="utf-8")
+    line = [*command, "-c", "rvmon_core.c", "-o", "rvmon_core.o"]
+    subprocess.run(line, cwd=folder.name, check=True)  # noqa: S603
+    return folder
 
 
 def _planned(compiled: CompiledSpec) -> PlannedCore:

@@ -45,15 +45,15 @@ def judged(seed, many, **profile):
 
 def test_exported_c_judges_as_the_extension(tmp_path):
     """The same records of the same samples, in the same order, and no step astray; twice."""
-    exported = Exported(tmp_path, list(judged("export", 200)), ["gcc", *STRICT, *SANITIZED])
-    wanted = [2 * exported.records_of_extension(number) for number in range(200)]
-    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(200)])]
+    exported = Exported(tmp_path, list(judged("export", 120)), ["gcc", *STRICT, *SANITIZED])
+    wanted = [2 * exported.records_of_extension(number) for number in range(120)]
+    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(120)])]
     assert told == wanted
     exported.compile(["gcc", "-m32", "-msse2", "-mfpmath=sse"])
-    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(200)])]
+    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(120)])]
     assert told == wanted, "32 bits"
-    assert sum(map(len, told)) > 500
-    assert sum(":" in line for lines in told for line in lines) > 40, "captured values"
+    assert sum(map(len, told)) > 300
+    assert sum(":" in line for lines in told for line in lines) > 20, "captured values"
 
 
 def records(run):
@@ -173,13 +173,7 @@ def compiled(folder, *line):
 def strict():
     """The compilers that there are, each with all warnings as errors."""
     warnings = [*STRICT, "-Wconversion", "-Wshadow"]
-    names = [
-        "gcc -m32",
-        "arm-none-eabi-gcc -mthumb -mcpu=cortex-m3",
-        "clang",
-        "gcc -O1",
-        "clang -O3",
-    ]
+    names = ["arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang", "gcc -O1"]
     return [[*name.split(), *warnings] for name in names if shutil.which(name.split()[0])]
 
 

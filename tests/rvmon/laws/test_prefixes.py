@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 from tests.tools.compare import differences, outcomes
-from tests.tools.health import names_in
+from tests.tools.law import names_read
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.choices import BOOLS
@@ -62,7 +62,7 @@ def test_samples_that_nobody_reads(subject: Any, holds: Any, time: TimeModel) ->
         case = data.draw(cases(replace(subject.profile, time=time)))
         if not case.samples:
             return
-        read = {n for one in case.spec.requirements.values() for n in names_in(one)}
+        read = {n for one in case.spec.requirements.values() for n in names_read(one, keys=False)}
         others = [name for name in BOOLS if name not in read and case.names is None]
         said_too = {name: data.draw(st.booleans()) for name in others}
         first, last = case.samples[0].t, case.samples[-1].t

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.build import scaled
 from tests.tools.drive import drive
 from tests.tools.forms import Maker
-from tests.tools.scale import compact, in_units, scaled
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.law.syntax import numerics, parts_of
 from rvmon.testing.strategies import cases
+from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 
 SPARSE = 1_000
@@ -38,8 +41,8 @@ def test_scaling(data: st.DataObject) -> None:
         if isinstance(part, UpdateValue)
     ]
     assume(UpdateFunction.RATE not in parts)  # it is per second
-    short = judged(scaled(case, SPARSE))
-    long = judged(scaled(case, SPARSE * FURTHER))
+    short = judged(longer(case, SPARSE))
+    long = judged(longer(case, SPARSE * FURTHER))
     assert in_units(long, SPARSE * FURTHER) == in_units(short, SPARSE)
 
 
@@ -52,15 +55,42 @@ def _numbers(formula: Formula) -> list[UpdateFunction]:
     return [part.function for part in numerics(formula) if isinstance(part, UpdateValue)]
 
 
-@pytest.mark.law
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
-@given(data=st.data())
-def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:
-    """Brought to few ticks, a case has the same attempts, at the same instants and ticks."""
-    case = scaled(data.draw(cases(Profile(mixed=False, requirements=1))), SPARSE)
-    small = compact(case)
-    assume(small is not None)
-    assert small is not None
-    assert small.unit <= small.grain
-    wanted = in_units(judged(case), small.grain, small.origin)
-    assert in_units(judged(small.case), small.unit) == wanted
+def longer(case: Case, factor: int) -> Case:
+    """A case of which all durations and stamps are so many times longer."""
+    spec = case.spec
+    signals = {
+        name: replace(one, stale_after=one.stale_after and one.stale_after * factor)
+        for name, one in spec.signals.items()
+    }
+    requirements = {
+        name: replace(
+            one, trigger=scaled(one.trigger, factor), consequent=scaled(one.consequent, factor)
+        )
+        for name, one in spec.requirements.items()
+    }
+    period = spec.period and spec.period * factor
+    actions = tuple(
+        replace(one, t=one.t * factor) if isinstance(one, Sample) else one * factor
+        for one in case.actions
+    )
+    return replace(
+        case,
+        spec=replace(spec, period=period, signals=signals, requirements=requirements),
+        actions=actions,
+        end=case.end and case.end * factor,
+    )
+
+
+def in_units(report: Report, unit: int) -> list[tuple[object, ...]]:
+    """The attempts with each instant as whole units and the ticks beside them."""
+
+    def split(instant: int | None) -> tuple[int, int] | None:
+        if instant is None:
+            return None
+        whole = (instant + unit // 2) // unit
+        return whole, instant - whole * unit
+
+    return [
+        (a.requirement, a.number, split(a.triggered), split(a.decided), a.verdict, a.decision)
+        for a in report.attempts
+    ]

@@ -110,12 +110,12 @@ class Door:
     plain: bool = False
 
 
-def trials(door: str, how: Door, count: int, seed: int, folder: Path) -> Iterator[Trial]:
+def trials(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Trial]:
     """So many trials whose loss changes a letter that a requirement reads."""
     return islice(_trials(door, how, seed, folder), count)
 
 
-def _trials(door: str, how: Door, seed: int, folder: Path) -> Iterator[Trial]:
+def _trials(door: str, how: Door, seed: object, folder: Path) -> Iterator[Trial]:
     profile = Profile(for_each=not how.plain)
     for number in itertools.count():
         spec = None
@@ -197,7 +197,7 @@ def _filled(rng: random.Random, trial: Trial) -> Case:
     return replace(trial.case, actions=tuple(samples))
 
 
-def outcomes(door: str, how: Door, count: int, seed: int, folder: Path) -> Iterator[Outcome]:
+def outcomes(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
     """What comes of so many trials at a door."""
     batch: list[Trial] = []
     found = trials(door, how, count, seed, folder)

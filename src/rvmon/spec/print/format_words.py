@@ -119,7 +119,8 @@ def _with_colon(pieces: list[Piece]) -> list[Piece]:
     found: list[Piece] = []
     for piece in pieces:
         if found and found[-1].kind == "AT_END" and piece.kind != "COLON":
+            comment = found[-1].behind  # it ends the line of the colon then
             found[-1] = replace(found[-1], behind="")
-            found.append(Piece("COLON", ":"))
+            found.append(Piece("COLON", ":", behind=comment))
         found.append(piece)
     return found

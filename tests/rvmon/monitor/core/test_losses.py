@@ -4,7 +4,7 @@ import random
 from dataclasses import replace
 
 import pytest
-from tests.tools.lost import Found, Lost, told
+from tests.tools.drive import Found, Lost, told
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError

@@ -4,11 +4,12 @@ import random
 import re
 
 import pytest
-from tests.tools.spec_text import meaning, scribbled, spec_text
+from tests.rvmon.spec.print.writing import meaning, scribbled
 
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 
 EXAMPLE = """# Head
@@ -73,12 +74,20 @@ def test_canonical_form():
     assert format_text(CANONICAL) == CANONICAL
 
 
+@pytest.mark.parametrize("colon", [":", ""])
+def test_a_comment_behind_at_end_is_kept(colon):
+    """Whether the colon stood there or not."""
+    head = "spec s\nsignal b : bool\nrequirement R\n  upon b then b\n"
+    text = format_text(f"{head}  at end{colon} # why\n  strong\n")
+    assert text.endswith("  at end:  # why\n    strong\n")
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(120))
 def test_laws(seed):
     """Of random specifications in random writing meaning and comments are kept."""
     rng = random.Random(seed)
-    text = scribbled(spec_text(random_spec(rng, Profile())), rng)
+    text = scribbled(show_spec(random_spec(rng, Profile())), rng)
     once = format_text(text)
     assert format_text(once) == once
     assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])

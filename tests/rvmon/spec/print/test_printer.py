@@ -3,12 +3,13 @@
 import random
 
 import pytest
-from tests.tools.spec_text import meaning, spec_text
+from tests.rvmon.spec.print.writing import meaning
 
 from rvmon.spec.checked.formula import Arithmetic, Compare, Literal, SignalValue
 from rvmon.spec.checked.tense import subformulas
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.units import unit_table
 
@@ -18,10 +19,10 @@ from rvmon.units import unit_table
 def test_parse_after_print_is_identity(seed):
     """Random specifications survive being printed and read."""
     spec = random_spec(random.Random(seed), Profile())
-    once, _ = compile_text(spec_text(spec))
+    once, _ = compile_text(show_spec(spec))
     if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
         assert meaning(once) == meaning(spec)
-    twice, _ = compile_text(spec_text(once))
+    twice, _ = compile_text(show_spec(once))
     assert meaning(twice) == meaning(once)
 
 
@@ -51,7 +52,7 @@ def is_constant_arithmetic(node):
 
 def test_random_texts_are_varied():
     """The random specifications use all operators of the language."""
-    text = " ".join(spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150))
+    text = " ".join(show_spec(random_spec(random.Random(seed), Profile())) for seed in range(150))
     for word in ("until", "unless", "since", " R", " M", "once", "within", "for each", "let",
                  "held(", "rise(", "updated(", "->", "<->", "xor", "next", "previous"):  # fmt: skip
         assert word in text, word

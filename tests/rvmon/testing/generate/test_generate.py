@@ -11,7 +11,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import given, settings
 from tests.tools.build import compared, eventually, requirement, spec_of, x
-from tests.tools.differential import Mix, case_of
+from tests.tools.differential import Campaign, case_of
 from tests.tools.features import Feature, features, possible
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
@@ -37,13 +37,14 @@ def some_cases(time: TimeModel, number: int = 400) -> list[Case]:
 @pytest.mark.parametrize("time", TimeModel)
 def test_verdicts_are_mixed(time: TimeModel) -> None:
     """P, F and I make up 15 % of the attempts each, and 10 % are decided on a bound."""
-    mix = Mix()
+    found = Campaign()
     for case in some_cases(time):
-        mix.count(Judgement(case))
-    attempts = sum(mix.attempts.values())
+        found.count(Judgement(case))
+    by_verdict = [found.counts[f"attempts {verdict}"] for verdict in ("P", "F", "I", "NT")]
+    attempts = sum(by_verdict)
     assert attempts > 400
-    assert min(mix.attempts[verdict] for verdict in "PFI") >= 0.15 * attempts
-    assert mix.on_bound >= 0.10 * attempts
+    assert min(by_verdict[:3]) >= 0.15 * attempts
+    assert found.counts["decided on a bound"] >= 0.10 * attempts
 
 
 def test_everything_occurs() -> None:

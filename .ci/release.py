@@ -2,7 +2,7 @@
 
 The native core is compiled, but not run, for the systems of `TARGETS`, by the package `ziglang`.
 
-    python -m benchmarks.release [--only EXTRA …] [--no-pythons]
+    python .ci/release.py [--only EXTRA …] [--no-pythons]
 
 Prints what each installation takes on the disk and its doors to import, and names what was not
 tried. Uploads nothing. The exit code is 1 if anything failed.

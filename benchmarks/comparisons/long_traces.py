@@ -1,40 +1,33 @@
 """The core against progression, on traces too long for the law: what is kept over time stays right.
 
-    python -m benchmarks.long_traces --traces 100 --samples 10000 --seed 1
-
 Random formulas with windows of up to some hundred ticks, owed from the start or upon a signal, in
 held and in sampled time; nothing is unknown. What an attempt owes is taken on by
 `tests.tools.progression`, which has the formula's core form in common with the core, and neither
 automata, queues, networks nor chains of windows. Compared are, of every attempt, trigger, verdict
-and instant of what the prefix decides, stepped and by rows. Prints every disagreement, with its
-number, and exits 1 if there is one.
+and instant of what the prefix decides, stepped and by rows.
 """
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
-import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
-from benchmarks.ours import scaled
-from rvmon.monitor.compiled.costs import compile_report
-from tests.tools.core_forms import ByRows, Stepped
+from benchmarks.comparisons.comparison import Found
+from tests.tools.build import scaled
 from tests.tools.drive import drive
+from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
 from tests.tools.progression import Progression, TooManyObligationsError
-from tests.tools.stepped import run, settle
+from tests.tools.stepped import settle
 
 from rvmon.automaton.location import PASSED, Token
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, Elapsed, State, StateOp
-from rvmon.monitor import compile_spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
@@ -54,38 +47,23 @@ Told = Mapping[int, tuple[int, int | None, Verdict | None]]
 """By number of an attempt its trigger, and instant and verdict if the prefix decides it."""
 
 
-@dataclass(slots=True)
-class Compared:
-    """What came of some traces.
+@dataclass(frozen=True, slots=True)
+class Long:
+    """Settings of `long`: of how many samples a trace is."""
 
-    Attributes:
-        traces: so many were judged by both.
-        samples: in them.
-        attempts: in them, by verdict of the prefix.
-        judges: of the core, by the traces that each had.
-        passed_over: traces of which progression would owe too much at once.
-        found: one text for each disagreement.
-    """
-
-    traces: int = 0
-    samples: int = 0
-    attempts: Counter[str] = field(default_factory=Counter)
-    judges: Counter[str] = field(default_factory=Counter)
-    passed_over: int = 0
-    found: list[str] = field(default_factory=list)
+    samples: int = 10_000
 
 
-def long_cases(seed: object, samples: int) -> Iterator[Case]:
-    """Random cases without end, each of one requirement and so many samples."""
-    for number in range(sys.maxsize):
-        rng = random.Random(f"{seed}/{number}")
-        formula = scaled(random_mtl(rng, rng.randint(2, 4)), rng.choice(LENGTHS))
-        trigger = rng.choice((TRIGGER, TRIGGER, BoundAtom(Bound.START)))
-        model = (TimeModel.HELD, TimeModel.SAMPLED)[number % 2]
-        requirement = Requirement("R", Mode.UPON, trigger, formula)
-        signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
-        spec = CheckedSpec("long", "", model, signals, {}, {"R": requirement})
-        yield Case(spec, tuple(_samples(rng, samples)))
+def _case(seed: int, number: int, samples: int) -> Case:
+    """A random case of one requirement and so many samples."""
+    rng = random.Random(f"{seed}/{number}")
+    formula = scaled(random_mtl(rng, rng.randint(2, 4)), rng.choice(LENGTHS))
+    trigger = rng.choice((TRIGGER, TRIGGER, BoundAtom(Bound.START)))
+    model = (TimeModel.HELD, TimeModel.SAMPLED)[number % 2]
+    requirement = Requirement("R", Mode.UPON, trigger, formula)
+    signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
+    spec = CheckedSpec("long", "", model, signals, {}, {"R": requirement})
+    return Case(spec, tuple(_samples(rng, samples)))
 
 
 def _samples(rng: random.Random, count: int) -> Iterator[Sample]:
@@ -169,11 +147,15 @@ def _taken(
     machine: Progression, token: Token, letter: int, t: int, until: int, *, is_held: bool
 ) -> tuple[Token, int]:
     """A token after a sample and the time behind it, and the instant if that decided it."""
-    if is_held:
-        after, at, _ = run(machine, token, letter, t, until, 1)
-        return after, at
     after = machine.step(token, t, letter)
-    return (after, t) if after[0] <= PASSED else settle(machine, after, t, until)
+    if not is_held:
+        return (after, t) if after[0] <= PASSED else settle(machine, after, t, until)
+    while after[0] > PASSED and t < until:  # in held time every tick is a position
+        t, before = t + 1, after
+        after = machine.step(before, t, letter)
+        if after == before and not after[1]:  # without clocks it only loops
+            break
+    return after, t
 
 
 def of_report(report: Report) -> Told:
@@ -188,55 +170,29 @@ def of_report(report: Report) -> Told:
     }
 
 
-def compared(cases: Iterator[Case], traces: int) -> Compared:
-    """Have both judge, until so many traces are judged."""
-    total = Compared()
-    for number, case in enumerate(cases):
-        if total.traces >= traces:
-            break
+def judge_long(seed: int, own: Long, numbers: range) -> Found:
+    """Have both judge traces."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        case = _case(seed, number, own.samples)
         try:
             wanted = by_progression(case)
         except TooManyObligationsError:
-            total.passed_over += 1
+            counts["passed over: too much is owed at once"] += 1
             continue
-        total.traces += 1
-        total.samples += len(case.samples)
-        total.attempts.update("open" if v is None else v.value for _, _, v in wanted.values())
-        compiled = compile_spec(case.spec)
-        total.judges[compile_report(compiled.requirements["R"]).judge] += 1
-        for form in (Stepped, ByRows):
-            got = of_report(drive(form(compiled, case), case)[0])
-            for one in sorted(wanted.keys() | got.keys()):
-                if wanted.get(one) != got.get(one):
-                    text = format_formula(case.spec.requirements["R"].consequent)
-                    total.found.append(
-                        f"case {number}, {case.spec.time.value}, {text}: attempt {one}: "
-                        f"{wanted.get(one)}, {form.__name__} {got.get(one)}"
-                    )
-                    break
-    return total
-
-
-def main(words: list[str]) -> int:
-    """Compare, and print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.long_traces")
-    parser.add_argument("--traces", type=int, default=100)
-    parser.add_argument("--samples", type=int, default=10_000, help="of a trace")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args(words)
-    began = time.process_time()
-    total = compared(long_cases(options.seed, options.samples), options.traces)
-    for text in total.found:
-        print(text)
-    verdicts = ", ".join(f"{name} {count:,}" for name, count in sorted(total.attempts.items()))
-    judges = ", ".join(f"{name} {count}" for name, count in sorted(total.judges.items()))
-    print(
-        f"{total.traces} traces ({judges}), {total.samples:,} samples, attempts {verdicts}; "
-        f"{total.passed_over} passed over; disagreements {len(total.found)}; "
-        f"{time.process_time() - began:.0f} s of CPU time"
-    )
-    return 1 if total.found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+        counts.update(traces=1, samples=len(case.samples))
+        for _, _, verdict in wanted.values():
+            counts[f"attempts {'open' if verdict is None else verdict.value}"] += 1
+        compiler = Compiler()
+        automaton = compiler(case.spec).requirements["R"].automaton
+        counts[f"judged by {'a network' if automaton is None else 'an automaton'}"] += 1
+        for form in FORMS:
+            got = of_report(drive(Maker(form, compiler)(case), case)[0])
+            wrong = [k for k in sorted(wanted.keys() | got.keys()) if wanted.get(k) != got.get(k)]
+            if wrong:
+                text = format_formula(case.spec.requirements["R"].consequent)
+                texts.append(
+                    f"number {number}, {case.spec.time.value}, {text}: attempt {wrong[0]}: "
+                    f"{wanted.get(wrong[0])}, {form} {got.get(wrong[0])}"
+                )
+    return counts, texts

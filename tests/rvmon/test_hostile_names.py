@@ -1,29 +1,24 @@
 """Hostile names and cells through every output, each parsed again: nothing is forged or obeyed.
 
-    python -m benchmarks.hostile_names --names 100000 --through-commands 100000
-
-Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands get so
-many of them, in specifications, models and recordings. Prints by output how many names came
-through, and those at which something else came out than of harmless names.
+Every writer gets names as ids, texts, columns, reasons and names of files; commands get them in
+specifications, models and recordings. `HOSTILE_NAMES=100000` in the environment tries so many.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import csv
 import io
 import json
+import os
 import re
-import tempfile
-import time
 import xml.etree.ElementTree as ET
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import pytest
 from tests.tools.hostile import STEERING, hostile_names
 
 import rvmon
@@ -46,8 +41,11 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
+NAMES = int(os.environ.get("HOSTILE_NAMES", "40"))
 BATCH = 1000
 """Names in one document."""
+
+pytestmark = pytest.mark.slow
 
 Names = Sequence[str]
 
@@ -316,40 +314,23 @@ def _holds(name: str, text: str, ids: Names) -> bool:
     return True
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """Write, read again, print, and return 1 if anything was forged or obeyed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--names", type=int, default=100_000)
-    parser.add_argument("--through-commands", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=0)
-    arguments = parser.parse_args(words)
-    began = time.perf_counter()
-    given: Counter[str] = Counter()
-    wrong: Counter[str] = Counter()
-    names = list(hostile_names(arguments.names, arguments.seed))
-    for first in range(0, len(names), BATCH):
-        documents = Documents(names[first : first + BATCH])
-        for writer in WRITERS:
-            given[writer.__name__] += len(documents.names)
-            if not writer(documents):
-                wrong[writer.__name__] += 1
-                print(
-                    f"{writer.__name__}: wrong among names {first} to {first + BATCH}", flush=True
-                )
-    count = min(arguments.through_commands, len(names))
-    for first in range(0, count, BATCH):
-        part = names[first : min(first + BATCH, count)]
-        with tempfile.TemporaryDirectory() as folder:
-            for name, fine in through_commands(part, Path(folder)):
-                given[name] += len(part)
-                if not fine:
-                    wrong[name] += 1
-                    print(f"{name}: wrong among {first} to {first + len(part)}", flush=True)
-    for name, count in given.items():
-        print(f"{name:18} {count:8} names, {wrong[name]} documents wrong")
-    print(f"{time.perf_counter() - began:.0f} s")
-    return int(bool(wrong))
+@pytest.fixture(scope="module")
+def documents() -> list[Documents]:
+    """What is made of names."""
+    names = [*hostile_names(NAMES)]
+    return [Documents(names[first : first + BATCH]) for first in range(0, NAMES, BATCH)]
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.mark.parametrize("writer", WRITERS, ids=lambda writer: writer.__name__)
+def test_what_is_written_reads_back_as_names(documents, writer):
+    """JSON, the terminal, JUnit XML, CSV, LaTeX, HTML, strings of DOT, UPPAAL's XML, messages."""
+    assert all(map(writer, documents))
+
+
+def test_every_command_shows_names_and_obeys_none(tmp_path):
+    """Also in what it refuses."""
+    names = [*hostile_names(NAMES)]
+    for first in range(0, NAMES, BATCH):
+        found = dict(through_commands(names[first : first + BATCH], tmp_path))
+        assert len(found) > 20
+        assert [name for name, fine in found.items() if not fine] == []

@@ -1,4 +1,4 @@
-"""Checked specifications as text, in canonical and in random writing, and what they say."""
+"""Specifications in random writing, and what they say."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from rvmon.spec.checked.formula import Binary, BinaryOp
-from rvmon.spec.checked.specification import CheckedSpec, Event, Requirement, Signal
-from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.choices import Rng, chance, pick
-from rvmon.trace.schema import Kind
 
 _SYNONYMS = {
     "not": ("not", "!"),
@@ -35,45 +33,6 @@ _WORD = re.compile(
     r"|[\w.]+|<->|->|==|!=|<=|>=|[^\w\s]|\s+"
 )
 _CHAINED = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IFF)
-
-
-def spec_text(spec: CheckedSpec) -> str:
-    """A specification that holds no goals and properties, as text of the language."""
-    period = f" {format_duration(spec.period)}" if spec.period else ""
-    lines = [f"spec {spec.name}", f"time {spec.time}{period}"]
-    lines += map(_signal, spec.signals.values())
-    lines += map(_event, spec.events.values())
-    for requirement in spec.requirements.values():
-        lines += _requirement(requirement)
-    return "\n".join(lines) + "\n"
-
-
-def _signal(signal: Signal) -> str:
-    type_ = signal.type
-    shown = "{" + ", ".join(type_.labels) + "}" if type_.kind is Kind.LABEL else str(type_.kind)
-    unit = f" [{type_.unit}]" if type_.unit else ""
-    stale = f" stale after {format_duration(signal.stale_after)}" if signal.stale_after else ""
-    ignoring = " ignore NaN" if signal.ignores_nan else ""
-    return f"signal {signal.name} : {shown}{unit}{ignoring}{stale}"
-
-
-def _event(event: Event) -> str:
-    listed = ", ".join(f"{name}: {type_.kind}" for name, type_ in event.fields.items())
-    return f"event {event.name}" + (f"({listed})" if listed else "")
-
-
-def _requirement(requirement: Requirement) -> list[str]:
-    lines = [
-        f'requirement {requirement.id} "{requirement.text}"',
-        f"  {requirement.mode} {format_formula(requirement.trigger)}",
-        f"  then {format_formula(requirement.consequent)}",
-    ]
-    if requirement.for_each:
-        each = requirement.for_each
-        lines.append(f"  for each {each.name} in {format_numeric(each.value)}")
-    lines += [f"  let {let.name} = {format_numeric(let.value)}" for let in requirement.captures]
-    lines += [f"  {requirement.run_share}"] if requirement.run_share else []
-    return [*lines, f"  at end: {requirement.at_end}"]
 
 
 def scribbled(text: str, rng: Rng) -> str:

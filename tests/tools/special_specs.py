@@ -1,4 +1,4 @@
-"""Random requirements of windows within windows, which the core follows as chains."""
+"""Random requirements that the general generator seldom makes: nested windows, many letters."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ import random
 import rvmon
 from rvmon.spec.checked.specification import CheckedSpec
 
-_HEADS = (
+_SIGNALS = """signal p, q, r : bool
+signal x : real
+signal y : int
+signal mode : {red, green}
+event e, f
+event g(k: int)
+requirement R
+"""
+
+_CHAIN_HEADS = (
     "always ({})",
     "always (p -> {})",
     "whenever p and r then {}",
@@ -45,9 +54,31 @@ def random_chain(rng: random.Random, *, untils: bool = False) -> CheckedSpec:
             formula = f"(({left}) {rng.choice('UR')}{bounds} ({formula}))"
         else:
             formula = f"{rng.choice('FG')}{bounds} {formula}"
-    head = rng.choice(_HEADS)
+    head = rng.choice(_CHAIN_HEADS)
     text = head.format(*(("r", formula) if head.count("{") > 1 else (formula,)))
-    return rvmon.loads(
-        f"time {time}\nsignal p, q, r : bool\nsignal x : real\nevent e\nevent g(k: int)\n"
-        f"requirement R\n  {text}\n{rng.choice(_TAILS)}"
-    ).checked
+    return rvmon.loads(f"time {time}\n{_SIGNALS}  {text}\n{rng.choice(_TAILS)}").checked
+
+
+_ATOMS = (
+    *("p", "q", "r", "e", "f", "changed(x)", "known(x)", "updated(y)", "mode == red"),
+    *("x > 0", "x > 1", "x <= 2", "y > 0", "y >= 2", "y < 3", "x == y", "g.k > 0", "g.k > 1"),
+)
+
+_LETTER_HEADS = (
+    "always ({})",
+    "whenever p then {}",
+    "upon e then {}",
+    "upon start then {}",
+    "upon g then {}\n  for each k in g.k",
+    "upon p then {}\n  let v = x",
+)
+
+
+def random_letters(rng: random.Random) -> CheckedSpec:
+    """A specification with such a requirement, of 17 or 18 propositions, in any model of time."""
+    time = rng.choice(("held", "sampled", f"sampled every {rng.randint(1, 3)} ns"))
+    window, joint = rng.choice((("F", " or "), ("G", " and ")))
+    parts = rng.sample(_ATOMS, rng.randint(17, 18))
+    formula = joint.join(f"{window}[0 ns, {n} ns] ({part})" for n, part in enumerate(parts))
+    text = rng.choice(_LETTER_HEADS).format(formula)
+    return rvmon.loads(f"time {time}\n{_SIGNALS}  {text}\n").checked

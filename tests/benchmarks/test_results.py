@@ -6,9 +6,8 @@ from dataclasses import replace
 
 from benchmarks.agreement import Agreement
 from benchmarks.attempts import OpenAttempts
-from benchmarks.findings import Findings
 from benchmarks.measure import Figure, Result
-from benchmarks.render import render
+from benchmarks.results import Findings, render
 
 OURS = Figure("rvmon step", 1000, 100.0, 90.0, 130.0, (999,))
 REELAY = Figure("reelay", 1000, 900.0, 880.0, 950.0, (999,))

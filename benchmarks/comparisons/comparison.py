@@ -1,0 +1,31 @@
+"""A way to compare ours with something independent."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+Found = tuple[Counter[str], list[str]]
+"""What cases were made of, and one text for each disagreement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A way to compare.
+
+    Attributes:
+        about: what is compared with what, in a line.
+        judge: given a seed, the settings and a range of numbers, what came of those cases; it may
+            run in another process.
+        unit: what is counted by these numbers.
+        settings: dataclasses whose fields may be changed; handed to `judge` in this order.
+        part: so many numbers are judged at once.
+    """
+
+    about: str
+    judge: Callable[..., Found]
+    unit: str
+    settings: tuple[Any, ...] = ()
+    part: int = 25

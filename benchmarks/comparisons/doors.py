@@ -1,0 +1,116 @@
+"""Recordings through every door, and doors that lose something."""
+
+from __future__ import annotations
+
+import logging
+import random
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from benchmarks.comparisons.comparison import Comparison, Found
+from tests.tools.differential import cases_of
+from tests.tools.doors import Content, content_of, doors, in_pieces, whole
+from tests.tools.lossy.doors import DOORS, SERVERS
+from tests.tools.lossy.trial import outcomes
+
+from rvmon.errors import RvmonError
+from rvmon.session import Spec
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+
+EACH = 5
+"""Recordings of a specification."""
+
+
+@dataclass(frozen=True, slots=True)
+class Doors:
+    """Settings of `doors`: samples of a recording; bytes of a piece in which files are read."""
+
+    samples: int = 12
+    pieces: int = 0
+
+
+def judge_doors(seed: int, own: Doors, numbers: range) -> Found:
+    """The reports have to be those of the first door, byte by byte; none may refuse."""
+    counts, texts = Counter[str](), list[str]()
+    pieces = in_pieces(own.pieces) if own.pieces else nullcontext()
+    with pieces, tempfile.TemporaryDirectory() as name:
+        for number in numbers:
+            for place, spec, content in _contents(f"{seed}/{number}", own.samples):
+                expected = None
+                for door, write in doors().items():
+                    text = _told(spec, *write(content, Path(name)))
+                    expected = text if expected is None else expected
+                    counts[door] += 1
+                    if text != expected or text.isidentifier():
+                        texts.append(f"{place}, {door}:\n  {text}\n  first door: {expected}")
+    return counts, texts
+
+
+def _contents(seed: str, samples: int) -> Iterator[tuple[str, Spec, Content]]:
+    """Random recordings with their seeds; every third has a value in every cell."""
+    traces, spec = TraceProfile(samples, 4 * samples, advances=False), None
+    for part, case in enumerate(cases_of(seed, Profile(), traces, EACH)):
+        spec = spec or Spec(case.spec)
+        content = content_of(random.Random(f"{seed}/{part}"), case)
+        if content.rows:
+            yield f"{seed}/{part}", spec, whole(content) if part % 3 == 2 else content
+
+
+def _told(spec: Spec, trace: object, arguments: dict[str, Any]) -> str:
+    """The report as JSON; or the name of the error that refuses."""
+    try:
+        report = spec.evaluate(trace, allow_missing=True, **arguments)
+        return replace(report, trace="").to_json()
+    except RvmonError as error:
+        return type(error).__name__
+
+
+@dataclass(frozen=True, slots=True)
+class Lossy:
+    """Settings of `lost`: which doors, with commas; empty: all whose server is installed."""
+
+    doors: str = ""
+
+
+def judge_lost(seed: int, own: Lossy, numbers: range) -> Found:
+    """In each run what is lost changes a letter that a requirement reads."""
+    counts, texts = Counter[str](), list[str]()
+    logging.disable(logging.ERROR)
+    for door in own.doors.split(",") if own.doors else DOORS:
+        program, found = SERVERS.get(door, ("", str))
+        if found() is None:
+            counts[f"{door}: left out, {program} is not installed"] += 1
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            place, how = f"{seed}/{numbers.start}", DOORS[door]
+            for one in outcomes(door, how, len(numbers), place, Path(folder)):
+                counts[f"{door}: runs"] += 1
+                counts[f"{door}: refused"] += one.is_refused
+                counts[f"{door}: turned by a filling that may"] += one.is_split
+                if one.overturned:
+                    texts.append(f"{one.name} overturns {', '.join(one.overturned)}")
+    logging.disable(logging.NOTSET)
+    return counts, texts
+
+
+COMPARISONS = {
+    "doors": Comparison(
+        "a recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte",
+        judge_doors,
+        f"specifications of up to {EACH} recordings",
+        (Doors(),),
+    ),
+    "lost": Comparison(
+        "doors that lose samples: no filling of what was lost may turn a green verdict",
+        judge_lost,
+        "runs through each door",
+        (Lossy(),),
+        100,
+    ),
+}

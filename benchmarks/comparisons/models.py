@@ -1,0 +1,163 @@
+"""The model checker against a walk through all regions, and its readers against damage."""
+
+from __future__ import annotations
+
+import tempfile
+import traceback
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from benchmarks.comparisons.comparison import Comparison, Found
+from tests.tools.timed_ctl import holds_at_start, random_formulas
+from tests.tools.timed_damage import damaged, survives
+from tests.tools.timed_generate import random_model
+from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
+from tests.tools.timed_regions import TooManyRegionsError, decide
+from tests.tools.timed_runs import shows
+
+from rvmon.errors import ModelError
+from rvmon.export.uppaal import uppaal_xml
+from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.model.expressions import UnaryOperation
+from rvmon.timed.model.guards import compares_of, is_linear
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
+from rvmon.timed.model.operators import UnaryOp
+from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.run import Ending
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.verify import verify
+
+ROOT = Path(__file__).parents[2]
+MOST_REGIONS = 1_500
+
+KINDS = (
+    "E<> p", "A[] p", "A<> p", "E[] p", "p --> q", "p -->[<=T] q", "E<>[<=T] p", "A<>[<=T] p",
+    "E<> deadlock", "A[] (deadlock imply p)", "A[] (p imply EF q)", "E<> (p and AG q)",
+    "A[] (p or AF q)", "E<>[<=T] deadlock",
+)  # fmt: skip
+"""The queries of a random network, in order."""
+
+FORMULAS = 6
+"""Of each logic on each network."""
+
+
+def _network(seed: int, number: int) -> Network:
+    drawn = number if seed == 1 else Random(f"{seed}/{number}").randrange(1 << 40)
+    return loads_network(random_model(drawn), name=f"random-{number}")
+
+
+def judge_queries(seed: int, numbers: range) -> Found:
+    """The truth of the queries of networks; runs that are shown are checked as concrete runs."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        network, policy = _network(seed, number), tuple(Policy)[number % 3]
+        for kind, query in zip(KINDS, network.queries, strict=True):
+            outcome = verify(network, query, policy=policy)
+            if outcome.run is not None:
+                counts["runs checked as concrete runs"] += 1
+                if not shows(network, outcome):
+                    texts.append(f"network {number}: the run does not show that {query.text}")
+            try:
+                expected = decide(network, query, MOST_REGIONS)
+            except TooManyRegionsError:
+                counts["left out: too many regions"] += 1
+                continue
+            counts[f"{kind}: {str(expected).lower()}"] += 1
+            if outcome.holds != expected:
+                told = f"zones {outcome.holds}, regions {expected}"
+                texts.append(f"network {number}: {query.text}: {told}")
+    return counts, texts
+
+
+def judge_logics(seed: int, numbers: range) -> Found:
+    """Formulas of CTL and LTL."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        network, random = _network(seed, number), Random(number)
+        states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
+        formulas = list(random_formulas(random, [*states, "deadlock"], FORMULAS))
+        formulas += [random_linear(random, states, 3) for _ in range(FORMULAS)]
+        for text in formulas:
+            try:
+                agrees = _agrees(network, text, counts)
+            except TooManyRegionsError:
+                counts["left out: too many regions"] += 1
+            except ModelError:
+                counts["left out: the network cannot start"] += 1
+            else:
+                texts += [] if agrees else [f"network {number}: {text}"]
+    return counts, texts
+
+
+def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
+    query = query_on(network, text)
+    formula, outcome = query.formula, verify(network, query)
+    if isinstance(formula, LeadsToFormula | Chance | Mean) or not is_linear(formula):
+        counts[f"CTL: {str(outcome.holds).lower()}"] += 1
+        return outcome.holds == holds_at_start(network, query, 300)
+    denied = UnaryOperation(UnaryOp.NOT, formula)
+    agrees = outcome.holds != LinearTruth(network, denied, False, 3_000).some_run()
+    counts[f"LTL: {str(outcome.holds).lower()}"] += 1
+    if outcome.run is not None:
+        replay(network, outcome.run)
+        counts["LTL: runs replayed"] += 1
+        if not list(compares_of(denied)):
+            agrees = agrees and satisfied_by(network, outcome.run, denied)
+            counts["LTL: runs that refute the formula by its own meaning"] += 1
+        stops = outcome.run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK)
+        counts["LTL: only by time that stops"] += stops
+        agrees = agrees and stops != LinearTruth(network, denied, True, 6_000).some_run()
+    return agrees
+
+
+def judge_damage(seed: int, numbers: range) -> Found:
+    """Each damaged model is read, or refused with a finding; nothing else comes out."""
+    counts, texts = Counter[str](), list[str]()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "model"
+        for number in numbers:
+            random = Random(number if seed == 1 else f"{seed}/{number}")
+            path.write_bytes(damaged(random.choice(_corpus()), random, _corpus()))
+            try:
+                counts[survives(path)] += 1
+            except Exception:  # noqa: BLE001 - this is what is looked for
+                texts.append(f"model {number}:\n{traceback.format_exc(limit=-3)}")
+    return counts, texts
+
+
+@cache
+def _corpus() -> list[bytes]:
+    """The textbook models, the handover, and small random models in both forms."""
+    return [*_models()]
+
+
+def _models() -> Iterator[bytes]:
+    for path in sorted((ROOT / "examples" / "models").iterdir()):
+        if path.suffix in (".ta", ".xml"):
+            yield path.read_bytes()
+    yield (ROOT / "src/handover/model/handover.ta").read_bytes()
+    small = [random_model(seed) for seed in range(20)]
+    yield from (text.encode() for text in small)
+    yield from (uppaal_xml(loads_network(text)).encode() for text in small)
+
+
+COMPARISONS = {
+    "networks": Comparison(
+        "queries on random networks against a walk through all regions", judge_queries, "networks"
+    ),
+    "logics": Comparison(
+        "CTL and LTL on random networks against fixpoints and a tableau on all regions",
+        judge_logics,
+        "networks",
+    ),
+    "damage": Comparison(
+        "damaged models, in both text forms, are read or refused with a finding",
+        judge_damage,
+        "models",
+        part=500,
+    ),
+}

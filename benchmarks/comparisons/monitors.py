@@ -1,0 +1,315 @@
+"""The core against the oracle, progression, a tableau, and what was lost filled in."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.long_traces import Long, judge_long
+from tests.tools.compare import Key
+from tests.tools.coverage import judge as judge_coverage
+from tests.tools.differential import campaign, case_of, cases_of
+from tests.tools.doors import content_of, whole
+from tests.tools.drive import feed
+from tests.tools.forms import Compiler, Maker
+from tests.tools.generate_ltl import random_ltl, random_mtl
+from tests.tools.judgement import Judgement
+from tests.tools.law import judge as oracle
+from tests.tools.ltl3 import Letter, Tableau, unrolled
+from tests.tools.shrink import shrink
+from tests.tools.sound import is_spoken_of, narrowed, overturned
+
+from rvmon.errors import RvmonError
+from rvmon.monitor.robustness import Robustness, RobustnessMonitor
+from rvmon.session import Spec
+from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
+from rvmon.spec.print.printer import format_formula
+from rvmon.testing.case import Case, show_case, show_spec
+from rvmon.testing.generate.choices import BOOLS, Rng, chance
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.margins import margins
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+from rvmon.verdict.verdict import Verdict
+
+Figures = Mapping[Key, tuple[float, float, float]]
+"""Of each attempt the least and the greatest that robustness can be, and what is kept up."""
+
+TABLEAU_MOST = 8
+"""Formulas with more temporal operators have a tableau that takes too long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdicts:
+    """Settings of `verdicts`.
+
+    Attributes:
+        forms: of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, `c+next+interrupt`.
+        traces: for each specification.
+        windows: per cent of the specifications that are windows in windows.
+        letters: per cent that speak of 17 propositions at once.
+        online_every: what each call says is compared in every so many-th case.
+    """
+
+    forms: str = "c"
+    traces: int = 1
+    windows: int = 0
+    letters: int = 0
+    online_every: int = 10
+
+    def __post_init__(self) -> None:
+        try:
+            self.makers()
+        except RvmonError as error:
+            raise ValueError(str(error)) from None
+
+    def makers(self) -> dict[str, Maker]:
+        """What makes monitors, by form."""
+        compiler = Compiler()
+        return {form: Maker(form, compiler) for form in self.forms.split(",")}
+
+
+def judge_verdicts(
+    seed: int, own: Verdicts, profile: Profile, traces: TraceProfile, numbers: range
+) -> Found:
+    """Verdicts, instants and records."""
+    found = campaign(
+        own.makers(),
+        [f"{seed}/{number}" for number in numbers],
+        profile,
+        traces,
+        each=own.traces,
+        online_every=own.online_every,
+        windows=own.windows,
+        letters=own.letters,
+    )
+    return found.counts, found.disagreements
+
+
+def by_samples(case: Case) -> Figures:
+    """Robustness by a monitor that is stepped."""
+    monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
+    found = [one for action in case.actions for one in feed(monitor, action)]
+    found += monitor.finish_ns(case.end)
+    return _bounds({(o.requirement, o.in_doubt, o.number or 0): o.robustness for o in found})
+
+
+def by_arrays(case: Case) -> Figures:
+    """Robustness of a recording in columns."""
+    columns: dict[str, Any] = {"t_ns": np.array([one.t for one in case.samples], np.int64)}
+    for name in sorted(case.names or ()):
+        columns[name] = np.array([one.values[name] for one in case.samples])
+    until = None if case.end is None else case.end * 1e-9
+    found = Spec(case.spec).robustness(columns, until=until, allow_missing=True)
+    sure = {(name, False, n): one for (name, n), one in found.attempts.items()}
+    return _bounds(sure | {(name, True, n): one for (name, n), one in found.doubtful.items()})
+
+
+def _bounds(found: Mapping[Key, Robustness]) -> Figures:
+    return {key: (one.low, one.high, one.kept) for key, one in found.items()}
+
+
+def _in_columns(case: Case) -> Case:
+    """A case each sample of which says something of all names, as rows do."""
+    content = whole(content_of(random.Random(len(case.actions)), case))
+    samples = tuple(Sample(t, cells) for t, cells in content.rows)
+    return replace(case, actions=samples, names=frozenset(content.columns))
+
+
+def _robustness_differs(way: str, case: Case) -> list[str]:
+    """How the figures of a way depart from the oracle's."""
+    try:
+        found = by_samples(case) if way == "samples" else by_arrays(case)
+    except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
+        return [f"raised {type(error).__name__}: {error}"]
+    judgement = Judgement(case)
+    expected = margins(judgement.followings, judgement.outcomes)
+    return [
+        f"{key}: {found.get(key)}, expected {expected.get(key)}"
+        for key in sorted({*expected, *found})
+        if found.get(key) != expected.get(key)
+    ]
+
+
+def judge_robustness(seed: int, profile: Profile, traces: TraceProfile, numbers: range) -> Found:
+    """Robustness of each attempt."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        for drawn in cases_of(f"margins {seed}/{number}", profile, traces, 8):
+            for way, case in (("samples", drawn), ("arrays", _in_columns(drawn))):
+                if not case.samples:
+                    continue
+                counts[f"measured by {way}"] += 1
+                if _robustness_differs(way, case):
+                    small = shrink(case, partial(_shows_a_difference, way))
+                    lines = [f"{way}, number {number}", *_robustness_differs(way, small)]
+                    texts.append("\n".join([*lines, show_case(small)]))
+    return counts, texts
+
+
+def _shows_a_difference(way: str, case: Case) -> bool:
+    try:
+        return bool(case.samples and _robustness_differs(way, case))
+    except (RvmonError, KeyError):  # the smaller case is none that the law, or columns, speak of
+        return False
+
+
+def judge_hits(seed: int, numbers: range) -> Found:
+    """What coverpoints and crosses are hit."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        texts += judge_coverage(f"{seed}/{number}", 10, counts)
+    return counts, texts
+
+
+@dataclass(frozen=True, slots=True)
+class Fillings:
+    """Settings of `fillings`.
+
+    Attributes:
+        fillings: so many are tried for each run.
+        stretches: whether stretches of time are lost; then every other run lost nothing else.
+        about: only specifications that hold this text.
+    """
+
+    fillings: int = 8
+    stretches: bool = False
+    about: str = ""
+
+
+def judge_fillings(seed: int, own: Fillings, profile: Profile, numbers: range) -> Found:
+    """Whether a filling turns a run's P or NT to F, or its F to anything else."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        alone = own.stretches and number % 2 == 1
+        traces = TraceProfile(unknowns=not alone, outages=100 if own.stretches else 0)
+        drawn = case_of(f"{seed}/{number}", replace(profile, stale=not alone), traces)
+        case = narrowed(drawn)
+        is_asked = own.about in show_spec(case.spec)
+        if not is_asked or not (alone or is_spoken_of(case.spec)):
+            counts["not spoken of"] += 1
+            continue
+        rng = random.Random(f"{seed}/{number}")
+        tried = overturned(rng, case, own.fillings, oracle, whole=not alone)
+        counts.update(f"verdict {verdict}" for verdict in tried.verdicts.values())
+        counts["turned by a filling that may"] += tried.is_split
+        if tried.overturning is not None:
+            lines = [f"number {number}: {tried.verdicts}", show_case(case), "filled in:"]
+            texts.append("\n".join([*lines, show_case(tried.overturning)]))
+    return counts, texts
+
+
+@dataclass(frozen=True, slots=True)
+class Forecasts:
+    """Settings of `forecasts`.
+
+    Attributes:
+        words: on which each formula is judged.
+        timed: whether formulas have windows of a few ticks, in held time; the tableau is given them
+            unrolled, and a forecast that the monitor does not give is counted as missed.
+    """
+
+    words: int = 20
+    timed: bool = False
+
+
+def judge_forecasts(seed: int, own: Forecasts, numbers: range) -> Found:
+    """After every position of random words, the verdict or the forecast."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        rng = random.Random(f"{seed}/{number}")
+        formula = (random_mtl if own.timed else random_ltl)(rng, rng.randint(1, 4))
+        tableau = Tableau.of(unrolled(formula), TABLEAU_MOST)
+        if tableau is None:
+            counts[f"passed over: more than {TABLEAU_MOST} temporal operators"] += 1
+            continue
+        counts["formulas"] += 1
+        spec = _spec(formula, TimeModel.HELD if own.timed else TimeModel.SAMPLED)
+        for _ in range(own.words):
+            word = _word(rng)
+            for length, (decided, ours) in enumerate(_said(spec, word), 1):
+                possible = tableau.possible(word[:length])
+                wanted = next(iter(possible)) if len(possible) == 1 else None
+                counts[f"{'decided' if decided else 'forecast'} {_SIGNS[ours]}"] += 1
+                if own.timed and ours is None and wanted is not None:
+                    counts["missed"] += 1
+                elif ours is not wanted:
+                    letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
+                    texts.append(
+                        f"number {number}: {format_formula(formula)} on {letters}: "
+                        f"tableau {_SIGNS[wanted]}, monitor {_SIGNS[ours]}"
+                    )
+    return counts, texts
+
+
+_SIGNS = {True: "P", False: "F", None: "either"}
+
+
+def _spec(formula: Formula, time_model: TimeModel) -> Spec:
+    signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
+    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), formula)
+    return Spec(CheckedSpec("ltl", "", time_model, signals, {}, {"R": requirement}))
+
+
+def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | None]]:
+    """After every position whether the attempt is decided, and its verdict or forecast."""
+    monitor = spec.monitor()
+    decided: Verdict | None = None
+    for t, letter in enumerate(word):
+        for attempt in monitor.step_ns(t, {name: name in letter for name in BOOLS}):
+            decided = attempt.verdict
+        value = monitor.open[0].forecast if decided is None else decided
+        yield decided is not None, None if value is None else value is Verdict.PASS
+
+
+def _word(rng: Rng) -> list[Letter]:
+    length = rng.randint(1, 8)
+    return [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in range(length)]
+
+
+COMPARISONS = {
+    "verdicts": Comparison(
+        "the core against the oracle: verdicts, instants, records, in all time models",
+        judge_verdicts,
+        "specifications",
+        (Verdicts(), Profile(many=8), TraceProfile(long=8)),
+    ),
+    "robustness": Comparison(
+        "robustness, by samples and by arrays, against its oracle",
+        judge_robustness,
+        "specifications of 8 traces",
+        (Profile(many=8), TraceProfile()),
+    ),
+    "coverage": Comparison(
+        "what coverpoints and crosses are hit against the definition",
+        judge_hits,
+        "specifications of 10 traces",
+    ),
+    "long": Comparison(
+        "the core against progression, on traces too long for the oracle",
+        judge_long,
+        "traces",
+        (Long(),),
+        1,
+    ),
+    "forecasts": Comparison(
+        "verdicts and forecasts of open attempts against a tableau",
+        judge_forecasts,
+        "formulas",
+        (Forecasts(),),
+    ),
+    "fillings": Comparison(
+        "green never hides a failure: what was lost is filled in, and no verdict may turn",
+        judge_fillings,
+        "runs",
+        (Fillings(), Profile(requirements=1)),
+    ),
+}

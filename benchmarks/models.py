@@ -1,0 +1,192 @@
+"""The model checker: what textbook networks and the handover cost, and whose models it reads.
+
+    python -m benchmarks.models cost [--seconds 60] [--repeat 3]
+    python -m benchmarks.models originals FOLDER [--seconds 2] [--most 200]
+
+`cost` prints symbolic states visited and stored, seconds of CPU (the least of some searches) and
+bytes of memory for each stored state, each network in a process of its own. Beside them stands what
+TChecker (compiled, C++) took for its own models of the same systems, on the same machine, where it
+is known.
+
+For `originals`, FOLDER holds clones of the repositories of `uppaal_originals.txt`, which has a line
+for each repository (its name, and the commit that was looked at) and below it one for each model:
+the first 16 digits of its SHA-256, and its path. A file is known by its content, wherever it lies;
+the models are not ours and stand in no repository of ours. Prints how many are read, and refused by
+reason, and how many of their queries are decided, undecided within the time, and left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import re
+import resource
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+from handover.model import handover_network
+from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.load import load_network
+from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query
+from rvmon.timed.runs.statistics import sample
+from rvmon.timed.search.extremes import extremes
+from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.verify import verify
+
+HERE = Path(__file__).parent
+MODELS = HERE.parent / "examples" / "models"
+MANIFEST = HERE / "uppaal_originals.txt"
+_MODEL = re.compile(r"  ([0-9a-f]{16}) (.+)")
+_WORDS = re.compile(r" \(\d+ places\)|`[^`]*`|\d+")
+"""What differs between findings of one kind."""
+
+COLLISION = "E<> Station(1).Transm and Station(2).Transm and Bus.Idle"
+"""Of CSMA/CD, as TChecker asks it: the model's own query compares clocks."""
+
+PEER = {
+    ("fischer", 7): "7,737 stored, 0.21 s",
+    ("fischer", 8): "25,080 stored, 1.03 s",
+    ("fischer", 9): "81,035 stored, 5.18 s",
+    ("fischer", 10): "260,998 stored, 27.0 s",
+    ("csma_cd", 7): "7,490 stored, 0.16 s",
+    ("csma_cd", 8): "20,738 stored, 0.53 s",
+    ("csma_cd", 9): "55,554 stored, 1.82 s",
+}
+"""TChecker 0.8 for its own models of these systems, 2026-11-27, 2 cores of a Xeon."""
+
+SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "fddi": (5, 8, 10)}
+
+
+def cost(options: argparse.Namespace) -> None:
+    """Measure and print."""
+    if options.only:
+        name, size = options.only
+        for network, query in _queries(name, int(size)):
+            _measure(network, query, options.repeat, options.seconds)
+        return
+    print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}   TChecker")
+    for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
+        words = [sys.executable, "-m", "benchmarks.models", "cost", "--only", name, str(size)]
+        words += ["--repeat", str(options.repeat), "--seconds", str(options.seconds)]
+        told = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+        for line in told.splitlines():
+            _print(name, size, json.loads(line))
+
+
+def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
+    if name == "handover":
+        network = handover_network()
+        return [(network, query) for query in network.queries]
+    if name == "fddi":
+        network = load_network(HERE / "fddi.ta", constants={"N": size})
+    else:
+        suffix = ".xml" if name == "csma_cd" else ".ta"
+        network = load_network(MODELS / f"{name}{suffix}", constants={"N": size})
+    if name == "csma_cd":
+        return [(network, query_on(network, COLLISION))]
+    return [(network, network.queries[0])]
+
+
+def _measure(network: Network, query: Query, repeat: int, limit: float) -> None:
+    """Search some times, and print what it cost as JSON."""
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    seconds = []
+    for _ in range(repeat):
+        began = time.process_time()
+        outcome = verify(network, query, budget=Budget(seconds=limit))
+        seconds.append(time.process_time() - began)
+    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    cost = outcome.statistics
+    told = {
+        "query": query.id,
+        "holds": outcome.holds,
+        "visited": cost.visited,
+        "stored": cost.stored,
+        "seconds": min(seconds),
+        "bytes": 1024 * grown / cost.stored,
+    }
+    print(json.dumps(told))
+
+
+def _print(name: str, size: int, told: dict[str, float]) -> None:
+    label = f"{name} {size}" if size else f"{name} {told['query']}"
+    held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
+    figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
+    unknown = "" if told["holds"] is not None else "not decided"
+    print(f"{label:22} {figures}   {PEER.get((name, size), '')}{unknown}".rstrip(), flush=True)
+
+
+def known() -> dict[str, str]:
+    """The path of each model of the manifest, by its hash."""
+    lines = MANIFEST.read_text("utf-8").splitlines()
+    return {found[1]: found[2] for line in lines if (found := _MODEL.fullmatch(line))}
+
+
+def _end(network: Network, query: Query, budget: Budget) -> str:
+    """What comes of a query."""
+    try:
+        match query.formula:
+            case Chance() | Mean():
+                sample(network, query, watch=Meter(budget, None).goes_on)
+                return "simulated"
+            case Extremes():
+                exact = all(one.exact for one in extremes(network, query, budget=budget))
+                return "decided" if exact else "undecided"
+            case _:
+                outcome = verify(network, query, budget=budget)
+                return "undecided" if outcome.holds is None else "decided"
+    except ModelError:
+        return "refused"
+
+
+def originals(options: argparse.Namespace) -> None:
+    """Read, decide, count and print."""
+    models, seen = known(), set[str]()
+    read, reasons, queries = 0, Counter[str](), Counter[str]()
+    for path in sorted(options.folder.rglob("*.xml")):
+        if not path.is_file() or (options.most and len(seen) >= options.most):
+            continue
+        name = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+        if name not in models or name in seen:
+            continue
+        seen.add(name)
+        try:
+            network = load_network(path)
+        except ModelError as error:
+            reasons.update({(d.code, _WORDS.sub("", d.message)) for d in error.diagnostics})
+            continue
+        read += 1
+        queries["left out"] += sum(warning.code == "TA020" for warning in network.warnings)
+        for query in network.queries:
+            queries[_end(network, query, Budget(seconds=options.seconds))] += 1
+    print(f"{len(models)} models in the manifest, {len(seen)} found, {read} read")
+    for (code, reason), count in reasons.most_common(20):
+        print(f"  {count:5}  {code} {reason}")
+    for end, count in queries.most_common():
+        print(f"{count:6} queries {end}")
+
+
+def main() -> None:
+    """Measure, or read; and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(dest="what", required=True)
+    own = commands.add_parser("cost")
+    own.add_argument("--repeat", type=int, default=3, help="searches of each, the best counts")
+    own.add_argument("--seconds", type=float, default=60.0, help="a search gives up after these")
+    own.add_argument("--only", nargs=2, metavar=("MODEL", "SIZE"), help=argparse.SUPPRESS)
+    theirs = commands.add_parser("originals")
+    theirs.add_argument("folder", type=Path)
+    theirs.add_argument("--seconds", type=float, default=2.0, help="for each query")
+    theirs.add_argument("--most", type=int, help="models to look at")
+    options = parser.parse_args()
+    (cost if options.what == "cost" else originals)(options)
+
+
+if __name__ == "__main__":
+    main()

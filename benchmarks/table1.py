@@ -1,0 +1,197 @@
+"""Table 1 over many seeds, and whether runs conform to the model.
+
+    python -m benchmarks.table1 bands --seeds 20 [--write]
+    python -m benchmarks.table1 policies --seeds 10
+    python -m benchmarks.table1 conformance --tests 20
+
+`bands` plays the legacy robot's campaign (100 tests per random strategy, four of the model) for
+each seed: of each cell that is not nought everywhere the mean and the band that holds 95 % of the
+campaigns (empirical quantiles), with and without the fitted loss of signals at start-up, and
+whether the paper's figure lies inside; `--write` keeps the least and the greatest count for the
+page of the demo. `policies` has the model-based column for each way to choose a witness: the paper
+has R1 3/4, R2 1/4 and 4/4 of all others. `conformance` holds runs against the network: every run of
+the correct robot should conform, and a mutant is rejected if some run of it does not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from statistics import fmean, quantiles
+
+from handover.campaign.campaign import handover_campaign
+from handover.campaign.table1 import FITTED, SPREAD_FILE, Spread, paper_table, write_spread
+from handover.checker import spec_path
+from handover.checker.conformance import check_run
+from handover.driver import run_test
+from handover.generator.abstract_test import AbstractTest, directed
+from handover.generator.model_based import model_based
+from handover.generator.pseudorandom import constrained, pseudorandom
+from handover.model import handover_network
+from handover.robot.mutants import MUTATIONS
+from rvmon.cdv.plan import Played, plan
+from rvmon.cdv.play import execute
+from rvmon.cdv.system import Checker
+from rvmon.cdv.template import PolicyName
+from rvmon.session import load
+from rvmon.timed.model.network import Network
+from rvmon.verdict.verdict import Verdict
+
+STRATEGIES = ("pseudorandom", "constrained", "model-based")
+POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")
+
+Cell = tuple[str, str, Verdict]
+"""Strategy, requirement, verdict."""
+
+
+def bands(options: argparse.Namespace) -> int:
+    """Run the campaigns and print the bands."""
+    fitted: list[Counter[Cell]] = []
+    unfitted: list[Counter[Cell]] = []
+    for seed in range(options.seed, options.seed + options.seeds):
+        campaign = handover_campaign(("legacy",))
+        results = execute(plan(campaign, STRATEGIES, tests=100, seed=seed), jobs=options.jobs)
+        if results.cut_short:
+            print(f"{results.cut_short} in campaign {seed}", file=sys.stderr)
+            return 130
+        fitted.append(_count(results.played))
+        unfitted.append(
+            _count([replace(one, outcome=one.control or one.outcome) for one in results.played])
+        )
+        print(f"campaign {seed}: {results.seconds:.1f} s", file=sys.stderr)
+    _show(fitted, unfitted)
+    if options.write:
+        spread: dict[str, dict[str, dict[str, tuple[int, int]]]] = {}
+        for (strategy, requirement, verdict), counts in _by_cell(fitted).items():
+            row = spread.setdefault(strategy, {}).setdefault(requirement, {})
+            row[verdict.value] = min(counts), max(counts)
+        write_spread(Spread(options.seed, options.seed + options.seeds - 1, spread))
+    return 0
+
+
+def _count(played: Sequence[Played]) -> Counter[Cell]:
+    """The number of tests in each cell."""
+    return Counter(
+        (one.job.test.strategy, requirement, verdict)
+        for one in played
+        for requirement, verdict in one.outcome.verdicts.items()
+    )
+
+
+def _published() -> dict[Cell, int]:
+    """The paper's figures, all cells."""
+    return {
+        (group.name, requirement, verdict): figure
+        for group in paper_table().groups
+        if group.name in STRATEGIES
+        for requirement, counts in group.counts.items()
+        for verdict, figure in counts.items()
+    }
+
+
+def _by_cell(campaigns: Sequence[Mapping[Cell, int]]) -> dict[Cell, list[int]]:
+    return {cell: [cells.get(cell, 0) for cells in campaigns] for cell in _published()}
+
+
+def _show(fitted: Sequence[Mapping[Cell, int]], unfitted: Sequence[Mapping[Cell, int]]) -> None:
+    """A row for each cell that occurs, ours or the paper's; what lies outside is `OUT`."""
+    columns = {"with": _by_cell(fitted), "without": _by_cell(unfitted)}
+    inside = Counter[str]()
+    published = _published()
+    print(f"{'strategy':14}{'cell':14}{'paper':>6}{'with the loss':>26}{'without':>26}")
+    for cell, figure in published.items():
+        shown = ""
+        for name, figures in columns.items():
+            low, high = _band(figures[cell])
+            inside[name] += low <= figure <= high
+            mark = "" if low <= figure <= high else "OUT"
+            shown += f"{fmean(figures[cell]):8.1f} [{low:5.1f}, {high:5.1f}]{mark:>4}"
+        if figure or any(any(figures[cell]) for figures in columns.values()):
+            strategy, requirement, verdict = cell
+            name = f"{requirement} {verdict}{' fitted' if cell[:2] in FITTED else ''}"
+            print(f"{strategy:14}{name:14}{figure:6}{shown}")
+    print(f"{len(fitted)} campaigns; cells that are nought in all of them are not shown.")
+    for name, hits in inside.items():
+        print(f"{name} the fitted loss: {hits} of {len(published)} cells hold the paper's figure")
+
+
+def _band(figures: Sequence[int]) -> tuple[float, float]:
+    """The 2.5 and 97.5 percentiles."""
+    if len(figures) < 2:
+        return float(figures[0]), float(figures[0])
+    cuts = quantiles(figures, n=40, method="inclusive")
+    return cuts[0], cuts[-1]
+
+
+def policies(options: argparse.Namespace) -> int:
+    """The mean number of runs that pass each requirement, by robot, loss and policy."""
+    for robot in ("correct", "legacy"):
+        checker = Checker(load(spec_path(robot)))
+        for loss in (False, True):
+            for policy in POLICIES:
+                passed = Counter[str]()
+                for seed in range(options.seed, options.seed + options.seeds):
+                    for test in model_based(4, seed, policy):
+                        checker.begin()
+                        run = run_test(
+                            test, robot=robot, startup_loss=loss, observer=checker.observe
+                        )
+                        verdicts = checker.finish(run.end_ns).verdicts
+                        passed.update(name for name, verdict in verdicts.items() if verdict == "P")
+                cells = (f"R{n} {passed[f'R{n}'] / options.seeds:.1f}/4" for n in range(1, 6))
+                told = f"{robot:8} {'loss' if loss else 'no loss':8} {policy:9}"
+                print(told, "  ".join(cells), flush=True)
+    return 0
+
+
+def conformance(options: argparse.Namespace) -> int:
+    """How many runs conform; 1 if one of the correct robot does not."""
+    count, seed = options.tests, options.seed
+    network = handover_network()
+    own = [test for test in directed() if test.mutation is None and test.robot != "legacy"]
+    groups = {
+        "pseudorandom": pseudorandom(count, seed),
+        "constrained": constrained(count, seed),
+        "model-based": model_based(4, seed),
+        "directed": own,
+    }
+    diverging = 0
+    for name, tests in groups.items():
+        bad = [test for test in tests if not _conforms(network, test, None)]
+        diverging += len(bad)
+        print(f"{name:14} {len(tests) - len(bad)} of {len(tests)} runs conform", flush=True)
+        print("".join(f"    not: {test.name}\n" for test in bad), end="")
+    hunters = (*model_based(4, seed), *constrained(3, seed), *pseudorandom(3, seed))
+    rejected = 0
+    for mutation in MUTATIONS:
+        killer = next((t.name for t in hunters if not _conforms(network, t, mutation)), None)
+        rejected += killer is not None
+        told = f"rejected by {killer}" if killer else "accepted"
+        print(f"mutant {mutation:20} {told}", flush=True)
+    print(f"{rejected} of {len(MUTATIONS)} mutants rejected")
+    return int(diverging > 0)
+
+
+def _conforms(network: Network, test: AbstractTest, mutation: str | None) -> bool:
+    run = run_test(test, robot="correct", mutation=mutation, startup_loss=False)
+    return bool(check_run(network, run).conforms)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Play and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("what", choices=("bands", "policies", "conformance"))
+    parser.add_argument("--seeds", type=int, default=20, help="campaigns")
+    parser.add_argument("--seed", type=int, default=1, help="the first")
+    parser.add_argument("--tests", type=int, default=20, help="of each random strategy")
+    parser.add_argument("--jobs", type=int, help="processes (default: all cores)")
+    parser.add_argument("--write", action="store_true", help=f"write {SPREAD_FILE}")
+    options = parser.parse_args(argv)
+    return {"bands": bands, "policies": policies, "conformance": conformance}[options.what](options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
