@@ -344,25 +344,6 @@ def test_shrinking_is_bounded() -> None:
     assert len(tries) == 7
 
 
-def test_show() -> None:
-    """A case is shown as a specification and the calls that a monitor gets."""
-    owed = requirement(eventually(p, 0, 3), upon=e)
-    case = Case(spec_of(owed, stale={"x": 2}), (*timeline(p="0", e="1"), 4), 9, frozenset("pe"))
-    text = show_case(case)
-    for line in (
-        "time held",
-        "signal x : real stale after 2 ns",
-        "event g(k: int)",
-        "  upon e",
-        "  then within 3 ns p",
-        "sources: e, p",
-        "sample     0  {'p': False, 'e': True}",
-        "advance    4",
-        "finish     9",
-    ):
-        assert line in text.splitlines()
-
-
 def test_on_bound() -> None:
     """Decided on a bound is: at b or b + 1 of a window that begins at the trigger."""
     spec = spec_of(requirement(eventually(p, 1, 3)))

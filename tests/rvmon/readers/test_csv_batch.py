@@ -6,7 +6,7 @@ import struct
 from pathlib import Path
 
 import pytest
-from tests.tools.csv_rows import samples_of_csv
+from tests.rvmon.readers.csv_reference import samples_of_csv
 
 import rvmon
 from rvmon.readers import csv_batch, line_chunks

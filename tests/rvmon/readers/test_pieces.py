@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from tests.tools.csv_rows import samples_of_csv
+from tests.rvmon.readers.csv_reference import samples_of_csv
 
 import rvmon
 from rvmon.readers import line_chunks

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from tests.tools.build import e, eventually, p, requirement, spec_of, timeline
 from tests.tools.compare import differences
 from tests.tools.differential import case_of
 from tests.tools.law import judge
 
 import rvmon
 from rvmon.spec.checked.specification import Requirement
-from rvmon.testing.case import show_spec
+from rvmon.testing.case import Case, show_case, show_spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.oracle import evaluate
@@ -46,3 +47,22 @@ def test_specs_are_read_back() -> None:
     """A random spec, shown and loaded, has the same attempts and verdicts."""
     read = sum(read_back(seed) for seed in range(120))
     assert read > 100
+
+
+def test_a_case_is_shown_with_its_calls() -> None:
+    """A case is shown as a specification and the calls that a monitor gets."""
+    owed = requirement(eventually(p, 0, 3), upon=e)
+    case = Case(spec_of(owed, stale={"x": 2}), (*timeline(p="0", e="1"), 4), 9, frozenset("pe"))
+    text = show_case(case)
+    for line in (
+        "time held",
+        "signal x : real stale after 2 ns",
+        "event g(k: int)",
+        "  upon e",
+        "  then within 3 ns p",
+        "sources: e, p",
+        "sample     0  {'p': False, 'e': True}",
+        "advance    4",
+        "finish     9",
+    ):
+        assert line in text.splitlines()

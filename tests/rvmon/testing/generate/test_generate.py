@@ -10,9 +10,9 @@ from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
+from tests.rvmon.testing.generate.features import Feature, features, possible
 from tests.tools.build import compared, eventually, requirement, spec_of, x
 from tests.tools.differential import Campaign, case_of
-from tests.tools.features import Feature, features, possible
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
 
