@@ -11,8 +11,7 @@ from rvmon.spec.checked.specification import Mode
 from rvmon.spec.print.printer import format_formula
 from rvmon.testing.law.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.law.syntax import intervals, subformulas
-from rvmon.testing.law.truths import Rest
-from rvmon.testing.law.word import Truth
+from rvmon.testing.law.word import Rest, Truth
 from rvmon.trace.time import format_ticks
 from tests.tools.moments import Moment
 

@@ -16,8 +16,7 @@ from rvmon.testing.law.attempts import Start, is_upon_end, obligation
 from rvmon.testing.law.decisions import Followed, Followings, follow
 from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.sample_words import word_of
-from rvmon.testing.law.truths import Rest
-from rvmon.testing.law.word import Truth, Word
+from rvmon.testing.law.word import Rest, Truth, Word
 from rvmon.trace.sample import Sample, Trace, Value
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of

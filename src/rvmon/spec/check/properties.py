@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from rvmon.diagnostics.span import Span
 from rvmon.spec.check.expressions import Checker
+from rvmon.spec.check.linear import shown_form
 from rvmon.spec.check.table import close_name
 from rvmon.spec.check.values import EVERYWHERE
 from rvmon.spec.checked.ctl import (
@@ -16,6 +18,7 @@ from rvmon.spec.checked.ctl import (
     StateNot,
 )
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.tense import FUTURE, subformulas
 from rvmon.spec.rules import properties as rules
@@ -30,6 +33,7 @@ from rvmon.spec.syntax.expressions import (
     Prefix,
     Quantified,
 )
+from rvmon.spec.syntax.items import PropertyClause, RequirementItem, TagsClause, TextClause
 from rvmon.spec.syntax.walk import expressions_in
 
 
@@ -139,3 +143,31 @@ def _refuse_bare_time(formula: Formula, expression: Expression) -> None:
     for part in subformulas(formula):
         if isinstance(part, Unary | Binary) and part.op.entry.tense is not Tense.PRESENT:
             raise Refusal(rules.bare_time(part.span or expression.span))
+
+
+def property_of(checker: Checker, item: RequirementItem) -> Property | None:
+    """What a requirement states in CTL; `None` if it does not."""
+    for clause in item.clauses:
+        if isinstance(clause, PropertyClause):
+            found = checked_property(checker, item.name.text, clause.formula)
+            if found is None:
+                raise Reported
+            return found
+    return None
+
+
+def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover | None:
+    """Check what is monitored as a cover goal; `None` if it is wrong, and then that is reported."""
+    try:
+        for clause in item.clauses:
+            if not isinstance(clause, PropertyClause | TextClause | TagsClause):
+                raise Refusal(rules.not_of_a_goal(clause.span))
+        ctl = property_of(checker, item)
+        if ctl is None:
+            raise Refusal(rules.no_goal(span))
+        return Cover(item.name.text, shown_form(ctl, span, checker.table.time), item.span, ctl)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+    except Reported:
+        pass
+    return None

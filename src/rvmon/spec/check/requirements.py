@@ -10,16 +10,23 @@ from rvmon.diagnostics.span import Span
 from rvmon.spec.check.comparisons import is_time, seconds_of
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.linear import linear_form, shown_form
+from rvmon.spec.check.linear import linear_form
 from rvmon.spec.check.normalise import (
     derived_response,
     normalised,
     scoped_consequent,
     scoped_trigger,
 )
-from rvmon.spec.check.properties import checked_property
+from rvmon.spec.check.properties import property_of
 from rvmon.spec.check.quantities import node_of
-from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigger
+from rvmon.spec.check.traps import (
+    at_start_by_mistake,
+    capture_traps,
+    on_purpose,
+    traps_at_start,
+    traps_at_trigger,
+    ungrouped,
+)
 from rvmon.spec.check.values import EVERYWHERE, Closure, Moment, Now, Quantity, Scope
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import (
@@ -37,7 +44,6 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     passed,
 )
-from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     Capture,
     EndPolicy,
@@ -62,9 +68,7 @@ from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import (
     Expression,
-    Group,
     Ident,
-    Immediately,
     Prefix,
     Window,
 )
@@ -75,7 +79,6 @@ from rvmon.spec.syntax.items import (
     CoverMonitor,
     ForEachClause,
     LetClause,
-    PropertyClause,
     RequirementItem,
     ResponseMonitor,
     RunShareClause,
@@ -101,7 +104,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
     try:
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
-        ctl = _property(checker, item)
+        ctl = property_of(checker, item)
         bounded = _bounded(checker, item, outer)
         parts = _parts(checker, item, outer, inner, ctl, bounded)
         mode, trigger, consequent = _scoped(checker, item, outer, parts)
@@ -143,23 +146,6 @@ def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
             raise Refusal(type_rules.sum_of_instances(part.operand.span or place))
 
 
-def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover | None:
-    """Check what is monitored as a cover goal; `None` if it is wrong, and then that is reported."""
-    try:
-        for clause in item.clauses:
-            if not isinstance(clause, PropertyClause | TextClause | TagsClause):
-                raise Refusal(property_rules.not_of_a_goal(clause.span))
-        ctl = _property(checker, item)
-        if ctl is None:
-            raise Refusal(property_rules.no_goal(span))
-        return Cover(item.name.text, shown_form(ctl, span, checker.table.time), item.span, ctl)
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-    except Reported:
-        pass
-    return None
-
-
 def check_clauses(checker: Checker, item: RequirementItem) -> None:
     """Report clauses that stand twice, and names that are taken."""
     first: dict[str, Span] = {}
@@ -198,8 +184,8 @@ def _parts(
                 raise Reported
             if end := end_part(formula):
                 raise Refusal(rules.end_not_alone(end.span or expression.span))
-            if _at_start_by_mistake(expression, formula):
-                checker.report(rules.bare_instant(_ungrouped(expression).span))
+            if at_start_by_mistake(expression, formula):
+                checker.report(rules.bare_instant(ungrouped(expression).span))
             return normalised(formula)
         case Triggered():
             return _triggered(checker, item.body, outer, inner, bounded)
@@ -214,15 +200,6 @@ def _parts(
             return normalised(linear_form(ctl, span, checker.table.time))
         case CoverMonitor():
             raise AssertionError("a goal is no requirement")
-
-
-def _property(checker: Checker, item: RequirementItem) -> Property | None:
-    for clause in _clauses(item, PropertyClause):
-        found = checked_property(checker, item.name.text, clause.formula)
-        if found is None:
-            raise Reported
-        return found
-    return None
 
 
 def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts) -> Parts:
@@ -272,7 +249,7 @@ def _bounded(checker: Checker, item: RequirementItem, outer: Scope) -> _Bounded 
     """What a requirement owes within, or for, a time that comes from data; `None`: another."""
     if not isinstance(item.body, Triggered) or item.body.mode is not Mode.UPON:
         return None
-    match _ungrouped(item.body.consequent):
+    match ungrouped(item.body.consequent):
         case Prefix(
             op=UnaryOp.EVENTUALLY | UnaryOp.ALWAYS as op,
             operand=operand,
@@ -317,7 +294,7 @@ def _triggered(
 def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
     instant = body.mode is Mode.UPON and not at_end and is_timeless(consequent)
-    if instant and not _on_purpose(body.consequent):
+    if instant and not on_purpose(body.consequent):
         checker.report(rules.one_instant(body.consequent.span))
     if mixed := mixed_disjunction(trigger):
         pulse, level = mixed
@@ -337,23 +314,6 @@ def _warn_of_traps(
     found += capture_traps(mode, trigger, lets, time)
     for one in found:
         checker.report(one)
-
-
-def _at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
-    """Whether a bare formula speaks of no time, and not of the start either."""
-    if _on_purpose(expression) or not is_timeless(formula):
-        return False
-    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
-
-
-def _on_purpose(expression: Expression) -> bool:
-    return isinstance(_ungrouped(expression), Immediately)
-
-
-def _ungrouped(expression: Expression) -> Expression:
-    while isinstance(expression, Group):
-        expression = expression.inner
-    return expression
 
 
 def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.properties import checked_property
-from rvmon.spec.check.requirements import check_clauses, checked_goal, checked_requirement
+from rvmon.spec.check.properties import checked_goal, checked_property
+from rvmon.spec.check.requirements import check_clauses, checked_requirement
 from rvmon.spec.check.table import Table, close_name, close_unit
 from rvmon.spec.check.values import EVERYWHERE
 from rvmon.spec.checked.goals import Cover

@@ -19,9 +19,10 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.instant import FIRST, Facts, facts_of, truth_at
 from rvmon.spec.checked.specification import Capture, Mode, TimeModel
-from rvmon.spec.checked.tense import fields_in, is_pulse, subformulas
+from rvmon.spec.checked.tense import fields_in, is_pulse, is_timeless, subformulas
 from rvmon.spec.print.printer import format_duration, format_formula
 from rvmon.spec.rules import traps as rules
+from rvmon.spec.syntax.expressions import Expression, Group, Immediately
 from rvmon.spec.syntax.items import LetClause
 
 _FIRST = "at the first instant"
@@ -160,3 +161,22 @@ def _operand(formula: Formula) -> str:
     text = format_formula(formula)
     is_call = isinstance(formula, Unary) and formula.op.entry.called
     return text if is_call or isinstance(formula, Atom) else f"({text})"
+
+
+def at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
+    """Whether a bare formula speaks of no time, and not of the start either."""
+    if on_purpose(expression) or not is_timeless(formula):
+        return False
+    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
+
+
+def on_purpose(expression: Expression) -> bool:
+    """Whether `immediately` says that one instant is meant."""
+    return isinstance(ungrouped(expression), Immediately)
+
+
+def ungrouped(expression: Expression) -> Expression:
+    """An expression without the brackets around it."""
+    while isinstance(expression, Group):
+        expression = expression.inner
+    return expression

@@ -28,10 +28,11 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
 from rvmon.testing.law.syntax import subformulas
-from rvmon.testing.law.truths import Rest, Truths
+from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import (
     EventState,
     Letter,
+    Rest,
     Truth,
     Word,
     conjunction,

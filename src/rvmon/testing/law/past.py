@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from rvmon.spec.checked.formula import Amount, Interval, Measured
+from rvmon.spec.checked.formula import Amount, Formula, Interval, Measured
+from rvmon.testing.law.syntax import constant_value
 from rvmon.testing.law.word import (
     Letter,
     Truth,
@@ -29,6 +30,19 @@ Operand = Callable[[int], Truth]
 def always_true(_: int) -> Truth:
     """TRUE at each position."""
     return Truth.TRUE
+
+
+def always_false(_: int) -> Truth:
+    """FALSE at each position."""
+    return Truth.FALSE
+
+
+def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
+    """What has to last up to some position; if it is sure anyway, it asks for no position.
+
+    So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
+    """
+    return (lambda _: value) if constant_value(part) is value else operand
 
 
 def inverted(operand: Operand) -> Operand:

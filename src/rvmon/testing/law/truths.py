@@ -7,7 +7,6 @@ So are they in `walk`, `ready` and `pulse` beside it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum, auto
 from typing import Protocol, assert_never
 
 from rvmon.spec.checked.formula import (
@@ -24,7 +23,6 @@ from rvmon.spec.checked.formula import (
     Measured,
     Numeric,
     Passed,
-    Probe,
     ProbeAtom,
     SignalAtom,
     Unary,
@@ -33,6 +31,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.testing.law.numbers import as_ticks, compare, events_of, number
 from rvmon.testing.law.past import (
     Operand,
+    always_false,
     always_true,
     amount,
     held,
@@ -41,10 +40,11 @@ from rvmon.testing.law.past import (
     is_within,
     since,
     total,
+    unless_constant,
 )
-from rvmon.testing.law.syntax import constant_value, is_proposition, speaks_of_future
+from rvmon.testing.law.syntax import is_proposition, speaks_of_future
 from rvmon.testing.law.word import (
-    Letter,
+    Rest,
     Truth,
     Word,
     born_or_false,
@@ -54,27 +54,12 @@ from rvmon.testing.law.word import (
     disjunction,
     either,
     negation,
+    probed,
     truth_of,
 )
 from rvmon.trace.sample import Scalar
 
 EVER = Interval(0, None)
-
-
-class Rest(Enum):
-    """What is assumed of the part of an operator that lies behind the known positions."""
-
-    UNKNOWN = auto()
-    """Nothing: the truth after a prefix."""
-
-    END = auto()
-    """The trace has ended: an unbounded `always` that has begun counts as TRUE."""
-
-    WEAK = auto()
-    """All that is pending counts as TRUE."""
-
-    STRONG = auto()
-    """All that is pending counts as FALSE."""
 
 
 class Truths:
@@ -186,7 +171,7 @@ class Truths:
             case Compare():
                 return compare(formula, letter, self._captured)
             case ProbeAtom(probe=probe, name=name):
-                return _probe(probe, name, letter)
+                return probed(probe, name, letter)
             case BoundAtom(bound=bound):
                 if bound is Bound.END:
                     raise ValueError("`end` stands alone as a trigger, never inside a formula")
@@ -288,7 +273,7 @@ class Truths:
             case UnaryOp.EVENTUALLY:
                 return self._until(always_true, operand, i, interval, positive)
             case UnaryOp.ALWAYS:
-                return self._release(_false, operand, i, interval, positive)
+                return self._release(always_false, operand, i, interval, positive)
             case UnaryOp.PREVIOUS:
                 return operand(i - 1) if i else Truth.FALSE
             case UnaryOp.ONCE:
@@ -411,31 +396,3 @@ class Sub(Protocol):
 
     def __call__(self, part: Formula, k: int, same: bool = True, /) -> Truth:
         """Work it out."""
-
-
-def _false(_: int) -> Truth:
-    return Truth.FALSE
-
-
-def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
-    """What has to last up to some position; if it is sure anyway, it asks for no position.
-
-    So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
-    """
-    return (lambda _: value) if constant_value(part) is value else operand
-
-
-def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
-    if name in letter.events:
-        event = letter.events[name]
-        if probe is Probe.UPDATED:
-            return event.updated
-        raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
-    signal = letter.signals[name]
-    match probe:
-        case Probe.UPDATED:
-            return signal.updated
-        case Probe.KNOWN:
-            return Truth.UNKNOWN if signal.lost else truth_of(signal.value is not None)
-        case Probe.CHANGED:
-            return signal.changed

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum, auto
 
+from rvmon.spec.checked.formula import Probe
 from rvmon.trace.sample import Payload, Scalar
 
 
@@ -157,3 +158,36 @@ class Word:
     letters: tuple[Letter, ...]
     end: int | None
     reached: int
+
+
+class Rest(Enum):
+    """What is assumed of the part of an operator that lies behind the known positions."""
+
+    UNKNOWN = auto()
+    """Nothing: the truth after a prefix."""
+
+    END = auto()
+    """The trace has ended: an unbounded `always` that has begun counts as TRUE."""
+
+    WEAK = auto()
+    """All that is pending counts as TRUE."""
+
+    STRONG = auto()
+    """All that is pending counts as FALSE."""
+
+
+def probed(probe: Probe, name: str, letter: Letter) -> Truth:
+    """Whether a name was updated, changed, or is known at a position."""
+    if name in letter.events:
+        event = letter.events[name]
+        if probe is Probe.UPDATED:
+            return event.updated
+        raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
+    signal = letter.signals[name]
+    match probe:
+        case Probe.UPDATED:
+            return signal.updated
+        case Probe.KNOWN:
+            return Truth.UNKNOWN if signal.lost else truth_of(signal.value is not None)
+        case Probe.CHANGED:
+            return signal.changed

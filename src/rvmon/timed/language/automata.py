@@ -7,7 +7,7 @@ from itertools import product
 
 from rvmon.diagnostics import Span
 from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.bodies import updates_of
 from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
@@ -35,7 +35,7 @@ MAX_CASES = 16
 """The most cases of a guard in which clocks stand under `or`: each is an edge."""
 
 
-def location_names(template: syntax.Template, findings: Findings) -> dict[str, int]:
+def location_names(template: automaton_syntax.Template, findings: Findings) -> dict[str, int]:
     """The index of each location of a template; what is wrong goes to `findings`."""
     names: dict[str, int] = {}
     scope = Scope()
@@ -94,7 +94,7 @@ def _condition(written: syntax.Expression, scope: Scope, resolver: Resolver) -> 
 
 
 def _edges(
-    written: syntax.EdgeText,
+    written: automaton_syntax.EdgeText,
     names: Mapping[str, int],
     scope: Scope,
     parts: Parts,
@@ -137,7 +137,7 @@ def _edges(
             )  # fmt: skip
 
 
-def _weight(written: syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
+def _weight(written: automaton_syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
     """The share of the runs that take an edge: written by itself, or among its branches."""
     if written.shares is None:
         return written.weight
@@ -148,7 +148,7 @@ def _weight(written: syntax.EdgeText, scope: Scope, resolver: Resolver) -> float
     return own / sum(every)
 
 
-def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
+def _edge_text(written: automaton_syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
     text = f"{written.source.name} → {written.target.name}"
     if written.sync is not None:
         text += f" on {written.sync.span.text}"
@@ -158,7 +158,7 @@ def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol])
     return text + (f" with {', '.join(chosen)}" if chosen else "")
 
 
-def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
+def _sync(written: automaton_syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
     match resolver.symbol(written.channel, scope):
         case PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
             for index in slot.indices:

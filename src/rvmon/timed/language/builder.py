@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.diagnostics import Source, Span
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.document import Document
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_part
@@ -21,8 +21,8 @@ class AutomatonBuilder:
 
     name: str
     declarations: tuple[syntax.Declared, ...]
-    locations: list[syntax.LocationText] = field(default_factory=list)
-    edges: list[syntax.EdgeText] = field(default_factory=list)
+    locations: list[automaton_syntax.LocationText] = field(default_factory=list)
+    edges: list[automaton_syntax.EdgeText] = field(default_factory=list)
     initial: syntax.Name | None = None
 
     def location(
@@ -40,7 +40,7 @@ class AutomatonBuilder:
         """
         span = _span(f"location {self.name}.{name}", name)
         condition = _read("conditions", invariant, f"invariant of {self.name}.{name}", None)
-        self.locations.append(syntax.LocationText(name, kind, condition, span))
+        self.locations.append(automaton_syntax.LocationText(name, kind, condition, span))
         if initial or self.initial is None:
             self.initial = syntax.Name(name, span)
         return self
@@ -68,7 +68,7 @@ class AutomatonBuilder:
             fix = "a weight is a share: above 0, at most 1"
             raise model_error("TA017", f"weight {weight}", span, fix)
         self.edges.append(
-            syntax.EdgeText(
+            automaton_syntax.EdgeText(
                 syntax.Name(source, _span(place, source)),
                 syntax.Name(target, _span(place, target)),
                 span,
@@ -105,7 +105,7 @@ class NetworkBuilder:
     unit: int | None = None
     declarations: tuple[syntax.Declared, ...] = ()
     automata: list[AutomatonBuilder] = field(default_factory=list)
-    queries: list[syntax.QueryText] = field(default_factory=list)
+    queries: list[automaton_syntax.QueryText] = field(default_factory=list)
 
     def declare(self, text: str) -> NetworkBuilder:
         """Add constants, clocks, variables, channels or types.
@@ -134,7 +134,9 @@ class NetworkBuilder:
             ModelError: the text is no query.
         """
         formula = _read("query", text, f"query {id}".strip(), None)
-        self.queries.append(syntax.QueryText(id, remark, text, formula, _span("query", text)))
+        self.queries.append(
+            automaton_syntax.QueryText(id, remark, text, formula, _span("query", text))
+        )
         return self
 
     def build(self) -> Network:
@@ -144,7 +146,7 @@ class NetworkBuilder:
             ModelError: with everything that is wrong with it.
         """
         templates = tuple(
-            syntax.Template(
+            automaton_syntax.Template(
                 one.name,
                 (),
                 one.declarations,

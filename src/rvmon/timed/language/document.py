@@ -5,14 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Source, Span
-from rvmon.timed.language.syntax import (
-    Declared,
-    Expression,
-    Instance,
-    Name,
-    QueryText,
-    Template,
-)
+from rvmon.timed.language.automaton_syntax import Instance, QueryText, Template
+from rvmon.timed.language.syntax import Declared, Expression, Name
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.diagonals import Diagonals
@@ -142,7 +142,7 @@ def query_on(network: Network, text: str) -> Query:
 
 
 def _queries(
-    written: Iterable[syntax.QueryText],
+    written: Iterable[automaton_syntax.QueryText],
     names: Names,
     findings: Findings,
     diagonals: Diagonals | None = None,

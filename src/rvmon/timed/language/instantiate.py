@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.declare import Findings, check_range
 from rvmon.timed.language.document import Document
 from rvmon.timed.language.layout import MAX_VALUES, check_count, count_of, refuse_double, values_of
@@ -23,7 +23,7 @@ from rvmon.timed.model.scope import (
     Symbol,
 )
 
-Family = syntax.Template | syntax.Instance
+Family = automaton_syntax.Template | automaton_syntax.Instance
 """What a name in the system line may mean."""
 
 
@@ -33,7 +33,7 @@ class Process:
 
     family: str
     arguments: tuple[int, ...]
-    template: syntax.Template
+    template: automaton_syntax.Template
     scope: Scope
 
 
@@ -92,7 +92,7 @@ def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
     """Refuse an instance of an instance of … itself."""
     seen: set[str] = set()
     current: Family | None = family
-    while isinstance(current, syntax.Instance):
+    while isinstance(current, automaton_syntax.Instance):
         if current.name in seen:
             fix = "make it an instance of an automaton"
             message = f"`{current.name}` is an instance of itself"
@@ -107,13 +107,13 @@ def _bind(
     families: Mapping[str, Family],
     top: Scope,
     resolver: Resolver,
-) -> tuple[syntax.Template, Scope]:
+) -> tuple[automaton_syntax.Template, Scope]:
     scope = Scope(top)
     for parameter, argument in zip(family.parameters, arguments, strict=True):
         refuse_double(parameter.name, parameter.span, scope)
         scope.symbols[parameter.name] = argument
         scope.places[parameter.name] = parameter.span
-    if isinstance(family, syntax.Template):
+    if isinstance(family, automaton_syntax.Template):
         return family, scope
     target = families.get(family.template.name)
     if target is None:

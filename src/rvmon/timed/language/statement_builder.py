@@ -11,7 +11,7 @@ from lark import Token, Transformer, Tree, v_args
 from lark.tree import Meta
 
 from rvmon.diagnostics import Span
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.model.operators import BinaryOp
 
 
@@ -83,8 +83,8 @@ class StatementBuilder(Transformer[Token, Any]):
             joined = syntax.Binary(BinaryOp.AND, joined, one, self._span(meta))
         return joined
 
-    def sync(self, meta: Meta, items: Sequence[Any]) -> syntax.SyncText:
-        return syntax.SyncText(items[0], items[1] == "!", self._span(meta))
+    def sync(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.SyncText:
+        return automaton_syntax.SyncText(items[0], items[1] == "!", self._span(meta))
 
     def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
         return tuple(items[0]) if items else ()

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
+from rvmon.timed.model.operators import BaseType, BinaryOp, PathOp, UnaryOp
 
 # Expressions: of guards, invariants, updates, declarations and queries alike.
 
@@ -322,89 +322,3 @@ class FunctionText:
 
 
 Declared = Declaration | TypeDefinition | FunctionText
-
-
-# Automata.
-
-
-@dataclass(frozen=True, slots=True)
-class LocationText:
-    """A location of a template."""
-
-    name: str
-    kind: LocationKind
-    invariant: Expression | None
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class SyncText:
-    """`channel!` or `channel?`."""
-
-    channel: Expression
-    sends: bool
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class Selection:
-    """`name : type` of an edge: one edge for each value."""
-
-    name: str
-    type: TypeText
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class EdgeText:
-    """An edge of a template; `label` names the action for people and recordings.
-
-    Attributes:
-        shares: of a branch: its weight, and that of all branches together with it.
-    """
-
-    source: Name
-    target: Name
-    span: Span
-    selections: tuple[Selection, ...] = ()
-    guard: Expression | None = None
-    sync: SyncText | None = None
-    updates: tuple[UpdateText | Call, ...] = ()
-    weight: float = 1.0
-    label: str = ""
-    shares: tuple[Expression, tuple[Expression, ...]] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Template:
-    """A template; without parameters it is an automaton by itself."""
-
-    name: str
-    parameters: tuple[Parameter, ...]
-    declarations: tuple[Declared, ...]
-    locations: tuple[LocationText, ...]
-    initial: Name | None
-    edges: tuple[EdgeText, ...]
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class Instance:
-    """`name(parameters) = template(arguments)`."""
-
-    name: str
-    parameters: tuple[Parameter, ...]
-    template: Name
-    arguments: tuple[Expression, ...]
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class QueryText:
-    """A query with its id and its sentence for people, either may be empty, and its own text."""
-
-    id: str
-    remark: str
-    text: str
-    formula: Expression
-    span: Span

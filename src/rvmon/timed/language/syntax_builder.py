@@ -10,7 +10,7 @@ from typing import Any
 from lark import Token, Tree, v_args
 from lark.tree import Meta
 
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.document import SignalText
 from rvmon.timed.language.query_builder import QueryBuilder
 from rvmon.timed.language.statement_builder import is_rule
@@ -50,10 +50,10 @@ class SyntaxBuilder(QueryBuilder):
             *header,
             unit,
             _all(items, syntax.Declared),
-            _all(items, syntax.Template),
-            _all(items, syntax.Instance),
+            _all(items, automaton_syntax.Template),
+            _all(items, automaton_syntax.Instance),
             system,
-            _all(items, syntax.QueryText),
+            _all(items, automaton_syntax.QueryText),
             _all(items, SignalText),
         )
 
@@ -70,23 +70,23 @@ class SyntaxBuilder(QueryBuilder):
     def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
         return (
             _all(items, syntax.Declared),
-            _all(items, syntax.Instance),
+            _all(items, automaton_syntax.Instance),
             tuple(items[-1].children),
         )
 
-    def query_item(self, meta: Meta, items: Sequence[Any]) -> syntax.QueryText:
+    def query_item(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.QueryText:
         *head, formula = items
         identifier = next((h.children[0] for h in head if isinstance(h, Tree)), "")
         remark = next((h[1:-1] for h in head if isinstance(h, Token)), "")
         text = formula.span.text
-        return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
+        return automaton_syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
 
     def signal_item(self, meta: Meta, items: Sequence[Any]) -> SignalText:
         return SignalText(str(items[0]), items[1], self._token_span(items[0]))
 
     # Automata.
 
-    def automaton(self, meta: Meta, items: Sequence[Any]) -> syntax.Template:
+    def automaton(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.Template:
         name, *rest = items
         parameters: tuple[syntax.Parameter, ...] = ()
         if rest and isinstance(rest[0], tuple):
@@ -94,27 +94,29 @@ class SyntaxBuilder(QueryBuilder):
         starts: list[syntax.Name] = [i.children[0] for i in rest if is_rule(i, "initial")]
         for second in starts[1:]:
             raise model_error("TA003", "a second initial location", second.span)
-        return syntax.Template(
+        return automaton_syntax.Template(
             str(name),
             parameters,
             _all(rest, syntax.Declared),
-            _all(rest, syntax.LocationText),
+            _all(rest, automaton_syntax.LocationText),
             starts[0] if starts else None,
-            _all(rest, syntax.EdgeText),
+            _all(rest, automaton_syntax.EdgeText),
             self._token_span(name),
         )
 
     def initial(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
         return Tree("initial", [self._name(items[0])])
 
-    def location(self, meta: Meta, items: Sequence[Any]) -> syntax.LocationText:
+    def location(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.LocationText:
         kind = LocationKind.NORMAL
         if items[0].type in ("URGENT", "COMMITTED"):
             kind, *items = LocationKind(items[0]), *items[1:]
         invariant = items[1] if len(items) > 1 else None
-        return syntax.LocationText(str(items[0]), kind, invariant, self._token_span(items[0]))
+        return automaton_syntax.LocationText(
+            str(items[0]), kind, invariant, self._token_span(items[0])
+        )
 
-    def edge(self, meta: Meta, items: Sequence[Any]) -> syntax.EdgeText:
+    def edge(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.EdgeText:
         source, target, *clauses = items
         parts: dict[str, Any] = {}
         for clause in clauses:
@@ -122,7 +124,7 @@ class SyntaxBuilder(QueryBuilder):
                 message = f"two `{clause.data}` clauses on one edge"
                 raise model_error("TA003", message, self._span(meta))
             parts[clause.data] = clause.children[0]
-        return syntax.EdgeText(
+        return automaton_syntax.EdgeText(
             self._name(source),
             self._name(target),
             self._span(meta),
@@ -141,9 +143,9 @@ class SyntaxBuilder(QueryBuilder):
             raise model_error("TA017", f"weight {items[0]}", self._span(meta), fix)
         return Tree("weight", [weight])
 
-    def instance(self, meta: Meta, items: Sequence[Any]) -> syntax.Instance:
+    def instance(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.Instance:
         name, *parameters, template, arguments = items
-        return syntax.Instance(
+        return automaton_syntax.Instance(
             str(name),
             parameters[0] if parameters else (),
             self._name(template),
@@ -230,8 +232,8 @@ class SyntaxBuilder(QueryBuilder):
             self._token_span(name),
         )
 
-    def selection(self, meta: Meta, items: Sequence[Any]) -> syntax.Selection:
-        return syntax.Selection(str(items[0]), items[1], self._span(meta))
+    def selection(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.Selection:
+        return automaton_syntax.Selection(str(items[0]), items[1], self._span(meta))
 
     # Expressions.
 

@@ -21,7 +21,7 @@ from typing import Any
 
 from rvmon.diagnostics import Diagnostic, Source
 from rvmon.errors import ModelError
-from rvmon.timed.language import syntax
+from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.declare import Findings
 from rvmon.timed.language.document import Document
 from rvmon.timed.language.parse import parse_part
@@ -95,7 +95,7 @@ def _parsed(element: Element, start: str) -> Any:
 def _system(
     root: Element, findings: Findings
 ) -> tuple[
-    tuple[syntax.Instance, ...],
+    tuple[automaton_syntax.Instance, ...],
     tuple[tuple[syntax.Declared, ...], tuple[syntax.Name, ...] | None],
 ]:
     first = _part(root.first("instantiation"), "instances", findings, ())
@@ -104,7 +104,7 @@ def _system(
     return (*first, *instances), (declared, names)
 
 
-def _template(element: Element, findings: Findings) -> syntax.Template:
+def _template(element: Element, findings: Findings) -> automaton_syntax.Template:
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
     if name is None or not name.text.strip():
@@ -113,7 +113,7 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
         place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
     }
     locations = tuple(_location(place, findings) for place in element.all("location"))
-    return syntax.Template(
+    return automaton_syntax.Template(
         _text(name).strip(),
         _part(element.first("parameter"), "parameters", findings, ()),
         _part(element.first("declaration"), "declarations", findings, ()),
@@ -128,7 +128,7 @@ def _location_name(element: Element) -> str:
     return _text(element.first("name")).strip() or element.attributes.get("id", "")
 
 
-def _location(element: Element, findings: Findings) -> syntax.LocationText:
+def _location(element: Element, findings: Findings) -> automaton_syntax.LocationText:
     kind = LocationKind.NORMAL
     for mark in (LocationKind.URGENT, LocationKind.COMMITTED):
         if element.first(mark.value) is not None:
@@ -137,7 +137,7 @@ def _location(element: Element, findings: Findings) -> syntax.LocationText:
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
     invariant = _part(labels.get("invariant"), "conditions", findings, None)
-    return syntax.LocationText(_location_name(element), kind, invariant, span)
+    return automaton_syntax.LocationText(_location_name(element), kind, invariant, span)
 
 
 def _labels(element: Element) -> dict[str, Element]:
@@ -154,12 +154,12 @@ def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name
 
 def _edges(
     template: Element, names: Mapping[str, str], findings: Findings
-) -> Iterator[syntax.EdgeText]:
+) -> Iterator[automaton_syntax.EdgeText]:
     """The edges; one to a branch point is one for each of its branches."""
-    branches: dict[str, list[tuple[syntax.EdgeText, syntax.Expression]]] = {
+    branches: dict[str, list[tuple[automaton_syntax.EdgeText, syntax.Expression]]] = {
         point.attributes.get("id", ""): [] for point in template.all("branchpoint")
     }
-    entering: list[tuple[str, syntax.EdgeText]] = []
+    entering: list[tuple[str, automaton_syntax.EdgeText]] = []
     for element in template.all("transition"):
         edge = _edge(element, names, findings)
         source, target = (element.first(end) for end in ("source", "target"))
@@ -179,7 +179,9 @@ def _edges(
             yield replace(edge, target=branch.target, updates=updates, shares=(weight, every))
 
 
-def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syntax.EdgeText:
+def _edge(
+    element: Element, names: Mapping[str, str], findings: Findings
+) -> automaton_syntax.EdgeText:
     labels = _labels(element)
     nowhere = syntax.Name("", element.span())
     comments = _text(labels.get("comments"))
@@ -188,7 +190,7 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
         message, fix = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
         findings.add(finding("TA017", message, labels["comments"].span(), fix))
         weight = None
-    return syntax.EdgeText(
+    return automaton_syntax.EdgeText(
         _reference(element.first("source"), names) or nowhere,
         _reference(element.first("target"), names) or nowhere,
         element.span(),
@@ -201,7 +203,7 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
     )
 
 
-def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.QueryText]:
+def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[automaton_syntax.QueryText]:
     queries = root.first("queries")
     for element in [] if queries is None else queries.all("query"):
         formula = element.first("formula")
@@ -218,4 +220,4 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
         length = len(formula.text.rstrip())
         text = formula.text.strip()
         span = formula.place(0, length)
-        yield syntax.QueryText(named[1] if named else "", remark, text, read, span)
+        yield automaton_syntax.QueryText(named[1] if named else "", remark, text, read, span)

@@ -11,8 +11,7 @@ from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import Readings, obligation
 from rvmon.testing.law.decisions import follow
 from rvmon.testing.law.sample_words import word_of
-from rvmon.testing.law.truths import Rest
-from rvmon.testing.law.word import Truth
+from rvmon.testing.law.word import Rest, Truth
 
 
 @pytest.mark.parametrize("time", TimeModel)
