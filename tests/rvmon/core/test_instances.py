@@ -7,9 +7,11 @@ from collections import Counter
 import pytest
 from tests.tools.differential import disagreements
 from tests.tools.forms import Maker
+from tests.tools.law import judge
 
 import rvmon
 from rvmon.testing.case import Case
+from rvmon.testing.law.outage import Outage
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
@@ -190,3 +192,17 @@ def test_an_instance_that_looks_back_knows_what_has_no_source(time, form, before
     actions = (*before, Sample(10, {"order": {"id": 7}}))
     case = Case(rvmon.loads(text).checked, actions, None, names=frozenset({"order"}))
     assert disagreements(case, Maker(form)) == []
+
+
+@pytest.mark.parametrize("form", ["c", "c rows"])
+def test_what_another_key_says_is_no_update_where_something_was_lost(form):
+    """What was lost may have been of any key; a value beside it that is known is of one."""
+    text = (
+        "time sampled every 2 ns\nevent g(k: int)\n"
+        "requirement R1\n  upon g\n  then within 6 ns updated(g)\n  for each k in g.k\n"
+    )
+    samples = (Sample(3, {}), Sample(15, {"g": {"k": 1}}))
+    lost = Outage(frozenset({"g"}), 9, 15)
+    case = Case(rvmon.loads(text).checked, samples, 16, outages=(lost,))
+    assert disagreements(case, Maker(form)) == []
+    assert [one.in_doubt for one in judge(case).attempts] == [False, True]

@@ -389,7 +389,9 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    state = EventState(whole.updated if kept else Truth.FALSE, kept)
+    # What was said of another value alone is no update of this one, beside what was lost.
+    updated = whole.updated if len(kept) > whole.lost else Truth.UNKNOWN if kept else Truth.FALSE
+    state = EventState(updated, kept, whole.lost)
     return replace(letter, events={**letter.events, field.event: state})
 
 

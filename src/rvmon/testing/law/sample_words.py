@@ -161,7 +161,7 @@ def _blank(spec: CheckedSpec, instant: int) -> Letter:
     )
 
 
-_UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),))
+_UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),), lost=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,7 +260,8 @@ def _event(told: _Told, event: Event) -> EventState:
     new = [entry for entry in told.entries if told.is_new(entry)]
     told_of = (one for entry in new for one in _occurrences(entry.value))
     found = (replace(one, payload=_at_edge(one.payload, event)) for one in told_of)
-    return EventState(_updated(told), tuple(found))
+    lost = sum(entry.lost for entry in new)
+    return EventState(_updated(told), tuple(found), lost)
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:

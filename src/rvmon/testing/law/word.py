@@ -119,10 +119,17 @@ class Occurrence:
 
 @dataclass(frozen=True, slots=True)
 class EventState:
-    """What is known of an event at a position."""
+    """What is known of an event at a position.
+
+    Attributes:
+        updated: whether something was said of it.
+        occurrences: those that were, or may have been.
+        lost: so many of them stand for what was lost.
+    """
 
     updated: Truth = Truth.FALSE
     occurrences: tuple[Occurrence, ...] = ()
+    lost: int = 0
 
 
 @dataclass(frozen=True, slots=True)
