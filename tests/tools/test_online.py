@@ -52,10 +52,10 @@ def test_what_is_owed_and_its_deadline_are_compared() -> None:
         return online_differences(Judgement(case), monitor)
 
     assert told() == []
-    assert told(owed="`within 3 ns p` by 3 ns and `within 5 ns q` by 5 ns", deadline=3) == []
+    assert told(required="`within 3 ns p` by 3 ns and `within 5 ns q` by 5 ns", deadline=3) == []
     assert "has the deadline 3, shown is 5" in told(deadline=5)[0]
-    assert "owe `within 5 ns q` by 6 ns" in told(owed="`within 5 ns q` by 6 ns")[0]
-    assert "owe something" in told(owed="something")[0]
+    assert "owe `within 5 ns q` by 6 ns" in told(required="`within 5 ns q` by 6 ns")[0]
+    assert "owe something" in told(required="something")[0]
 
 
 def test_deadline_is_the_last_instant_before_time_alone_decides() -> None:

@@ -47,7 +47,7 @@ class Code(IntEnum):
 OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
 """Their numbers, which go on from there in the order of their table."""
 
-OPERATIONS_END = len(Code) + len(OPERATIONS)
+NOW = len(Code) + len(OPERATIONS)
 """The word for `now`, behind all operations."""
 
 _UPDATES = {
@@ -125,7 +125,7 @@ class Programs:
             case Literal(value=value):
                 words.append(_word(Code.NUMBER, self._number(value)))
             case NowValue():
-                words.append(_word(OPERATIONS_END, 0))
+                words.append(_word(NOW, 0))
             case SignalValue(name=name):
                 words.append(_word(Code.SIGNAL, names.signals[name]))
             case FieldValue(event=event, field=field):

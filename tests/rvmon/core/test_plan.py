@@ -33,7 +33,7 @@ from rvmon.core.measures import Measure
 from rvmon.core.nodes import NodeOp
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
-from rvmon.core.programs import DEPTH, OPERATIONS, Code
+from rvmon.core.programs import DEPTH, NOW, OPERATIONS, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
@@ -225,6 +225,7 @@ def test_packing_is_deterministic():
 
 
 CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPERATIONS.items()]
+BEHIND = [SimpleNamespace(name="NOW", value=NOW)]
 
 
 @pytest.mark.parametrize(
@@ -234,7 +235,7 @@ CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPER
         ("ATOM_", AtomOp),
         ("NODE_", NodeOp),
         ("OP_", Operator),
-        ("CODE_", (*Code, *CALCULATED)),
+        ("CODE_", (*Code, *CALCULATED, *BEHIND)),
         ("MEASURE_", Measure),
     ],
 )

@@ -55,7 +55,7 @@ _LINES = {
         "upon",
         "then",
     ): "`upon θ then ψ`: ψ is owed each time θ becomes true; if θ is an event, each time it occurs",
-    ("now",): "`now` is the time since the first instant, beside a constant duration",
+    ("now",): "`now` is the time since the first instant, beside a duration",
     ("if", "else"): "`if φ then x else y` is a number, or a formula",
     ("whenever",): "`whenever θ then ψ`: ψ is owed at every instant at which θ holds",
     ("monitor as response",): "`monitor as response within D`: derived from the requirement's "
