@@ -7,8 +7,8 @@ from functools import cached_property
 
 from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.case import Case
-from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.law.decisions import Followed, Followings
+from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Truth
 from rvmon.testing.oracle import judge_views, report_on
 from rvmon.trace.health import Health

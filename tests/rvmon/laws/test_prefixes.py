@@ -12,7 +12,7 @@ from tests.tools.law import names_read
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.choices import BOOLS
-from rvmon.testing.law.attempts import is_upon_end
+from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision

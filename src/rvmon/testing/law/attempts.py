@@ -11,7 +11,6 @@ from rvmon.spec.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
-    Bound,
     BoundAtom,
     Compare,
     Constant,
@@ -27,7 +26,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
-from rvmon.testing.law.syntax import subformulas
+from rvmon.testing.law.syntax import is_upon_end, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import (
     EventState,
@@ -297,9 +296,9 @@ def obligation(start: Start, readings: Readings) -> Truth:
     owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
     if requirement.mode is Mode.UPON and start.sure is not None:
         return owed[0]
-    is_blurred = start.blurred is not None and start.blurred < truths.known
-    going_on = Truth.UNKNOWN if is_blurred else truths.release_rest(opened=True)
-    value = conjunction([*owed, Truth.TRUE if ended else going_on])
+    blurred = start.blurred is not None and start.blurred < truths.known
+    rest = Truth.UNKNOWN if blurred else truths.release_rest(opened=True)
+    value = conjunction([*owed, Truth.TRUE if ended else rest])
     if value is Truth.FALSE and start.sure is None:
         return Truth.UNKNOWN
     if value is Truth.TRUE and counts_in_favour(requirement):
@@ -389,13 +388,7 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    # What was said of another value alone is no update of this one, beside what was lost.
+    # Beside what was lost, what was said of another value is no update of this one.
     updated = whole.updated if len(kept) > whole.lost else Truth.UNKNOWN if kept else Truth.FALSE
-    state = EventState(updated, kept, whole.lost)
-    return replace(letter, events={**letter.events, field.event: state})
-
-
-def is_upon_end(requirement: Requirement) -> bool:
-    """Whether the requirement is judged when the trace is finished."""
-    trigger = requirement.trigger
-    return isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    only = {field.event: EventState(updated, kept, whole.lost)}
+    return replace(letter, events={**letter.events, **only})

@@ -13,12 +13,11 @@ from rvmon.testing.law.attempts import (
     View,
     counts_in_favour,
     is_pulse,
-    is_upon_end,
     obligation,
     starts_upon,
     views,
 )
-from rvmon.testing.law.syntax import looks_back_at_future, speaks_of_future
+from rvmon.testing.law.syntax import is_upon_end, looks_back_at_future, speaks_of_future
 from rvmon.testing.law.word import Truth, Word
 
 

@@ -11,11 +11,11 @@ from typing import assert_never
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
 from rvmon.spec.checked.specification import Mode
-from rvmon.testing.law.attempts import Start, counts_in_favour, is_upon_end
+from rvmon.testing.law.attempts import Start, counts_in_favour
 from rvmon.testing.law.decisions import Followings
 from rvmon.testing.law.past import is_within
 from rvmon.testing.law.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
-from rvmon.testing.law.syntax import is_proposition
+from rvmon.testing.law.syntax import is_proposition, is_upon_end
 from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.word import Truth, Word, truth_of
 from rvmon.trace.sample import Scalar

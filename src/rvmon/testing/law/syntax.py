@@ -9,6 +9,8 @@ from rvmon.spec.checked.formula import (
     Arithmetic,
     Binary,
     BinaryOp,
+    Bound,
+    BoundAtom,
     Compare,
     Constant,
     Formula,
@@ -18,6 +20,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
 
 
@@ -115,3 +118,9 @@ def constant_value(formula: Formula) -> Truth:
                 case BinaryOp.IFF | BinaryOp.XOR if Truth.UNKNOWN not in (one, other):
                     return truth_of((one is other) is (op is BinaryOp.IFF))
     return Truth.UNKNOWN
+
+
+def is_upon_end(requirement: Requirement) -> bool:
+    """Whether the requirement is judged when the trace is finished."""
+    trigger = requirement.trigger
+    return isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
