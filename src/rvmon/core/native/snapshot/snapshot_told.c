@@ -90,7 +90,7 @@ static void check_truths(checking *k, int32_t words)
 static void check_token(checking *k, int64_t width)
 {
     const machine *a = &k->own->machines[k->index];
-    if (has_more(k, 1) && (width >= 0) && has_more(k, 1 + width)) {
+    if (has_more(k, 1) && has_more(k, width) && has_more(k, 1 + width)) { /* in this order: it is any word */
         const int64_t location = k->words[k->at];
         k->fits = (location >= 0) && (location < a->locations) && (width == a->widths[location]);
         k->at += 1 + width;
