@@ -269,6 +269,7 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
     declared = {*schema.signals, *schema.events}
     declared |= {f"{name}.{field}" for name, own in schema.events.items() for field in own}
     aliases = aliases_of(schema)
+    written = frozenset(header)
     names: list[str] = []
     for column in header:
         bare, unit = name_and_unit(column)
@@ -276,7 +277,7 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
         if name in declared:
             _expect_unit(column, name, unit, schema)
         is_time = schema.stamps is None and name in DEFAULT_COLUMNS
-        if column in aliases or name in header or not (name in declared or is_time):
+        if column in aliases or name in written or not (name in declared or is_time):
             names.append(column)
             continue
         names.append(name)

@@ -252,4 +252,4 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
         remark = f": {health.remark}" if health.remark else ""
         yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
     for remark, names in ignored.items():
-        yield f"  ignored{f', {remark}' if remark else ''}: {', '.join(names)}"
+        yield f"  ignored{f', {remark}' if remark else ''}: {_listed(names)}"
