@@ -6,10 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from rvmon.spec.checked.formula import (
-    BoundAtom,
-    Constant,
-)
+from rvmon.spec.checked.formula import BoundAtom, Constant, Literal, Passed
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.law.sample_words import heard
@@ -81,9 +78,13 @@ def _agree(expected: Health, actual: Health, simple: set[str]) -> bool:
 
 
 def may_be_simplified(requirement: Requirement, time: TimeModel) -> bool:
-    """Whether it has a constant in it, or a window that may hold no tick of a clock."""
+    """Whether it has a constant in it, or a window that may hold no tick of a clock.
+
+    So has time that has passed beside a constant: nothing is read for it.
+    """
     return any(
         isinstance(part, Constant)
+        or (isinstance(part, Passed) and isinstance(part.after, Literal))
         or (isinstance(part, BoundAtom) and part is not requirement.trigger)
         or (time is TimeModel.CLOCKED and getattr(part, "interval", None) is not None)
         for formula in (requirement.trigger, requirement.consequent)
