@@ -43,8 +43,9 @@ class Arm:
 
     def joints(self) -> Joints:
         """The joint angles as they are, rad."""
-        upper, fore, palm = (link.angle for link in self._scene.links)
-        return upper, fore - upper, palm - fore
+        upper, fore, palm = self._scene.links
+        first, second, third = upper.angle, fore.angle, palm.angle
+        return first, second - first, third - second
 
     def plan(self, x: float, z: float) -> Generator[float, None, Trajectory | None]:
         """Find a path for the grip to a point, gripper down; takes the planner's time.
@@ -126,6 +127,7 @@ class Gripper:
         self._scene = scene
         self._wake = wake
         self._note = note
+        self._rates = [0.0, 0.0]
         self._travel_s = (p.FINGER_OPEN - p.FINGER_OVERCLOSED) / p.FINGER_SPEED
 
     def open(self) -> None:
@@ -140,16 +142,21 @@ class Gripper:
 
     def control(self) -> None:
         """Stop a finger at its stop: a motor that went on pressing would jerk the arm."""
+        if not any(self._rates):
+            return
         palm = self._scene.links[2].angle
-        fingers = zip(self._scene.fingers, self._scene.finger_motors, (1, -1), strict=True)
-        for finger, motor, side in fingers:
-            angle, closing = side * (finger.angle - palm), side * motor.rate
+        for index, (finger, side) in enumerate(zip(self._scene.fingers, (1, -1), strict=True)):
+            angle, closing = side * (finger.angle - palm), side * self._rates[index]
             if (closing < 0 and angle > p.FINGER_OPEN - p.AT_STOP) or (
                 closing > 0 and angle < p.FINGER_OVERCLOSED + p.AT_STOP
             ):
-                motor.rate = 0.0
+                self._set(index, 0.0)
 
     def _turn(self, closing_speed: float) -> None:
-        left, right = self._scene.finger_motors
-        left.rate, right.rate = closing_speed, -closing_speed
+        self._set(0, closing_speed)
+        self._set(1, -closing_speed)
         self._wake(self._travel_s)
+
+    def _set(self, index: int, rate: float) -> None:
+        self._rates[index] = rate
+        self._scene.finger_motors[index].rate = rate

@@ -13,6 +13,9 @@ from handover.world.measures import contact_forces, gripper_force, seen_piece
 from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, slope
 from handover.world.scene import Scene
 
+_HAND = 1
+"""The hand's type of collision in pymunk; all other shapes have 0."""
+
 
 @dataclass(slots=True)
 class _Reach:
@@ -138,6 +141,10 @@ class Human:
         self._near = False
         self._closed = False
         self._grasp: Grasp | None = None
+        self._touches = 0
+        for shape in scene.hand.shapes:
+            shape.collision_type = _HAND
+        scene.space.on_collision(_HAND, None, begin=self._touch, separate=self._part)
 
     def look(self, offset: float, distance: float, angle: float) -> None:
         """Intend to look at the piece from beside it.
@@ -191,7 +198,7 @@ class Human:
 
         Fingers that clamp it press from both sides, each as hard as the other: that is no more.
         """
-        forces = contact_forces(self._scene.hand)
+        forces = self._contact_forces()
         if not forces and self._grasp is None:
             return 0.0
         parts = (self._scene.links[2], *self._scene.fingers)
@@ -207,8 +214,18 @@ class Human:
         enough = self.holding_force() >= p.PRESSURE_MIN
         return enough and gripper_force(self._scene) >= p.PRESSURE_MIN
 
+    def _touch(self, *_: object) -> None:
+        self._touches += 1
+
+    def _part(self, *_: object) -> None:
+        self._touches -= 1
+
+    def _contact_forces(self) -> dict[pymunk.Body, float]:
+        # Asked at each step of the physics: most of the time nothing touches the hand.
+        return contact_forces(self._scene.hand) if self._touches else {}
+
     def _touch_force(self) -> float:
-        return contact_forces(self._scene.hand).get(self._scene.piece, 0.0)
+        return self._contact_forces().get(self._scene.piece, 0.0)
 
     def _grasp_force(self) -> float:
         return 0.0 if self._grasp is None else self._grasp.force()

@@ -119,8 +119,10 @@ def tool_point(scene: Scene) -> tuple[float, float]:
 
 def gripper_centre(scene: Scene) -> tuple[float, float]:
     """The mass centre of palm and fingers, (x, z) in metres."""
-    parts = (scene.links[2], *scene.fingers)
-    mass = sum(part.mass for part in parts)
-    x = sum(part.mass * part.position.x for part in parts) / mass
-    z = sum(part.mass * part.position.y for part in parts) / mass
+    left, right = scene.fingers
+    one, two, three = scene.links[2].position, left.position, right.position
+    palm, finger = p.LINK_MASSES[2], p.FINGER_MASS
+    mass = palm + finger + finger
+    x = (palm * one.x + finger * two.x + finger * three.x) / mass
+    z = (palm * one.y + finger * two.y + finger * three.y) / mass
     return x, z
