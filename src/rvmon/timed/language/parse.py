@@ -137,8 +137,8 @@ _WORD = re.compile(r"[^\W_][\w-]*")
 """What was meant for a name."""
 
 _OPERATORS = {
-    "AND", "OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
-    "RECEIVE", "__ANON_2", "__ANON_3",
+    "_AND", "_OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
+    "RECEIVE",
 }  # fmt: skip
 _EXPRESSION_STARTS = {"NUMBER", "NAME", "LPAR", "SEND", "NOT", "MINUS", "TRUTH"}
 

@@ -7,6 +7,7 @@ import lark
 import pytest
 
 from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.language.parse import STARTS
 from rvmon.timed.search.verify import verify
@@ -361,3 +362,27 @@ def test_what_is_no_name_is_fixed(text, name):
 def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
     """It has a mistake at its first word that does not fit."""
     assert [code for code, *_ in findings(text)] == ["TA001"]
+
+
+@pytest.mark.parametrize(
+    ("text", "bound"),
+    [
+        ("p imply q imply r", "(p imply q) imply r"),
+        ("p imply q or r imply s", "((p imply q) or r) imply s"),
+        ("p or q imply r", "(p or q) imply r"),
+        ("p and q || r", "(p and q) || r"),
+        ("p or q && r", "p or (q && r)"),
+        ("p || q and r", "p || (q and r)"),
+        ("not p && q", "(not p) && q"),
+        ("not v == 1", "not (v == 1)"),
+        ("p and q ? r : s", "(p and q) ? r : s"),
+        ("p ? q : r ? s : p", "p ? q : (r ? s : p)"),
+        ("p imply forall (i : int[0,1]) q imply r", "p imply (forall (i : int[0,1]) (q imply r))"),
+        ("p && !forall (i : int[0,1]) q || r", "p && !(forall (i : int[0,1]) (q || r))"),
+        ("EF p && q", "(EF p) && q"),
+    ],
+)
+def test_operators_bind_as_those_of_uppaal(text, bound):
+    """Words as signs: UTAP's grammar has `imply` beside `or`, from the left, and `and` above."""
+    network = loads_network("bool p, q, r, s int[0,3] v automaton A { location l start l }")
+    assert query_on(network, f"E<> ({text})").formula == query_on(network, f"E<> ({bound})").formula
