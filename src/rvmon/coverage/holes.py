@@ -229,26 +229,26 @@ def _of_requirement(group: Group, name: str, hits: Hits) -> tuple[str, str, str]
         return f"{what}it is triggered", "its trigger never came", "a run in which it comes"
     if name == PASSED:
         what += "it passes"
-        needs = "a run in which it comes and what is owed follows"
+        needs = "a run in which it is triggered and met"
     elif name in (JUST_BEFORE, AT):
-        what += f"what is owed comes {name}"
-        needs = "an answer that is as late as it may be"
+        what += f"the response comes {name}"
+        needs = "a response as late as is allowed"
     else:
         part = name.removesuffix(_DECIDES)
         what += f"{part} makes the difference"
         needs = f"a run that would be judged otherwise, or at another instant, without {part}"
     if not triggered:
         return what, "it was never triggered", needs
-    return what, f"it was triggered {_times(triggered)}, and never so", needs
+    return what, f"it was triggered {_times(triggered)}, but never like this", needs
 
 
 def _of_automaton(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, str]:
     requirement = group.name.split("`")[1]
     of = f"{requirement}, “{group.title}”" if group.title else requirement
     if group.subject is Subject.STATES:
-        owed = f", where it owes: {text}" if text else ""
+        required = f", where it still requires: {text}" if text else ""
         why, needs = "no attempt was there", "a run that leads an attempt there"
-        return f"{of}: place {name} of its automaton{owed}", why, needs
+        return f"{of}: location {name} of its automaton{required}", why, needs
     source = name.partition(_ARROW)[0]
     was_there = count_of(hits, locations_of(requirement), source)
     attempts = "1 attempt was" if was_there == 1 else f"{was_there:,} attempts were"

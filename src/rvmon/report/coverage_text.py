@@ -70,7 +70,7 @@ def print_holes(summary: Summary, console: Console) -> None:
         console.print(wrapped(f"{line}: {why}" if why else line, console.width))
         console.print(wrapped(f"  {summary.hole_texts[place]}", console.width), style="dim")
     if summary.unreachable:
-        console.print("no goals, as they cannot be hit:", style="bold")
+        console.print("excluded, as they cannot be hit:", style="bold")
     for reason, places in summary.unreachable.items():
         names = ", ".join(map(summary.item_name, places))
         console.print(wrapped(f"{reason}: {names}", console.width))

@@ -41,8 +41,8 @@ HIGH = {**IDLE, "level": [7.0, 1.0, 1.0]}
         (
             [IDLE, SOON],
             ("R1", "at the deadline"),
-            "R1, “It stops in time”: what is owed comes at the deadline. It was triggered once, "
-            "and never so; needs an answer that is as late as it may be. Nearest: 1.",
+            "R1, “It stops in time”: the response comes at the deadline. It was triggered once, "
+            "but never like this; needs a response as late as is allowed. Nearest: 1.",
         ),
         (
             [IDLE],
