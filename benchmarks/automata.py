@@ -21,14 +21,13 @@ from dataclasses import dataclass
 
 from tests.tools.build import p, requirement, start
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.forecast import Forecaster
-from rvmon.automaton.location import PASSED
-from rvmon.automaton.reduce import reduce
-from rvmon.formula.alphabet import alphabet_of
-from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
+from rvmon.logic.alphabet import alphabet_of
+from rvmon.logic.automaton import PASSED, Automaton
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.forecast import Forecaster
+from rvmon.logic.formula import Factory
+from rvmon.logic.lower import lower
+from rvmon.logic.reduce import reduce
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
 from rvmon.spec.print.printer import format_formula

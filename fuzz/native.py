@@ -34,10 +34,10 @@ from rvmon.core import amalgamate
 from rvmon.core.plan import pack
 from rvmon.coverage.bins import Bins
 from rvmon.errors import RvmonError
+from rvmon.logic.plan import Plan
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.planned import planned_core
-from rvmon.plan.plan import Plan
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 

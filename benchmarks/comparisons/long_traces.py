@@ -23,11 +23,11 @@ from tests.tools.generate_ltl import random_mtl
 from tests.tools.progression import Progression, TooManyObligationsError
 from tests.tools.stepped import settle
 
-from rvmon.automaton.location import PASSED, Token
-from rvmon.formula.alphabet import Alphabet, alphabet_of
-from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
-from rvmon.formula.state import FALSE, TRUE, Elapsed, State, StateOp
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import PASSED, Token
+from rvmon.logic.formula import Factory
+from rvmon.logic.lower import lower
+from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from rvmon.automaton.location import NOW, Location, Token, location_of, normalise
 from rvmon.errors import RvmonError
-from rvmon.formula.alphabet import Alphabet, holds
-from rvmon.formula.core import Literal, Temporal
-from rvmon.formula.progress import after, step, value
-from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
+from rvmon.logic.alphabet import Alphabet, holds
+from rvmon.logic.automaton import NOW, Location, Token, location_of, normalise
+from rvmon.logic.formula import Literal, Temporal
+from rvmon.logic.progress import after, step, value
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 
 _CACHE_LIMIT = 20_000
 """Edges that are kept; with more, all are forgotten (they can be made again)."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import Any
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.location import FAILED, PASSED, Token
-from rvmon.formula.state import UNKNOWN
+from rvmon.logic.automaton import FAILED, PASSED, Automaton, Token
+from rvmon.logic.state_formula import UNKNOWN
 from rvmon.trace.time import NEVER
 
 

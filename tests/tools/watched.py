@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rvmon.automaton.automaton import Automaton
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.plan import Plan, plan_of_truths
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.plan.plan import Plan, plan_of_truths
 
 TRACED_MOST = 64
 """As plan.h has it."""

@@ -9,9 +9,8 @@ from itertools import combinations, islice, product
 from typing import TypeVar, assert_never
 
 from rvmon.analysis.solve import Variable, truths_tried, turning_values
-from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf
-from rvmon.plan.graph import captured_names, names_of
+from rvmon.logic.state_formula import Leaf, operands
+from rvmon.logic.state_graph import captured_names, names_of
 from rvmon.spec.checked.formula import (
     Compare,
     EventAtom,

@@ -5,10 +5,9 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.clock_regions import region_bounds
-from rvmon.automaton.location import NOW
-from rvmon.formula.state import State
+from rvmon.logic.automaton import NOW, Automaton
+from rvmon.logic.clock_regions import region_bounds
+from rvmon.logic.state_formula import State
 from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import Mode, Requirement
 

@@ -7,10 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.formula.core import Sense
-from rvmon.formula.factory import Factory
-from rvmon.formula.numeric import operands
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
+from rvmon.logic.formula import Factory, Sense
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
 from rvmon.monitor.core.watching import Positions, known_truths
 from rvmon.spec.checked.formula import (
     Arithmetic,

@@ -8,10 +8,9 @@ from enum import IntEnum, auto
 
 from rvmon.core.programs import Names, Programs, exact
 from rvmon.errors import RvmonError
-from rvmon.formula.numeric import events_of, inputs_of, operands
-from rvmon.formula.state import Leaf
-from rvmon.plan.graph import captured_names
-from rvmon.plan.plan import Plan
+from rvmon.logic.plan import Plan
+from rvmon.logic.state_formula import Leaf, events_of, inputs_of, operands
+from rvmon.logic.state_graph import captured_names
 from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,

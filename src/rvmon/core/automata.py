@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.automaton.automaton import Automaton, end_clauses
-from rvmon.automaton.diagram import LetterClasses, LetterDiagram, Tree
 from rvmon.core.sections import Section, Sections
-from rvmon.formula.alphabet import Alphabet
+from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.automaton import Automaton, end_clauses
+from rvmon.logic.decision_diagram import LetterClasses, LetterDiagram, Tree
 
 
 class Automata:

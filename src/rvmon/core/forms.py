@@ -7,10 +7,10 @@ from enum import IntEnum, auto
 from typing import assert_never
 
 from rvmon.core.sections import Listed, Section, Sections
-from rvmon.dataflow.chain import Chain, reach_of
-from rvmon.dataflow.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
-from rvmon.formula.core import Constant, Literal, Sense
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
+from rvmon.logic.chain import Chain, reach_of
+from rvmon.logic.formula import Constant, Literal, Sense
+from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
 
 _FARTHEST = (1 << 62) - 2
 """No two instants of a trace that need to be told apart are farther from each other."""

@@ -6,15 +6,15 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import assert_never
 
-from rvmon.automaton.automaton import Automaton
 from rvmon.core.automata import Automata
 from rvmon.core.forms import add_form
 from rvmon.core.measures import add_margin
 from rvmon.core.sections import Section, Sections
-from rvmon.dataflow.chain import Chain, chain_of
-from rvmon.dataflow.network_plan import NetworkPlan, plan_of
-from rvmon.formula.state import State
-from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.chain import Chain, chain_of
+from rvmon.logic.network_plan import NetworkPlan, plan_of
+from rvmon.logic.plan import Plan, PlannedRule
+from rvmon.logic.state_formula import State
 from rvmon.spec.checked.specification import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict

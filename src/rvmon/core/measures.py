@@ -7,10 +7,9 @@ from enum import IntEnum, auto
 
 from rvmon.core.forms import add_operators
 from rvmon.core.sections import Section, Sections
-from rvmon.dataflow.network_plan import NetworkPlan
-from rvmon.formula.core import Constant, Literal, Sense
-from rvmon.formula.numeric import events_of
-from rvmon.formula.state import State
+from rvmon.logic.formula import Constant, Literal, Sense
+from rvmon.logic.network_plan import NetworkPlan
+from rvmon.logic.state_formula import State, events_of
 from rvmon.spec.checked.arithmetic import UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,

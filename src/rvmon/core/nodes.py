@@ -9,10 +9,10 @@ from enum import IntEnum, auto
 from rvmon.core.atoms import Atoms
 from rvmon.core.measures import is_followed
 from rvmon.core.programs import Names
-from rvmon.dataflow.network_plan import plan_of
-from rvmon.formula.core import Literal, literals
-from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import (
+from rvmon.logic.formula import Literal, literals
+from rvmon.logic.network_plan import plan_of
+from rvmon.logic.plan import Plan, PlannedRule
+from rvmon.logic.state_formula import (
     FALSE,
     TRUE,
     UNKNOWN,
@@ -22,9 +22,9 @@ from rvmon.formula.state import (
     State,
     StateOp,
     Unborn,
+    signals_of,
 )
-from rvmon.plan.graph import lasting
-from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.logic.state_graph import lasting
 from rvmon.spec.checked.formula import (
     Captured,
     Compare,

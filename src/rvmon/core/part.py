@@ -14,11 +14,11 @@ from rvmon.core.packed import Numbering
 from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
-from rvmon.dataflow.network_plan import plan_of_all
 from rvmon.errors import RvmonError
-from rvmon.formula.numeric import events_of, inputs_of
-from rvmon.plan.instances import keys_of
-from rvmon.plan.plan import Plan, Uses
+from rvmon.logic.instances import keys_of
+from rvmon.logic.network_plan import plan_of_all
+from rvmon.logic.plan import Plan, Uses
+from rvmon.logic.state_formula import events_of, inputs_of
 from rvmon.spec.checked.formula import Compare, Numeric
 
 _IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8

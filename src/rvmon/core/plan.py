@@ -6,7 +6,7 @@ from rvmon.core.automata import Automata
 from rvmon.core.packed import Numbering, Packed, packed
 from rvmon.core.part import Part
 from rvmon.core.sections import Section, Sections
-from rvmon.plan.plan import Plan
+from rvmon.logic.plan import Plan
 
 
 def pack(plan: Plan) -> Packed:

@@ -10,7 +10,7 @@ from typing import assert_never
 from rvmon.core.packed import Numbering, numbered
 from rvmon.core.sections import Section, Sections
 from rvmon.errors import RvmonError
-from rvmon.plan.plan import Plan
+from rvmon.logic.plan import Plan
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Arithmetic,

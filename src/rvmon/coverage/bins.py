@@ -9,12 +9,12 @@ from struct import iter_unpack
 
 from rvmon.core.plan import pack
 from rvmon.coverage.model import Group, Hit, Hits, Item, Subject, combination
-from rvmon.formula.factory import Factory
-from rvmon.formula.four import Reader
-from rvmon.formula.state import FALSE
+from rvmon.logic.formula import Factory
+from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
+from rvmon.logic.state_formula import FALSE
+from rvmon.logic.three_valued import Reader
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import PlannedCore, planned_as
-from rvmon.plan.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec

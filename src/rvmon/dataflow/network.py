@@ -8,16 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from rvmon.dataflow.network_plan import (
-    Junction,
-    Leaf,
-    NetworkPlan,
-    Node,
-    Shift,
-    Sweep,
-    Window,
-    operands_of,
-)
 from rvmon.dataflow.piecewise import (
     EVER,
     FAR,
@@ -37,7 +27,17 @@ from rvmon.dataflow.piecewise import (
 )
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.sweep import Carried, Known, since, until
-from rvmon.formula.core import Core
+from rvmon.logic.formula import Core
+from rvmon.logic.network_plan import (
+    Junction,
+    Leaf,
+    NetworkPlan,
+    Node,
+    Shift,
+    Sweep,
+    Window,
+    operands_of,
+)
 
 
 def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Known:

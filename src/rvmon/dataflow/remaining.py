@@ -12,7 +12,7 @@ from typing import assert_never
 
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.piecewise import FAR, unchanged_until
-from rvmon.formula.core import (
+from rvmon.logic.formula import (
     And,
     Constant,
     Core,
@@ -24,9 +24,8 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.formula.dual import Duals
-from rvmon.formula.progress import opened
-from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
+from rvmon.logic.progress import Duals, opened
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
 
 MOST_POSITIONS = 60
 """So many undecided positions are looked at, of all parts of a formula together."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.automaton.automaton import Automaton, row_of
-from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.diagnostics.shown import shown
-from rvmon.formula.core import Core, Literal, Sense
-from rvmon.formula.state import FALSE, TRUE, Shown, State
+from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
+from rvmon.logic.formula import Core, Literal, Sense
+from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
-from rvmon.formula.core import Core
-from rvmon.formula.core_form import Lowering
-from rvmon.formula.factory import Factory
+from rvmon.logic.formula import Core, Factory
+from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.core.watching import TruthsPlan, TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.automaton.automaton import Automaton
 from rvmon.core.judges import machine_of
-from rvmon.formula.core import horizon
-from rvmon.formula.state import StateOp
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.formula import horizon
+from rvmon.logic.state_formula import StateOp
+from rvmon.logic.state_graph import graph_of
 from rvmon.monitor.compiled.code_plan import planned_rule
 from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.plan.graph import graph_of
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,

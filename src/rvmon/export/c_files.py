@@ -15,8 +15,8 @@ from rvmon.core import amalgamate
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
 from rvmon.errors import RvmonError
+from rvmon.logic.plan import Plan
 from rvmon.native import memory_of
-from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon import __version__
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.forecast import ltl3_monitor
-from rvmon.automaton.location import FAILED, PASSED
 from rvmon.errors import RvmonError
 from rvmon.explain.graph import graph_of, proposition_texts, quoted
-from rvmon.formula.state import FALSE, TRUE
+from rvmon.logic.automaton import FAILED, PASSED, Automaton
+from rvmon.logic.forecast import ltl3_monitor
+from rvmon.logic.state_formula import FALSE, TRUE
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.verdict import Verdict

@@ -25,7 +25,6 @@ from tests.rvmon.core.plan_reader import (
 )
 
 import rvmon
-from rvmon.automaton.automaton import Automaton
 from rvmon.core import amalgamate, sections
 from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
@@ -36,10 +35,11 @@ from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, NOW, OPERATIONS, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
 from rvmon.errors import RvmonError
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
-from rvmon.plan.plan import Plan as Planned
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]

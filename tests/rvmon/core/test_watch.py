@@ -14,16 +14,16 @@ from rvmon.core import sections
 from rvmon.core.plan import pack
 from rvmon.core.sections import Section, hash_of
 from rvmon.coverage.bins import Bins
-from rvmon.dataflow.network_plan import plan_of_all
 from rvmon.errors import RvmonError
-from rvmon.formula.core_form import Lowering
-from rvmon.formula.factory import Factory
+from rvmon.logic.formula import Factory
+from rvmon.logic.network_plan import plan_of_all
+from rvmon.logic.normal_form import Lowering
+from rvmon.logic.plan import WatchGroup
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.core.watching import known_truths
-from rvmon.plan.plan import WatchGroup
 from rvmon.testing.generate.spec import Profile
 from rvmon.trace.sample import Sample
 

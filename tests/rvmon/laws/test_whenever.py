@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
 
-from rvmon.formula.numeric import signals_of
+from rvmon.logic.state_formula import signals_of
 from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode
 from rvmon.spec.checked.tense import subformulas

@@ -6,16 +6,15 @@ from collections.abc import Collection, Iterable
 from dataclasses import replace
 from functools import cache
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.construct import Budget, construct
-from rvmon.dataflow.network_plan import plan_of as network_of
-from rvmon.formula.alphabet import Alphabet, alphabet_of
-from rvmon.formula.core import Core, Literal
-from rvmon.formula.factory import Factory
-from rvmon.formula.state import State
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.construct import Budget, construct
+from rvmon.logic.formula import Core, Factory, Literal
+from rvmon.logic.network_plan import plan_of as network_of
+from rvmon.logic.plan import Plan, PlannedRule, plan_in_units
+from rvmon.logic.state_formula import State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.plan.plan import Plan, PlannedRule, plan_in_units
 from rvmon.spec.checked.selection import requirements_asked
 
 

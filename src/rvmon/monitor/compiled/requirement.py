@@ -5,25 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
-from rvmon.automaton.automaton import Automaton, moves_in_runs
-from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.forecast import Forecaster
-from rvmon.automaton.reduce import reduce
-from rvmon.automaton.shapes import Shapes
-from rvmon.dataflow.chain import reach_of
-from rvmon.dataflow.network_plan import NetworkPlan, plan_of
 from rvmon.errors import RvmonError
-from rvmon.formula.alphabet import Alphabet, alphabet_of
-from rvmon.formula.core import Core
-from rvmon.formula.expand import expanded
-from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
-from rvmon.formula.numeric import events_of, inputs_of
-from rvmon.formula.obligation import Obligation, UnmonitorableError
-from rvmon.formula.residual import Residual
-from rvmon.formula.state import State
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import Automaton, moves_in_runs
+from rvmon.logic.chain import reach_of
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.forecast import Forecaster
+from rvmon.logic.formula import Core, Factory
+from rvmon.logic.lower import Obligation, UnmonitorableError, lower
+from rvmon.logic.network_plan import NetworkPlan, plan_of
+from rvmon.logic.normal_form import expanded
+from rvmon.logic.reduce import reduce
+from rvmon.logic.residual import Residual
+from rvmon.logic.shapes import Shapes
+from rvmon.logic.state_formula import State, events_of, inputs_of
+from rvmon.logic.state_graph import graph_of, leaf_count, leaf_texts
 from rvmon.monitor.reasons.obligation_words import Words
-from rvmon.plan.graph import graph_of, leaf_count, leaf_texts
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 

@@ -8,8 +8,9 @@ from functools import cached_property
 from struct import Struct, unpack_from
 from typing import Any
 
-from rvmon.automaton.location import Token
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
+from rvmon.logic.automaton import Token
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
+from rvmon.logic.state_graph import names_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.replayed import Letters, at_decision, at_moment
@@ -29,7 +30,6 @@ from rvmon.monitor.explained.explanation import (
 from rvmon.monitor.explained.machine import MachineRuns, Reasons, explained
 from rvmon.monitor.explained.network import explained_by_network
 from rvmon.monitor.reasons.sentence import Standing
-from rvmon.plan.graph import names_of
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict

@@ -28,10 +28,10 @@ from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.core.packed import Packed
+    from rvmon.logic.plan import Plan
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.monitor.core.notes import Note
-    from rvmon.plan.plan import Plan
 
 
 class CapturedValues:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from struct import Struct
 
 from rvmon.dataflow.network import Network, Noted
-from rvmon.formula.core import Constant, Sense
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.logic.formula import Constant, Sense
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.network import NetworkRuns
 

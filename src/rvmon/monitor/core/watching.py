@@ -9,12 +9,12 @@ from struct import iter_unpack
 from typing import TYPE_CHECKING
 
 from rvmon.core.plan import pack
-from rvmon.dataflow.network_plan import plan_of_all
-from rvmon.formula.core import Core
+from rvmon.logic.formula import Core
+from rvmon.logic.network_plan import plan_of_all
+from rvmon.logic.plan import plan_of_truths
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.inputs.validate import Validator
-from rvmon.plan.plan import plan_of_truths
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar, Trace

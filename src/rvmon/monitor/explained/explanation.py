@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from rvmon.automaton.location import FAILED, Token
-from rvmon.formula.core import Core, horizon
-from rvmon.formula.state import TRUE, UNKNOWN
+from rvmon.logic.automaton import FAILED, Token
+from rvmon.logic.formula import Core, horizon
+from rvmon.logic.state_formula import TRUE, UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.specification import EndPolicy
 from rvmon.spec.print.printer import format_duration

@@ -6,10 +6,10 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.automaton.location import FAILED, PASSED, Token, location_of
-from rvmon.formula.progress import after, value
-from rvmon.formula.residual import NO_CLOCK, Residual
-from rvmon.formula.state import UNKNOWN
+from rvmon.logic.automaton import FAILED, PASSED, Token, location_of
+from rvmon.logic.progress import after, value
+from rvmon.logic.residual import NO_CLOCK, Residual
+from rvmon.logic.state_formula import UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.explanation import (
     Explanation,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import assert_never
 
-from rvmon.automaton.location import FAILED, PASSED, Token
 from rvmon.dataflow.network import Network, settled
 from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.remaining import Remaining
-from rvmon.formula.core import (
+from rvmon.logic.automaton import FAILED, PASSED, Token
+from rvmon.logic.formula import (
     And,
     Constant,
     Core,
@@ -21,7 +21,7 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.formula.residual import TooManyClausesError
+from rvmon.logic.residual import TooManyClausesError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.explanation import (
     Explanation,

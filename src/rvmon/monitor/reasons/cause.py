@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from rvmon.formula.alphabet import TruthValue, holds
-from rvmon.formula.core import (
+from rvmon.logic.alphabet import TruthValue, holds
+from rvmon.logic.formula import (
     And,
     Constant,
     Core,
@@ -19,9 +19,9 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.formula.progress import Phase, after, instance, phase, step
-from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
-from rvmon.formula.state import State
+from rvmon.logic.progress import Phase, after, instance, phase, step
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
+from rvmon.logic.state_formula import State
 
 AT_DECISION = -2
 """The start of what was instantiated at the instant of the decision; no clock has this number."""

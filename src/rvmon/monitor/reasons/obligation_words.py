@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
-from rvmon.formula.obligation import Origin
-from rvmon.formula.progress import after, value
-from rvmon.formula.residual import NO_CLOCK, Residual
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.logic.formula import Constant, Core, Literal, Release, Sense, Until
+from rvmon.logic.normal_form import Origin
+from rvmon.logic.progress import after, value
+from rvmon.logic.residual import NO_CLOCK, Residual
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.reasons.cause import Cause
 from rvmon.monitor.reasons.sentence import (
     AfterTrigger,

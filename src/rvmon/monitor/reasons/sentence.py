@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, assert_never
 
-from rvmon.formula.state import State
+from rvmon.logic.state_formula import State
 from rvmon.trace.time import format_ticks
 
 

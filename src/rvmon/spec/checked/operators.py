@@ -3,7 +3,7 @@
 What an operator means is defined by its entry in terms of those of `Reading`, so that whoever reads
 formulas gives a meaning to these few and has all others. A new operator that is made of known ones
 is one entry here. `rise`, `fall` and `held` mean a little more where something is not born yet: see
-`formula/four.py`. The oracle has readings of its own, of which this is to be found right.
+`logic/three_valued.py`. The oracle has readings of its own, of which this is to be found right.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterator
 from itertools import pairwise
 
-from rvmon.formula.core import Core, Next, Release, Until, nodes_of
+from rvmon.logic.formula import Core, Next, Release, Until, nodes_of
 from rvmon.timed.observation.observer import Observed, ObservedLink, ObservedSite, Phase
 from rvmon.timed.search.explore import Node
 from rvmon.timed.search.meter import Meter

@@ -6,15 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from rvmon.automaton.construct import Budget as TableBudget
-from rvmon.automaton.construct import DoesNotCloseError, construct
-from rvmon.automaton.location import NOW
-from rvmon.formula.alphabet import alphabet_of
-from rvmon.formula.core import horizon, looks_back
-from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
-from rvmon.formula.obligation import Obligation
-from rvmon.formula.state import StateOp
+from rvmon.logic.alphabet import alphabet_of
+from rvmon.logic.automaton import NOW
+from rvmon.logic.construct import Budget as TableBudget
+from rvmon.logic.construct import DoesNotCloseError, construct
+from rvmon.logic.formula import Factory, horizon, looks_back
+from rvmon.logic.lower import Obligation, lower
+from rvmon.logic.state_formula import StateOp
 from rvmon.spec.checked.formula import BoundAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.timed.conformance.recordings import labels_of

@@ -15,9 +15,8 @@ from enum import Enum
 from itertools import product
 from math import ceil, inf
 
-from rvmon.automaton.automaton import Automaton, row_of
-from rvmon.automaton.location import FAILED, NOW, PASSED
-from rvmon.formula.obligation import Obligation
+from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
+from rvmon.logic.lower import Obligation
 from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.conformance.conform import names_of
 from rvmon.timed.model.network import Network

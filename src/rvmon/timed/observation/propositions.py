@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
-from rvmon.formula.state import State as Proposition
+from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
+from rvmon.logic.state_formula import State as Proposition
 from rvmon.spec.checked.formula import (
     Compare,
     Constant,

@@ -1,1 +1,0 @@
-"""Deterministic timed monitors as data, their construction, and how they are driven."""

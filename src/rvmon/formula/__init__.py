@@ -1,1 +1,0 @@
-"""Formulas as monitors read them: hash-consed, in negation normal form, progressed."""

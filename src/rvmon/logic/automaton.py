@@ -1,0 +1,236 @@
+"""The deterministic timed monitor of one formula as integer tables, and its locations.
+
+A location is a residual with its clocks numbered by age, and the ages that make a difference.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+
+from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.decision_diagram import LetterClasses
+from rvmon.logic.formula import Release, Until
+from rvmon.logic.residual import NO_CLOCK, Residual
+
+FAILED, PASSED = 0, 1
+"""The locations in which an attempt is decided; they stand first in every machine."""
+
+NOW = -1
+"""As the source of a clock: it is started at the position of the step."""
+
+Token = tuple[int, tuple[int, ...]]
+"""Where an attempt is: its location, and for each clock the instant at which it was started."""
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """What is owed, but for the ages.
+
+    Attributes:
+        residual: its clocks count from the oldest, from 0, without gaps.
+        cuts: for each clock the ages, ascending, from which on it is in another region.
+    """
+
+    residual: Residual
+    cuts: tuple[tuple[int, ...], ...]
+
+
+def normalise(residual: Residual, clocks: int) -> tuple[Residual, tuple[int, ...]]:
+    """Number the clocks of a residual after a step by age.
+
+    Args:
+        residual: what `rvmon.logic.progress.step` gave.
+        clocks: the number of clocks before the step; the new one has this number.
+
+    Returns:
+        The residual, and for each of its clocks the old one it is, or `NOW`.
+    """
+    used = sorted({clock for clause in residual for _, clock in clause if clock != NO_CLOCK})
+    sources = tuple(NOW if clock == clocks else clock for clock in used)
+    if used == list(range(len(used))):
+        return residual, sources
+    renamed = {old: new for new, old in enumerate(used)}
+    renamed[NO_CLOCK] = NO_CLOCK
+    made = frozenset(
+        frozenset((node, renamed[clock]) for node, clock in clause) for clause in residual
+    )
+    return made, sources
+
+
+def location_of(residual: Residual) -> Location:
+    """The location of a residual whose clocks are numbered by age."""
+    cuts: dict[int, set[int]] = {}
+    for clause in residual:
+        for node, clock in clause:
+            if clock == NO_CLOCK or not isinstance(node, Until | Release):
+                continue
+            bounds = cuts.setdefault(clock, set())
+            if node.low:
+                bounds.add(node.low)
+            if node.high is not None:
+                bounds.add(node.high + 1)
+    return Location(residual, tuple(tuple(sorted(cuts[clock])) for clock in sorted(cuts)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Automaton:
+    """Locations, clocks and edges; made once by `construct`, never changed.
+
+    A *row* is a location with a region for each of its clocks: `bases[location]` plus, for each
+    clock, the number of its cuts that its age has reached, times its stride. The edge taken from a
+    row with a letter is `edges[row * classes + class_of[letter]]`. `FAILED` and `PASSED` are the
+    first two locations.
+
+    Attributes:
+        alphabet: what letters are made of.
+        locations: with their residuals and cuts.
+        initial: the location before the position of the trigger.
+        classes: the number of classes of letters.
+        class_of: the class of each letter.
+        bases: per location, its first row.
+        strides: per location and clock.
+        edges: row and class to the number of an edge; −1 where no run comes.
+        targets: per edge, the location it leads to.
+        sources: per edge, for each clock of its target the old clock it is, or `NOW`.
+        time_values: per row, the truth if time alone has come to it.
+        end_values: per row, whether the rule for the end of a trace makes the residual true there.
+    """
+
+    alphabet: Alphabet
+    locations: tuple[Location, ...]
+    initial: int
+    classes: int
+    class_of: LetterClasses
+    bases: tuple[int, ...]
+    strides: tuple[tuple[int, ...], ...]
+    edges: array[int]
+    targets: tuple[int, ...]
+    sources: tuple[tuple[int, ...], ...]
+    time_values: bytes
+    end_values: bytes
+
+    @property
+    def clocks(self) -> int:
+        """The largest number of clocks in one location."""
+        return max(len(location.cuts) for location in self.locations)
+
+    @property
+    def cuts(self) -> set[int]:
+        """The ages at which a clock enters another region, in some location."""
+        return {cut for location in self.locations for clock in location.cuts for cut in clock}
+
+
+EndClause = tuple[tuple[int, int, bool], ...]
+"""Clock (−1: none), least age, and whether the age is that at the end or as far as time came."""
+
+
+def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
+    """When the end of a trace makes a residual true, whatever else is pending (SEMANTICS 3).
+
+    A bounded `R` counts if its window is over as far as time has come, an unbounded one if its
+    window has opened at the end; nothing else counts.
+    """
+    made = []
+    for clause in residual:
+        releases = [(node, clock) for node, clock in clause if isinstance(node, Release)]
+        if len(releases) == len(clause):
+            tests: list[tuple[int, int, bool]] = []
+            for node, clock in releases:
+                if node.high is not None:
+                    tests.append((clock, node.high + 1, False))
+                elif clock != NO_CLOCK and node.low:
+                    tests.append((clock, node.low, True))
+            made.append(tuple(sorted(tests)))
+    return tuple(sorted(made))
+
+
+def layout_of(
+    locations: Sequence[Location],
+) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
+    """First row and strides of each location, number of rows; the last clock runs fastest."""
+    bases, strides, total = [], [], 0
+    for location in locations:
+        bases.append(total)
+        own: list[int] = []
+        size = 1
+        for cuts in reversed(location.cuts):
+            own.append(size)
+            size *= len(cuts) + 1
+        strides.append(tuple(reversed(own)))
+        total += size
+    return tuple(bases), tuple(strides), total
+
+
+def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
+    """The row of a location, for each clock of which so many of its cuts have been passed."""
+    strides = automaton.strides[location]
+    return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
+
+
+_MOST = 5
+"""Orders of more locations are not looked through."""
+
+
+def moves_in_runs(automaton: Automaton) -> bool:
+    """Whether attempts can be kept in order of their triggers by location alone.
+
+    It is proved if there is one clock at most, which every attempt starts at its trigger and never
+    again, and if the locations have an order in which age decides: read from the oldest attempts
+    to the youngest, no letter ever leads a younger one to an earlier location than an older one.
+    So a run, sorted by age, moves as a whole or is cut where a region ends, and runs that meet
+    stand one behind the other.
+
+    Source: AUTOMATA 3.
+    """
+    if automaton.clocks > 1 or not _starts_once(automaton):
+        return False
+    live = [
+        location
+        for location in range(PASSED + 1, len(automaton.locations))
+        if location != automaton.initial
+    ]
+    if len(live) > _MOST:
+        return False
+    return any(_age_decides(automaton, order) for order in permutations(live))
+
+
+def _starts_once(automaton: Automaton) -> bool:
+    for location in range(PASSED + 1, len(automaton.locations)):
+        starts = location == automaton.initial
+        for row in _rows(automaton, location):
+            for kind in range(automaton.classes):
+                edge = automaton.edges[row * automaton.classes + kind]
+                if edge < 0 or automaton.targets[edge] <= PASSED:
+                    continue
+                sources = automaton.sources[edge]
+                if automaton.targets[edge] == automaton.initial:
+                    return False
+                if sources and (sources[0] == NOW) is not starts:
+                    return False
+    return True
+
+
+def _age_decides(automaton: Automaton, order: Sequence[int]) -> bool:
+    """Whether targets keep the order of the locations, given with the oldest attempts first."""
+    rank = {location: index for index, location in enumerate(order)}
+    rows = [row for location in order for row in reversed(_rows(automaton, location))]
+    rows += _rows(automaton, automaton.initial)
+    for kind in range(automaton.classes):
+        last = 0
+        for row in rows:
+            edge = automaton.edges[row * automaton.classes + kind]
+            if edge >= 0 and (target := automaton.targets[edge]) > PASSED:
+                if rank[target] < last:
+                    return False
+                last = rank[target]
+    return True
+
+
+def _rows(automaton: Automaton, location: int) -> range:
+    """The rows of a location, by the age of its attempts."""
+    first = automaton.bases[location]
+    regions = [len(cuts) + 1 for cuts in automaton.locations[location].cuts]
+    return range(first, first + (regions[0] if regions else 1))

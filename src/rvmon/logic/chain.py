@@ -1,0 +1,157 @@
+"""Windows within windows over what a letter decides: what is known of them is known in order.
+
+Of such a formula no position becomes known before one that lies further left: where one position of
+a window decides, it is the first such one; where all do, the last. So what is known ends at one
+position, and all that has to be kept is where the values change. This holds of what has to be kept
+up while something stays (`whenever` and `always`), too: the first position at which it is false is
+the first that is known to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.logic.formula import Constant, Sense
+from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A formula of that kind.
+
+    Attributes:
+        base: the place of what the innermost window is over: a leaf, or a junction of leaves.
+        windows: the innermost first.
+        left: the place of the leaf that ends what is kept up; `None` if nothing is.
+        places: of the windows.
+        excused: the place of the leaf that is true where the windows do not matter to what is kept
+            up; `None` if they always do. With no unknown it is true where the one on the left is.
+    """
+
+    base: int
+    windows: tuple[Window, ...]
+    left: int | None
+    places: tuple[int, ...]
+    excused: int | None
+
+
+def reach_of(plan: NetworkPlan) -> int | None:
+    """Ticks after which a position is known at the latest, or only leads on to later ones.
+
+    Args:
+        plan: of a network.
+
+    Returns:
+        `None` if there is no such number, or the past is looked at.
+    """
+
+    def reach(node: Node) -> int | None:
+        match node:
+            case Leaf():
+                return 0
+            case Junction(operands=operands):
+                return known([within(node, place) for place in operands])
+            case Window(operand=operand, over=int(over)):
+                return after(over, operand)
+            case Window() | Shift() | Sweep():
+                return None
+
+    def within(junction: Junction, place: int) -> int | None:
+        """The reach of an operand, or that of an `until` which another operand bounds.
+
+        Where its right operand is not met in time, that decides the junction; where it is, that
+        decides the `until`.
+        """
+        node = plan.nodes[place]
+        low = node.offset if isinstance(node, Shift) else 0
+        swept = plan.sweep_of(node) if isinstance(node, Shift) else node
+        if isinstance(swept, Sweep) and swept.future and swept.dual is not junction.every:
+            for bound in map(plan.nodes.__getitem__, junction.operands):
+                match bound:
+                    case Window(over=int(over)) if (
+                        bound.operand == swept.right
+                        and bound.every is swept.dual
+                        and bound.low == low
+                    ):
+                        return after(over, swept.left, swept.right)
+        return reach(node)
+
+    def after(over: int, *places: int) -> int | None:
+        inner = greatest(*places)
+        return None if inner is None else inner + over
+
+    def greatest(*places: int) -> int | None:
+        return known([reach(plan.nodes[place]) for place in places])
+
+    def known(found: Sequence[int | None]) -> int | None:
+        bounds = [one for one in found if one is not None]
+        return max(bounds) if len(bounds) == len(found) else None
+
+    root = plan.nodes[-1]
+    if isinstance(root, Sweep) and root.future:
+        return greatest(root.left, root.right)
+    return reach(root)
+
+
+def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
+    """The chain that a plan is; `None` if it is none.
+
+    Args:
+        plan: of a network.
+        gap: ticks between two positions; `None` if only samples are positions. There a window that
+            opens later may hold no position, so that what is known does not end at one.
+    """
+    nodes = plan.nodes
+    top, left, excused = len(nodes) - 1, None, None
+    root = nodes[top]
+    if isinstance(root, Sweep):
+        end = nodes[root.left]
+        if not (root.future and root.dual and isinstance(end, Leaf)):
+            return None
+        left, top = root.left, root.right
+        right = nodes[top]
+        if isinstance(right, Junction):
+            inner = [one for one in right.operands if not _ends(plan, left, one)]
+            if right.every or len(inner) != 1 or len(right.operands) != 2:
+                return None
+            top = inner[0]
+            excused = next(one for one in right.operands if one != top)
+        elif not isinstance(end.core, Constant):
+            return None  # what is kept up has to hold where that ends, too
+    windows: list[Window] = []
+    places: list[int] = []
+    node = nodes[top]
+    while isinstance(node, Window) and node.over is not None and node.low <= node.high:
+        if gap is None and node.low:
+            return None
+        windows.append(node)
+        places.append(top)
+        top = node.operand
+        node = nodes[top]
+    if not windows or not _is_read(plan, top):
+        return None
+    return Chain(top, tuple(reversed(windows)), left, tuple(reversed(places)), excused)
+
+
+def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
+    """Whether, with no unknown, a leaf is true where the one on the left is."""
+    one, other = plan.nodes[left], plan.nodes[place]
+    if not (isinstance(one, Leaf) and isinstance(other, Leaf)):
+        return False
+    if isinstance(one.core, Constant) or isinstance(other.core, Constant):
+        return False
+    falses = (Sense.FALSE, Sense.KNOWN_FALSE)
+    return (
+        one.core.proposition is other.core.proposition
+        and one.core.sense in falses
+        and other.core.sense in falses
+    )
+
+
+def _is_read(plan: NetworkPlan, place: int) -> bool:
+    """Whether a letter decides a node."""
+    node = plan.nodes[place]
+    if isinstance(node, Junction):
+        return all(_is_read(plan, operand) for operand in node.operands)
+    return isinstance(node, Leaf)

@@ -1,0 +1,193 @@
+"""From a formula to its automaton: breadth-first over locations, age regions and letters."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.automaton import NOW, Automaton, Location, layout_of, location_of, normalise
+from rvmon.logic.decision_diagram import Diagrams, Node, TooManyClassesError
+from rvmon.logic.formula import Literal, Temporal
+from rvmon.logic.progress import after, holds_at_end, step, value
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """How large an automaton may become before it is given up.
+
+    Attributes:
+        locations: at most so many.
+        clocks: at most so many in one location.
+        rows: locations times their age regions.
+        clauses: of one residual.
+        table: rows times classes of letters.
+    """
+
+    locations: int = 60
+    clocks: int = 6
+    rows: int = 600
+    clauses: int = 60
+    table: int = 1 << 17
+
+
+class DoesNotCloseError(Exception):
+    """The automaton of a formula outgrew its budget; the message says in what."""
+
+
+def construct(
+    owed: Temporal, alphabet: Alphabet, budget: Budget, ages: set[int] | None = None
+) -> Automaton:
+    """Build the automaton of a formula.
+
+    Args:
+        owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
+        alphabet: of that formula.
+        budget: when to give up.
+        ages: takes those with which locations are looked at.
+
+    Raises:
+        DoesNotCloseError: the budget was exceeded.
+
+    Source: AUTOMATA 2; regions after Alur and Dill 1994.
+    """
+    return _Construction(alphabet, budget, set() if ages is None else ages).run(owed)
+
+
+class _Construction:
+    def __init__(self, alphabet: Alphabet, budget: Budget, ages: set[int]) -> None:
+        self.alphabet = alphabet
+        self.budget = budget
+        self.ages = ages
+        self.locations: list[Location] = []
+        self.index: dict[Residual, int] = {}
+        self.youngest: list[tuple[int, ...]] = []
+        """Per location, for each clock the least age with which it is entered."""
+        self.rows: dict[tuple[int, tuple[int, ...]], Node] = {}
+        self.least: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {}
+        """Per row, the least ages with which it was explored."""
+        self.diagrams = Diagrams(alphabet)
+        self.todo: list[int] = []
+
+    def run(self, owed: Temporal) -> Automaton:
+        for residual in (FAILS, HOLDS):
+            self.enter(residual, ())
+        initial = self.enter(frozenset([frozenset([(owed, NO_CLOCK)])]), ())
+        while self.todo:
+            self.explore(self.todo.pop())
+        return self.tables(initial)
+
+    def enter(self, residual: Residual, ages: tuple[int, ...]) -> int:
+        """The location of a residual, to be explored if it is new or entered younger."""
+        index = self.index.get(residual)
+        if index is None:
+            if len(residual) > self.budget.clauses:
+                raise DoesNotCloseError(f"more than {self.budget.clauses} clauses")
+            if len(ages) > self.budget.clocks:
+                raise DoesNotCloseError(f"more than {self.budget.clocks} clocks")
+            if len(self.locations) >= self.budget.locations:
+                raise DoesNotCloseError(f"more than {self.budget.locations} locations")
+            index = self.index[residual] = len(self.locations)
+            self.locations.append(location_of(residual))
+            self.youngest.append(ages)
+            self.todo.append(index)
+            return index
+        known = self.youngest[index]
+        least = tuple(map(min, known, ages))
+        if least != known:
+            self.youngest[index] = least
+            if index not in self.todo:
+                self.todo.append(index)
+        return index
+
+    def explore(self, index: int) -> None:
+        location = self.locations[index]
+        for regions in product(*(range(len(cuts) + 1) for cuts in location.cuts)):
+            row = (index, regions)
+            ages = _least_ages(location.cuts, regions, self.youngest[index])
+            # A row that is now met younger leads on younger as well: its targets have to know.
+            if ages is None or self.least.get(row) == ages:
+                continue
+            if row not in self.rows and len(self.rows) >= self.budget.rows:
+                raise DoesNotCloseError(f"more than {self.budget.rows} regions")
+            self.least[row] = ages
+            self.ages.update(ages)
+            self.rows[row] = self.diagram(location.residual, ages)
+
+    def diagram(self, residual: Residual, ages: tuple[int, ...]) -> Node:
+        def read(literal: Literal) -> Residual:
+            return frozenset([frozenset([(literal, NO_CLOCK)])])
+
+        def leaf(reached: Residual) -> tuple[int, tuple[int, ...]]:
+            made, sources = normalise(reached, len(ages))
+            entered = tuple(0 if source == NOW else ages[source] for source in sources)
+            return self.enter(made, entered), sources
+
+        try:
+            opened = step(residual, ages, read, self.budget.clauses)
+        except TooManyClausesError:
+            raise DoesNotCloseError(f"more than {self.budget.clauses} clauses") from None
+        return self.diagrams.of(opened, leaf)
+
+    def tables(self, initial: int) -> Automaton:
+        bases, strides, total = layout_of(self.locations)
+        roots = list(self.rows.values())
+        try:
+            class_of, classes, leaves = self.diagrams.classes(roots, self.budget.table)
+        except TooManyClassesError:
+            raise DoesNotCloseError(f"a table of more than {self.budget.table} entries") from None
+        edges = array("i", [-1]) * (total * classes)
+        number: dict[tuple[int, tuple[int, ...]], int] = {}
+        for position, (index, regions) in enumerate(self.rows):
+            row = bases[index] + sum(map(int.__mul__, regions, strides[index]))
+            for letter_class in range(classes):
+                edge = leaves[letter_class][position]
+                found = number.setdefault(edge, len(number))
+                edges[row * classes + letter_class] = found
+        time_values, end_values = bytearray(), bytearray()
+        for location in self.locations:
+            for ages in _region_starts(location.cuts):
+                settled = after(location.residual, ages)
+                time_values.append(value(settled))
+                end_values.append(holds_at_end(settled, ages))
+        return Automaton(
+            self.alphabet,
+            tuple(self.locations),
+            initial,
+            classes,
+            class_of,
+            bases,
+            strides,
+            edges,
+            tuple(target for target, _ in number),
+            tuple(sources for _, sources in number),
+            bytes(time_values),
+            bytes(end_values),
+        )
+
+
+def _region_starts(cuts: tuple[tuple[int, ...], ...]) -> Iterator[tuple[int, ...]]:
+    """The least ages of each region vector, in the order of rows."""
+    return product(*((0, *clock) for clock in cuts))
+
+
+def _least_ages(
+    cuts: tuple[tuple[int, ...], ...], regions: tuple[int, ...], entered: tuple[int, ...]
+) -> tuple[int, ...] | None:
+    """The least ages at a step in these regions; `None` if no step can be there.
+
+    Ages at a step are at least 1 and more than on entering; the older clock has the greater age.
+    """
+    ages: list[int] = []
+    least = 0
+    for clock in reversed(range(len(cuts))):
+        region = regions[clock]
+        start = cuts[clock][region - 1] if region else 0
+        least = max(least + 1, start, entered[clock] + 1)
+        if region < len(cuts[clock]) and least >= cuts[clock][region]:
+            return None
+        ages.append(least)
+    return tuple(reversed(ages))

@@ -1,0 +1,341 @@
+"""Core formulas: negation normal form over propositions, and the factory that makes them.
+
+The future operators are X, U and R. Those of the past occur only where something of the future
+stands below them: else they are part of a proposition.
+
+Equal formulas are the same object. Constants are folded, by such laws alone as change neither the
+value of a prefix nor that at the end of a trace: those of distributive lattices and of constants.
+`p or not p` stays (Kleene), and so does `G[0,3] true` (it is decided when its window is over).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, assert_never, cast
+
+from rvmon.logic.state_formula import UNKNOWN, Leaf, Lost, State, StateOp
+from rvmon.spec.checked.formula import Amount, Passed
+from rvmon.spec.checked.formula import Constant as ConstantLeaf
+from rvmon.spec.checked.formula import Literal as Zero
+
+
+class Sense(Enum):
+    """How a literal reads its proposition; the three are independent of each other."""
+
+    TRUE = "is true"
+    FALSE = "is false"
+    KNOWN_FALSE = "is known to be false"
+    """Two-valued: an unknown proposition is not known to be false, however one looks at it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Constant:
+    """True or false."""
+
+    id: int
+    value: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Literal:
+    """A proposition, read in one sense."""
+
+    id: int
+    proposition: State
+    sense: Sense
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class And:
+    """All of its operands; at least two, in order of `id`."""
+
+    id: int
+    args: tuple[Core, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Or:
+    """One of its operands; at least two, in order of `id`."""
+
+    id: int
+    args: tuple[Core, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Next:
+    """The operand at the next position."""
+
+    id: int
+    operand: Core
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Until:
+    """`left U[low, high] right`; `opened` is the same with `low` 0, what remains in the window."""
+
+    id: int
+    left: Core
+    right: Core
+    low: int
+    high: int | None
+    opened: Until | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Release:
+    """`left R[low, high] right`; `opened` is the same with `low` 0, what remains in the window."""
+
+    id: int
+    left: Core
+    right: Core
+    low: int
+    high: int | None
+    opened: Release | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Since:
+    """`left S[low, high] right`; if `dual`, `!(!left S[low, high] !right)`."""
+
+    id: int
+    left: Core
+    right: Core
+    low: int
+    high: int | None
+    dual: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Previous:
+    """The operand at the position before; at the first one `first`."""
+
+    id: int
+    operand: Core
+    first: bool
+
+
+Temporal = Next | Until | Release
+Core = Constant | Literal | And | Or | Next | Until | Release | Since | Previous
+
+
+def parts_of(node: Core) -> tuple[Core, ...]:
+    """The operands of a formula."""
+    match node:
+        case Constant() | Literal():
+            return ()
+        case And(args=args) | Or(args=args):
+            return args
+        case Next(operand=operand) | Previous(operand=operand):
+            return (operand,)
+        case Until() | Release() | Since():
+            return node.left, node.right
+        case _:
+            assert_never(node)
+
+
+def nodes_of(formula: Core) -> Iterator[Core]:
+    """A formula and all that it is made of, each once, from the top."""
+    seen = {formula}
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        yield node
+        fresh = [part for part in parts_of(node) if part not in seen]
+        seen.update(fresh)
+        stack += dict.fromkeys(fresh)
+
+
+def literals(formula: Core) -> Iterator[Literal]:
+    """The literals of a formula, each once."""
+    return (node for node in nodes_of(formula) if isinstance(node, Literal))
+
+
+def looks_back(formula: Core) -> bool:
+    """Whether something of the past stands above something of the future."""
+    return any(isinstance(node, Since | Previous) for node in nodes_of(formula))
+
+
+def horizon(formula: Core) -> int | None:
+    """The ticks after the trigger by which an attempt is decided; `None` if nothing bounds them.
+
+    `Next` counts as nothing bounded, as its distance in time is not known.
+    """
+    reaches = [horizon(part) for part in parts_of(formula)]
+    further = formula.high if isinstance(formula, Until | Release) else 0
+    if isinstance(formula, Next) or further is None or None in reaches:
+        return None
+    return further + max((reach for reach in reaches if reach is not None), default=0)
+
+
+class Factory:
+    """The formulas of one specification; ids count from 0, operands before operators."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Any, ...], Any] = {}
+        self._count = 0
+        self.true: Core = self._core(Constant, True)
+        self.false: Core = self._core(Constant, False)
+        self.state_true = self.leaf(ConstantLeaf(True))
+        self.state_false = self.leaf(ConstantLeaf(False))
+        self.unknown = self.leaf(Lost())
+
+    def _next_id(self) -> int:
+        self._count += 1
+        return self._count - 1
+
+    # State formulas.
+
+    def _state(
+        self,
+        op: StateOp,
+        args: tuple[State, ...] = (),
+        leaf: Leaf | None = None,
+        **fields: Any,
+    ) -> State:
+        key = (op, args, leaf, *fields.items())
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = State(self._next_id(), op, args, leaf, **fields)
+        return cast(State, found)
+
+    def leaf(self, leaf: Leaf, unborn: int = UNKNOWN) -> State:
+        """What is read off the input; `unborn` is its truth before the birth of its signals."""
+        return self._state(StateOp.LEAF, leaf=leaf, unborn=unborn)
+
+    def negation(self, arg: State) -> State:
+        """Not `arg`; double negation is dropped."""
+        if arg is self.state_true:
+            return self.state_false
+        if arg is self.state_false:
+            return self.state_true
+        return arg.args[0] if arg.op is StateOp.NOT else self._state(StateOp.NOT, (arg,))
+
+    def state_all(self, args: Iterable[State]) -> State:
+        """All of `args`."""
+        return self._lattice(StateOp.AND, args, self.state_true, self.state_false)
+
+    def state_any(self, args: Iterable[State]) -> State:
+        """One of `args`."""
+        return self._lattice(StateOp.OR, args, self.state_false, self.state_true)
+
+    def _lattice(self, op: StateOp, args: Iterable[State], unit: State, zero: State) -> State:
+        flat: dict[State, None] = {}
+        for arg in args:
+            flat.update(dict.fromkeys(arg.args if arg.op is op else (arg,)))
+        flat.pop(unit, None)
+        if zero in flat:
+            return zero
+        if len(flat) <= 1:
+            return next(iter(flat), unit)
+        return self._state(op, tuple(sorted(flat, key=_id)))
+
+    def previous(self, arg: State) -> State:
+        """`arg` at the position before; false at the first."""
+        return self._state(StateOp.PREVIOUS, (arg,))
+
+    def since(self, left: State, right: State, low: int, high: int | None) -> State:
+        """`left S[low, high] right`."""
+        return self._state(StateOp.SINCE, (left, right), low=low, high=high)
+
+    def amount(self, amount: Amount, *args: State) -> State:
+        """So much of the first of `args`; of constants too, for what was lost."""
+        own = replace(amount, operand=ConstantLeaf(True), known=None, span=None)
+        if args[0] is self.state_false and own.value is not None:
+            own = replace(own, value=Zero(0))  # what it reads is no part of any formula
+        return self._state(StateOp.AMOUNT, args, amount=own)
+
+    def passed(self, passed: Passed, known: State) -> State:
+        """So long has passed since an instant; unknown where `known` is."""
+        own = replace(passed, span=None, known=replace(passed.known, span=None))
+        return self._state(StateOp.PASSED, (known,), passed=own)
+
+    def sure(self, arg: State) -> State:
+        """`arg` is TRUE, two-valued."""
+        if arg in (self.state_true, self.state_false) or arg.op is StateOp.SURE:
+            return arg
+        return self._state(StateOp.SURE, (arg,))
+
+    def doubt(self, arg: State, *, pulse: bool, every: bool) -> State:
+        """Whether a trigger may have been hidden; see `StateOp.DOUBT`."""
+        return self._state(StateOp.DOUBT, (arg,), pulse=pulse, every=every)
+
+    # Core formulas.
+
+    def _core(self, kind: type[Any], *fields: Any) -> Any:
+        key = (kind, *fields)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = kind(self._next_id(), *fields)
+        return found
+
+    def constant(self, value: bool) -> Constant:
+        """True or false."""
+        return cast(Constant, self.true if value else self.false)
+
+    def literal(self, proposition: State, sense: Sense) -> Core:
+        """A proposition read in one sense; negations move into the sense."""
+        if proposition is self.state_true:
+            return self.constant(sense is Sense.TRUE)
+        if proposition is self.state_false:
+            return self.constant(sense is not Sense.TRUE)
+        if proposition.op is StateOp.NOT and sense is not Sense.KNOWN_FALSE:
+            flipped = Sense.FALSE if sense is Sense.TRUE else Sense.TRUE
+            return self.literal(proposition.args[0], flipped)
+        return cast(Core, self._core(Literal, proposition, sense))
+
+    def all_of(self, args: Iterable[Core]) -> Core:
+        """All of `args`."""
+        return self._junction(And, args, self.true, self.false)
+
+    def any_of(self, args: Iterable[Core]) -> Core:
+        """One of `args`."""
+        return self._junction(Or, args, self.false, self.true)
+
+    def _junction(self, kind: type[And | Or], args: Iterable[Core], unit: Core, zero: Core) -> Core:
+        flat: dict[Core, None] = {}
+        for arg in args:
+            flat.update(dict.fromkeys(arg.args if isinstance(arg, kind) else (arg,)))
+        flat.pop(unit, None)
+        if zero in flat:
+            return zero
+        if len(flat) <= 1:
+            return next(iter(flat), unit)
+        return cast(Core, self._core(kind, tuple(sorted(flat, key=_id))))
+
+    def next(self, operand: Core) -> Next:
+        """`operand` at the next position, undecided until there is one."""
+        return cast(Next, self._core(Next, operand))
+
+    def until(self, left: Core, right: Core, low: int, high: int | None) -> Core:
+        """`left U[low, high] right`, or an equal simpler formula."""
+        if left is self.false:
+            return right if low == 0 else self.false
+        if right is self.true and low == 0:
+            return right
+        opened = self._core(Until, left, right, 0, high, None) if low else None
+        return cast(Core, self._core(Until, left, right, low, high, opened))
+
+    def release(self, left: Core, right: Core, low: int, high: int | None) -> Core:
+        """`left R[low, high] right`, or an equal simpler formula."""
+        if left is self.true:
+            return right if low == 0 else self.true
+        if right is self.false and low == 0:
+            return right
+        opened = self._core(Release, left, right, 0, high, None) if low else None
+        return cast(Core, self._core(Release, left, right, low, high, opened))
+
+    def core_since(
+        self, left: Core, right: Core, low: int, high: int | None, *, dual: bool
+    ) -> Core:
+        """`left S[low, high] right`, or its dual, over operands that speak of the future."""
+        return cast(Core, self._core(Since, left, right, low, high, dual))
+
+    def core_previous(self, operand: Core, *, first: bool) -> Core:
+        """`operand`, which speaks of the future, at the position before; `first` at the first."""
+        return cast(Core, self._core(Previous, operand, first))
+
+
+def _id(node: State | Core) -> int:
+    return node.id

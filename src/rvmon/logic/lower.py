@@ -1,0 +1,190 @@
+"""Requirements to obligations: when an attempt starts, and what it requires, in core form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import assert_never
+
+from rvmon.errors import RvmonError
+from rvmon.logic.formula import (
+    And,
+    Core,
+    Factory,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+    looks_back,
+)
+from rvmon.logic.formula import Constant as CoreConstant
+from rvmon.logic.normal_form import Lowering, Origin, flattened
+from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, State, Unborn, signals_of
+from rvmon.logic.three_valued import Four
+from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, Formula, SignalAtom
+from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.spec.checked.tense import has_future, subformulas
+
+
+class UnmonitorableError(RvmonError):
+    """A formula cannot be monitored; the message says which part of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Obligation:
+    """A requirement in core form.
+
+    Attributes:
+        trigger: starts an attempt; `None` where it is the end of the trace. What is not born is
+            FALSE for it.
+        owed: what an attempt owes from its trigger on; of an episode, all that it owes.
+        origins: for explanations, where the parts of `owed` come from.
+        running: of an episode, what is FALSE where it is over; with captured values also where it
+            is not known any more which these are.
+        again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
+            after a failure; `None` where it does not, as the future stands below the past.
+        unborn: of an episode, where something of its consequent had no value yet.
+        determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
+        hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
+            start; `None` if the trigger is never unknown.
+        doubted: the same where it is not known whether there is such an instance at all.
+        doubt: of an episode with captured values, UNKNOWN where another may have begun.
+    """
+
+    trigger: State | None
+    owed: Core
+    origins: Mapping[Core, Origin]
+    running: State | None = None
+    again: State | None = None
+    unborn: State | None = None
+    determined: State | None = None
+    hidden: Obligation | None = None
+    doubted: Obligation | None = None
+    doubt: State | None = None
+
+
+def lower(
+    requirement: Requirement,
+    factory: Factory,
+    period: int | None = None,
+    *,
+    measured: bool = False,
+    sampled: bool = False,
+) -> Obligation:
+    """Bring a requirement into core form.
+
+    Args:
+        requirement: as checked.
+        factory: where its formulas are made; shared by the requirements of a spec.
+        period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+        measured: see `rvmon.logic.three_valued.Reader`.
+        sampled: whether only samples are positions.
+
+    Raises:
+        UnmonitorableError: the trigger speaks of the future.
+    """
+    favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
+    begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
+    lowering = begin()
+    match requirement.trigger:
+        case BoundAtom(bound=Bound.END):
+            return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)
+        case formula if has_future(formula):
+            raise UnmonitorableError("its trigger speaks of the future")
+    four = lowering.reader.four(requirement.trigger)
+    trigger = four.read(FALSE)
+    determined = _determined(four, factory)
+    if requirement.mode is Mode.WHENEVER:
+        parts = flattened(requirement.consequent, True, False)
+        running = _running(trigger, requirement, factory)
+        implied = lowering.join_signed(parts, False, [factory.negation(running)])
+        owed = lowering.episode(running, lowering.owed(implied), requirement.consequent)
+        ahead = begin(opened=True).core(requirement.consequent, True)
+        again = None if looks_back(ahead) else _at_once(ahead, factory)
+        unborn = _unborn(requirement.consequent, factory) if favour else None
+        doubt = None
+        if requirement.captures:
+            doubt = factory.doubt(trigger, pulse=requirement.pulse, every=False)
+        return Obligation(
+            trigger, owed, lowering.origins, running, again, unborn, determined, doubt=doubt
+        )
+    owed = lowering.core(requirement.consequent, True)
+
+    def hidden(every: bool) -> Obligation:
+        doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
+        running = _running(doubt, requirement, factory)
+        here = factory.state_any([factory.negation(running), factory.sure(running)])
+        either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.owed(owed)])
+        whole = lowering.episode(running, either, requirement.consequent)
+        return Obligation(doubt, whole, lowering.origins, running)
+
+    return Obligation(
+        trigger,
+        owed,
+        lowering.origins,
+        determined=determined,
+        hidden=hidden(False),
+        doubted=hidden(True) if requirement.for_each is not None else None,
+    )
+
+
+def _running(trigger: State, requirement: Requirement, factory: Factory) -> State:
+    if not requirement.captures:
+        return trigger
+    return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
+
+
+def _determined(trigger: Four, factory: Factory) -> State:
+    """TRUE as soon as a trigger was TRUE or FALSE."""
+    is_false = factory.sure(factory.negation(trigger.read(TRUE)))
+    known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])
+    return factory.since(factory.state_true, known, 0, None)
+
+
+def _unborn(consequent: Formula, factory: Factory) -> State | None:
+    """Where something that a consequent reads had no value yet; `None` if it reads no signal."""
+    found: dict[str, bool] = {}
+    for atom in subformulas(consequent):
+        if isinstance(atom, SignalAtom | Compare):
+            for name, moved in signals_of(atom).items():
+                found[name] = found.get(name, False) or moved
+    return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None
+
+
+def _at_once(core: Core, factory: Factory) -> State:
+    """A state formula that is FALSE where a position alone makes what is owed there FALSE.
+
+    Args:
+        core: the windows of all that has to be kept up open at once in it.
+        factory: where it is made.
+
+    Source: SEMANTICS, section 3 (After a failure).
+    """
+
+    def of(part: Core) -> State:
+        return _at_once(part, factory)
+
+    match core:
+        case CoreConstant(value=value):
+            return factory.state_true if value else factory.state_false
+        case Literal(proposition=proposition, sense=sense):
+            return proposition if sense is Sense.TRUE else factory.negation(proposition)
+        case And(args=args):
+            return factory.state_all(map(of, args))
+        case Or(args=args):
+            return factory.state_any(map(of, args))
+        case Next():
+            return factory.state_true
+        case Until(left=left, right=right, low=low):
+            return of(left) if low else factory.state_any([of(left), of(right)])
+        case Release(right=right):
+            return of(right)
+        case Since() | Previous():
+            raise AssertionError("what looks back is asked otherwise")
+        case _:
+            assert_never(core)

@@ -1,0 +1,257 @@
+"""From a formula to the nodes of its network.
+
+`φ U[a,b] ψ` is `F[a,b] ψ` and `G[0,a) φ` and, a further on, `φ U ψ`; so are its dual and its mirror
+image. This holds of Kleene's values too, so that each part can be judged alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import assert_never
+
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """What is read of a letter."""
+
+    core: Literal | Constant
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    """All of its operands, or one of them."""
+
+    operands: tuple[int, ...]
+    every: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The operand at every position, or some, of a window.
+
+    Attributes:
+        operand: its place.
+        low: integers from the position at hand to the first of the window; negative in the past.
+        high: the same to the last.
+        every: at every position, or at some.
+        over: ticks after which no further position comes to lie in it; `None` in the past.
+    """
+
+    operand: int
+    low: int
+    high: int
+    every: bool
+    over: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """`until` without bounds, or `since`, or the dual of one.
+
+    Attributes:
+        left: place of the operand that has to hold on the way.
+        right: place of the operand to be met.
+        future: whether it is `until`.
+        dual: whether it is the dual, with negated operands and result.
+        kept: whether the end of the trace counts as true for it (an unbounded `R`).
+    """
+
+    left: int
+    right: int
+    future: bool
+    dual: bool
+    kept: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """The operand so many integers further on.
+
+    Attributes:
+        operand: its place; that of a `Sweep`.
+        offset: integers; negative in the past.
+        opens: ticks after which it speaks of something, at the end of a trace.
+    """
+
+    operand: int
+    offset: int
+    opens: int
+
+
+Node = Leaf | Junction | Window | Sweep | Shift
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkPlan:
+    """A network before it has seen anything.
+
+    Attributes:
+        nodes: operands before operators, the root last.
+        places: the place of each formula.
+        leaves: the places of those that read a letter, with what they read.
+        looks_back: whether something speaks of what was before an attempt began.
+    """
+
+    nodes: tuple[Node, ...]
+    places: dict[Core, int]
+    leaves: tuple[tuple[int, Literal | Constant], ...]
+    looks_back: bool
+
+    def sweep_of(self, node: Shift) -> Sweep:
+        """What a node of the plan moves along."""
+        found = self.nodes[node.operand]
+        if not isinstance(found, Sweep):
+            raise AssertionError("only an `until` or `since` is moved along")
+        return found
+
+
+def operands_of(node: Node) -> tuple[int, ...]:
+    """The places of a node's operands."""
+    if isinstance(node, Junction):
+        return node.operands
+    if isinstance(node, Window | Shift):
+        return (node.operand,)
+    return (node.left, node.right) if isinstance(node, Sweep) else ()
+
+
+def plan_of(owed: Core, gap: int | None) -> NetworkPlan:
+    """The network of what an attempt owes.
+
+    Args:
+        owed: the formula.
+        gap: ticks between two positions; `None` if only samples are positions.
+    """
+    return plan_of_all([owed], gap)
+
+
+def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
+    """One network of several formulas; `NetworkPlan.places` says where each stands.
+
+    Args:
+        formulas: of which somebody asks where they are true.
+        gap: as for `plan_of`.
+    """
+    planning = _Planning(gap or 1)
+    for formula in formulas:
+        planning.place(formula)
+    nodes = tuple(planning.nodes)
+    leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
+    looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
+    return NetworkPlan(nodes, planning.places, leaves, looks_back)
+
+
+class _Planning:
+    def __init__(self, gap: int) -> None:
+        self.gap = gap
+        self.nodes: list[Node] = []
+        self.places: dict[Core, int] = {}
+        self._known: dict[Node, int] = {}
+
+    def add(self, node: Node) -> int:
+        """The place of a node; equal ones are one."""
+        place = self._known.get(node)
+        if place is None:
+            place = self._known[node] = len(self.nodes)
+            self.nodes.append(node)
+        return place
+
+    def place(self, core: Core) -> int:
+        """The place of a formula."""
+        place = self.places.get(core)
+        if place is None:
+            place = self.places[core] = self._place(core)
+        return place
+
+    def _place(self, core: Core) -> int:
+        match core:
+            case Constant() | Literal():
+                return self.add(Leaf(core))
+            case And(args=args) | Or(args=args):
+                return self.join([self.place(arg) for arg in args], isinstance(core, And))
+            case Next(operand=operand):
+                return self._neighbour(operand, 1, False)
+            case Previous(operand=operand, first=first):
+                return self._neighbour(operand, -1, first)
+            case Until() | Release():
+                return self._ahead(core)
+            case Since():
+                return self._behind(core)
+            case _:
+                assert_never(core)
+
+    def join(self, parts: list[int], every: bool) -> int:
+        """All of some places, or one of them."""
+        different = tuple(dict.fromkeys(parts))
+        return different[0] if len(different) == 1 else self.add(Junction(different, every))
+
+    def _neighbour(self, operand: Core, offset: int, first: bool) -> int:
+        """The operand at the next position, or at the one before; `first` where there is none.
+
+        Among integers it is that of the nearest position, which an `until` finds whose left operand
+        holds at no position.
+        """
+        own = self.place(operand)
+        nowhere = self.add(Leaf(_NOWHERE[first]))
+        nearest = self.add(Sweep(nowhere, own, offset > 0, first, False))
+        return self.add(Shift(nearest, offset, 0))
+
+    def _ahead(self, core: Until | Release) -> int:
+        every = isinstance(core, Release)
+        low = -(-core.low // self.gap)
+        kept = every and core.high is None
+
+        def window(operand: int, first: int, last: int, every: bool, over: int) -> int:
+            return self.add(Window(operand, first, last, every, over))
+
+        parts = []
+        if core.high is not None:
+            high = core.high // self.gap
+            parts.append(window(self.place(core.right), low, high, every, core.high + 1))
+        if core.high is None or not _is_neutral(core.left, every):
+            swept = self.add(
+                Sweep(self.place(core.left), self.place(core.right), True, every, kept)
+            )
+            parts.append(self.add(Shift(swept, low, core.low)) if core.low else swept)
+        if core.low and not _is_neutral(core.left, every):
+            parts.append(window(self.place(core.left), 0, low - 1, not every, core.low))
+        return self.join(parts, not every)
+
+    def _behind(self, core: Since) -> int:
+        every = core.dual
+        low = -(-core.low // self.gap)
+
+        def window(operand: int, first: int, last: int, every: bool) -> int:
+            return self.add(Window(operand, -last, -first, every, None))
+
+        parts = []
+        if core.high is not None:
+            parts.append(window(self.place(core.right), low, core.high // self.gap, every))
+        if core.high is None or not _is_neutral(core.left, every):
+            left, right = self.place(core.left), self.place(core.right)
+            swept = self.add(Sweep(left, right, False, every, False))
+            parts.append(self.add(Shift(swept, -low, 0)) if core.low else swept)
+        if core.low and not _is_neutral(core.left, every):
+            parts.append(window(self.place(core.left), 0, low - 1, not every))
+        return self.join(parts, not every)
+
+
+def _is_neutral(left: Core, every: bool) -> bool:
+    """Whether the left operand of an operator asks for nothing."""
+    return isinstance(left, Constant) and left.value is not every
+
+
+_NOWHERE: dict[bool, Constant] = {False: Constant(-1, False), True: Constant(-2, True)}

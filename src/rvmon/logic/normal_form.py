@@ -1,0 +1,328 @@
+"""Formulas to core formulas: past and present become propositions, the rest is X, U, R.
+
+Where a formula is needed down to what is read off the input, propositions that look back are taken
+apart again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import assert_never
+
+from rvmon.logic.formula import (
+    And,
+    Core,
+    Factory,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+)
+from rvmon.logic.formula import Constant as CoreConstant
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, reads_fields
+from rvmon.logic.three_valued import Reader
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    Constant,
+    Formula,
+    Interval,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.formula import Constant as ConstantLeaf
+from rvmon.spec.checked.reading import rewritten
+from rvmon.spec.checked.tense import has_future
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """What a core formula was made from: a formula of the spec, or its negation."""
+
+    formula: Formula
+    positive: bool
+
+
+class Lowering:
+    """Brings formulas into core form.
+
+    Args:
+        factory: where core formulas are made.
+        period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+        favour: whether what is not born counts in favour of what is owed.
+        measured: see `rvmon.logic.three_valued.Reader`.
+        sampled: whether only samples are positions.
+        opened: whether the windows of all that has to be kept up open at once.
+
+    Attributes:
+        origins: where what was made comes from.
+    """
+
+    def __init__(
+        self,
+        factory: Factory,
+        period: int | None,
+        favour: bool,
+        *,
+        measured: bool = False,
+        sampled: bool = False,
+        opened: bool = False,
+    ) -> None:
+        self.factory = factory
+        self.reader = Reader(factory, period, measured=measured)
+        self.favour = favour
+        self._meets_blanks = sampled
+        self._opened = opened
+        self.origins: dict[Core, Origin] = {}
+        self._made_up: dict[int, Formula] = {}
+
+    def state(self, formula: Formula, positive: bool) -> State:
+        """A state formula that is owed, or whose negation is."""
+        if not self.favour:
+            return self.reader.literal(formula, UNKNOWN)
+        return self.reader.literal(formula, TRUE if positive else FALSE)
+
+    def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
+        """What is implied, up to where the trigger is known to be false; there nothing is."""
+        over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
+        owed = self.factory.release(over, implied, 0, None)
+        for node in (implied, owed):
+            self.origins[node] = Origin(consequent, True)
+        return owed
+
+    def core(self, formula: Formula, positive: bool) -> Core:
+        """A formula, or its negation, in negation normal form."""
+        if isinstance(formula, Constant):
+            return self.factory.constant(formula.value is positive)
+        made_up = id(formula) in self._made_up
+        if made_up or has_future(formula):
+            made = self._core_future(formula, positive)
+        else:
+            sense = Sense.TRUE if positive else Sense.FALSE
+            made = self.factory.literal(self.state(formula, positive), sense)
+        if not made_up or _is_step(formula):
+            self.origins.setdefault(made, Origin(formula, positive))
+        return made
+
+    def _core_future(self, formula: Formula, positive: bool) -> Core:
+        match formula:
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                return self.core(operand, not positive)
+            case Unary(op=UnaryOp.NEXT, operand=operand):
+                return self.factory.next(self.owed(self.core(operand, positive)))
+            case Unary(op=UnaryOp.PREVIOUS, operand=operand):
+                before = self._behind(self.core(operand, positive))
+                return self.factory.core_previous(before, first=not positive)
+            case Binary(op=BinaryOp.AND, left=left, right=right):
+                return self._both(left, right, positive, positive)
+            case Binary(op=BinaryOp.OR, left=left, right=right):
+                return self._both(left, right, positive, not positive)
+            case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
+                ends = (self.core(left, positive), self.core(right, positive))
+                return self._until(*ends, interval, positive)
+            case Binary(op=BinaryOp.SINCE, left=left, right=right, interval=interval):
+                ends = (self.core(left, positive), self.core(right, positive))
+                return self._since(*ends, interval, not positive)
+            case Unary() | Binary():
+                return self._core_future(self._rewritten(formula), positive)
+            case _:
+                raise AssertionError("only operators have something of the future below them")
+
+    def _rewritten(self, formula: Unary | Binary) -> Formula:
+        """The formula in other operators; what is made up for that stands nowhere in the spec."""
+        made = rewritten(formula)
+        own = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
+        waiting = [made]
+        while waiting:
+            node = waiting.pop()
+            if all(node is not operand for operand in own):
+                self._made_up[id(node)] = node
+                if isinstance(node, Unary):
+                    waiting.append(node.operand)
+                elif isinstance(node, Binary):
+                    waiting += (node.left, node.right)
+        return made
+
+    def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
+        low, high = (interval.low, interval.high) if interval else (0, None)
+        if left is not self.factory.constant(not dual):
+            left = self._behind(left)
+        right = self._behind(right)
+        return self.factory.core_since(left, right, low, high, dual=dual)
+
+    def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
+        low, high = (interval.low, interval.high) if interval else (0, None)
+        if self._opened and not positive:
+            low = 0
+        make = self.factory.until if positive else self.factory.release
+        if not isinstance(left, CoreConstant):
+            left = self.owed(left)
+        if low > 0 or right is not self.factory.constant(positive):
+            right = self.owed(right)
+        return make(left, right, low, high)
+
+    def owed(self, operand: Core) -> Core:
+        """What is owed at positions of which some may not be there."""
+        return self._if_there(operand) if self._meets_blanks else operand
+
+    def _behind(self, operand: Core) -> Core:
+        """The same of what is asked of earlier ones."""
+        return self._if_there(operand)
+
+    def _if_there(self, operand: Core) -> Core:
+        """A formula that is unknown where there may be no position, as a proposition is anyway."""
+        factory = self.factory
+        if isinstance(operand, Literal):
+            return operand
+        there = factory.leaf(Elapsed(0))  # true, but where there may be no position
+        whole = factory.all_of([factory.literal(there, Sense.TRUE), operand])
+        return factory.any_of([whole, factory.literal(there, Sense.FALSE)])
+
+    def _both(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
+        """Both operands or one of them, with a sign; state formulas become one."""
+        args = [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
+        return self.join_signed(args, conjunction)
+
+    def join_signed(
+        self, args: list[tuple[Formula, bool]], conjunction: bool, beside: Sequence[State] = ()
+    ) -> Core:
+        """All operands, each with its sign, or one of them; `beside` are further ones."""
+        factory = self.factory
+        present = [(f, sign) for f, sign in args if not has_future(f)]
+        parts = [self.core(f, sign) for f, sign in args if has_future(f)]
+        if present or beside:
+            states = [
+                self.state(f, sign) if sign else factory.negation(self.state(f, sign))
+                for f, sign in present
+            ]
+            whole = (factory.state_all if conjunction else factory.state_any)([*beside, *states])
+            literal = factory.literal(whole, Sense.TRUE)
+            if present:
+                self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
+            parts.append(literal)
+        return (factory.all_of if conjunction else factory.any_of)(parts)
+
+
+def _is_step(formula: Formula) -> bool:
+    """Whether it is reported although they wrote `rise` or `fall`."""
+    return isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS
+
+
+def flattened(formula: Formula, sign: bool, conjunction: bool) -> list[tuple[Formula, bool]]:
+    """The operands of nested conjunctions (or disjunctions), each with its sign."""
+    match formula:
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return flattened(operand, not sign, conjunction)
+        case Binary(op=BinaryOp.AND, left=left, right=right) if sign is conjunction:
+            return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
+        case Binary(op=BinaryOp.OR, left=left, right=right) if sign is not conjunction:
+            return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
+        case Binary(op=BinaryOp.IMPLIES, left=left, right=right) if sign is not conjunction:
+            return [*flattened(left, not sign, conjunction), *flattened(right, sign, conjunction)]
+        case _:
+            return [(formula, sign)]
+
+
+def _spelled(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
+    """Formulas with signs as one formula of the language."""
+    op = BinaryOp.AND if conjunction else BinaryOp.OR
+    signed = [f if sign else Unary(UnaryOp.NOT, f, span=f.span) for f, sign in parts]
+    whole = signed[0]
+    for part in signed[1:]:
+        span = whole.span.to(part.span) if whole.span and part.span else None
+        whole = Binary(op, whole, part, span=span)
+    return whole
+
+
+def expanded(core: Core) -> Core:
+    """The same formula, the propositions of whose literals are leaves.
+
+    What only asks whether a proposition is known stays whole.
+    """
+    return _Expanding().core(core)
+
+
+class _Expanding:
+    def __init__(self) -> None:
+        self.factory = Factory()
+        self._made: dict[Core, Core] = {}
+
+    def core(self, core: Core) -> Core:
+        found = self._made.get(core)
+        if found is None:
+            found = self._made[core] = self._core(core)
+        return found
+
+    def _core(self, core: Core) -> Core:
+        factory = self.factory
+        match core:
+            case CoreConstant(value=value):
+                return factory.constant(value)
+            case Literal(sense=Sense.KNOWN_FALSE, proposition=state):
+                return factory.literal(state, Sense.KNOWN_FALSE)
+            case Literal(proposition=state, sense=sense):
+                return self.state(state, sense is Sense.TRUE)
+            case And(args=args):
+                return factory.all_of(self.core(arg) for arg in args)
+            case Or(args=args):
+                return factory.any_of(self.core(arg) for arg in args)
+            case Next(operand=operand):
+                return factory.next(self.core(operand))
+            case Previous(operand=operand, first=first):
+                return factory.core_previous(self.core(operand), first=first)
+            case Until(left=left, right=right, low=low, high=high):
+                return factory.until(self.core(left), self.core(right), low, high)
+            case Release(left=Literal(sense=Sense.KNOWN_FALSE) as over, right=right):
+                # An episode: where it is over it owes nothing, however near that was.
+                ended = self.core(over)
+                return factory.release(ended, factory.any_of([ended, self.core(right)]), 0, None)
+            case Release(left=left, right=right, low=low, high=high):
+                return factory.release(self.core(left), self.core(right), low, high)
+            case Since(left=left, right=right, low=low, high=high, dual=dual):
+                ends = self.core(left), self.core(right)
+                return factory.core_since(*ends, low, high, dual=dual)
+            case _:
+                assert_never(core)
+
+    def state(self, state: State, positive: bool) -> Core:
+        factory = self.factory
+        match state.op:
+            case StateOp.LEAF if isinstance(state.leaf, ConstantLeaf):
+                return factory.constant(state.leaf.value is positive)
+            case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT | StateOp.AMOUNT | StateOp.PASSED:
+                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+            case StateOp.AND if _asks_what_is_known(state):
+                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+            case StateOp.NOT:
+                return self.state(state.args[0], not positive)
+            case StateOp.AND | StateOp.OR:
+                join = factory.all_of if (state.op is StateOp.AND) is positive else factory.any_of
+                return join(self.state(arg, positive) for arg in state.args)
+            case StateOp.PREVIOUS:
+                return factory.core_previous(
+                    self.state(state.args[0], positive), first=not positive
+                )
+            case StateOp.SINCE:
+                left, right = (self.state(arg, positive) for arg in state.args)
+                return factory.core_since(left, right, state.low, state.high, dual=not positive)
+            case _:
+                assert_never(state.op)
+
+
+def _asks_what_is_known(state: State) -> bool:
+    """Whether it is `φ and not φ`, as `rvmon.logic.three_valued` says that something is unknown."""
+    args = set(state.args)
+    denied = (arg.args[0] for arg in state.args if arg.op is StateOp.NOT)
+    return any(
+        args.issuperset(one.args if one.op is StateOp.AND else (one,))
+        for one in denied
+        if one.op is not StateOp.LEAF
+        # Nobody else takes an atom and its negation alike before the birth of its signals.
+        or (isinstance(one.leaf, Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
+    )

@@ -1,0 +1,281 @@
+"""One step of a residual, and what time alone and the end of a trace make of it.
+
+Where all propositions are known a residual has two two-valued readings, its own and its negation's.
+
+Source: AUTOMATA 1; after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import Enum
+from typing import assert_never
+
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Factory,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+)
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either, substitute
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, StateOp, Unborn
+
+ReadLiteral = Callable[[Literal], Residual]
+
+
+class Phase(Enum):
+    """Where an age lies relative to a window."""
+
+    BEFORE = 0
+    INSIDE = 1
+    OVER = 2
+
+
+def phase(node: Until | Release, age: int) -> Phase:
+    """Where `age` lies relative to the window of `node`."""
+    if age < node.low:
+        return Phase.BEFORE
+    return Phase.INSIDE if node.high is None or age <= node.high else Phase.OVER
+
+
+def step(
+    residual: Residual, ages: Sequence[int], read: ReadLiteral, limit: int | None = None
+) -> Residual:
+    """What is owed after a position.
+
+    In the result, clocks below `len(ages)` are the old ones, and `len(ages)` is a new one that was
+    started at this position.
+
+    Args:
+        residual: what was owed before.
+        ages: of each clock at this position.
+        read: what a literal is at this position; itself as an atom, if it is to stay open.
+        limit: the greatest number of clauses, if there is to be one.
+
+    Raises:
+        TooManyClausesError: the result, or something on the way to it, may have more clauses.
+    """
+    stepper = _Step(ages, read, limit)
+    made = {atom: stepper.atom(atom) for clause in residual for atom in clause}
+    return substitute(residual, made, limit)
+
+
+class _Step:
+    def __init__(self, ages: Sequence[int], read: ReadLiteral, limit: int | None) -> None:
+        self.ages = ages
+        self.limit = limit
+        self.read = read
+        self.made: dict[Core, Residual] = {}
+
+    def atom(self, atom: Atom) -> Residual:
+        node, clock = atom
+        match node:
+            case Literal():
+                raise AssertionError("literals are read when they are instantiated")
+            case Next(operand=operand):
+                return self.instance(operand)
+            case Until() | Release():
+                age = 0 if clock == NO_CLOCK else self.ages[clock]
+                return self.window(node, clock, phase(node, age))
+            case _:
+                assert_never(node)
+
+    def window(self, node: Until | Release, clock: int, where: Phase) -> Residual:
+        until = isinstance(node, Until)
+        if where is Phase.OVER:
+            return FAILS if until else HOLDS
+        kept: Atom = (node, clock) if where is Phase.BEFORE else opened(node, clock)
+        pending: Residual = frozenset([frozenset([kept])])
+        left = self.instance(node.left)
+        waiting = both(left, pending, self.limit) if until else either(left, pending)
+        if where is Phase.BEFORE:
+            return waiting
+        right = self.instance(node.right)
+        return either(right, waiting) if until else both(right, waiting, self.limit)
+
+    def instance(self, node: Core) -> Residual:
+        """What `node` owes if it is instantiated at this position."""
+        found = self.made.get(node)
+        if found is None:
+            found = self.made[node] = self._instance(node)
+        return found
+
+    def _instance(self, node: Core) -> Residual:
+        match node:
+            case Constant(value=value):
+                return HOLDS if value else FAILS
+            case Literal():
+                return self.read(node)
+            case And(args=args):
+                result = HOLDS
+                for arg in args:
+                    result = both(result, self.instance(arg), self.limit)
+                return result
+            case Or(args=args):
+                result = FAILS
+                for arg in args:
+                    result = either(result, self.instance(arg))
+                return result
+            case Next():
+                return frozenset([frozenset([(node, NO_CLOCK)])])
+            case Until() | Release():
+                return self.window(node, len(self.ages), phase(node, 0))
+            case Since() | Previous():
+                raise AssertionError("what lies ahead of the past is judged by the network")
+            case _:
+                assert_never(node)
+
+
+def instance(node: Core, read: ReadLiteral) -> Residual:
+    """What a formula that is instantiated at a position owes after it."""
+    return _Step((), read, None).instance(node)
+
+
+def opened(node: Until | Release, clock: int) -> Atom:
+    """What is left of an opened window: its start matters no more, and without an end no age."""
+    return node.opened or node, NO_CLOCK if node.high is None else clock
+
+
+def after(residual: Residual, ages: Sequence[int]) -> Residual:
+    """What is owed when time has passed and no position came: windows that are over are settled.
+
+    Args:
+        residual: what is owed after the last position.
+        ages: of each clock at the instant that time has reached.
+    """
+    settled: dict[Atom, Residual] = {}
+    for clause in residual:
+        for node, clock in clause:
+            if not isinstance(node, Until | Release) or clock == NO_CLOCK:
+                continue
+            if phase(node, ages[clock]) is Phase.OVER:
+                settled[node, clock] = FAILS if isinstance(node, Until) else HOLDS
+    return substitute(residual, settled) if settled else residual
+
+
+def value(residual: Residual) -> int:
+    """The truth of a prefix that leaves this residual."""
+    if residual == HOLDS:
+        return TRUE
+    return UNKNOWN if residual else FALSE
+
+
+def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
+    """Whether the rule for the end of a trace makes the residual true.
+
+    Args:
+        residual: what is owed, after all windows that are over were settled.
+        ages: of each clock at the end of the trace.
+    """
+    return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)
+
+
+def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
+    """An unbounded `R` whose window has opened (SEMANTICS 3, The end)."""
+    node, clock = atom
+    if not isinstance(node, Release) or node.high is not None:
+        return False
+    return clock == NO_CLOCK or ages[clock] >= node.low
+
+
+class Duals:
+    """Reads formulas where no proposition is unknown, so that each has a negation.
+
+    What it makes has literals of two senses only (`is known to be false` is `is false` there), and
+    their propositions are no combinations of others. What lies ahead of an operator of the past is
+    taken to be as it should: with that, what it makes is not equivalent but weaker.
+    """
+
+    def __init__(self) -> None:
+        self._factory = Factory()
+        self._made: dict[tuple[Core, bool], Core] = {}
+
+    def affirmed(self, residual: Residual) -> Residual:
+        """The residual itself."""
+        return frozenset(
+            frozenset(self._atom(atom, True) for atom in clause) for clause in residual
+        )
+
+    def denied(self, residual: Residual, limit: int) -> Residual:
+        """The negation of a residual.
+
+        Raises:
+            TooManyClausesError: it may have more than `limit` clauses.
+        """
+        result = HOLDS
+        for clause in residual:
+            refuted = FAILS
+            for atom in clause:
+                refuted = either(refuted, frozenset([frozenset([self._atom(atom, False)])]))
+            result = both(result, refuted, limit)
+        return result
+
+    def _atom(self, atom: Atom, positive: bool) -> Atom:
+        node, clock = atom
+        made = self.of(node, positive)
+        assert isinstance(made, Literal | Next | Until | Release)  # noqa: S101 - nothing folds
+        return made, clock
+
+    def of(self, node: Core, positive: bool) -> Core:
+        """A formula or its negation."""
+        key = (node, positive)
+        found = self._made.get(key)
+        if found is None:
+            found = self._made[key] = self._of(node, positive)
+        return found
+
+    def _of(self, node: Core, positive: bool) -> Core:
+        factory = self._factory
+        match node:
+            case Constant(value=value):
+                return factory.constant(value is positive)
+            case Literal(proposition=proposition, sense=sense):
+                return self._state(proposition, (sense is Sense.TRUE) is positive)
+            case And(args=args) | Or(args=args):
+                join = factory.all_of if isinstance(node, And) is positive else factory.any_of
+                return join(self.of(arg, positive) for arg in args)
+            case Next(operand=operand):
+                return factory.next(self.of(operand, positive))
+            case (
+                Until(left=left, right=right, low=low, high=high)
+                | Release(left=left, right=right, low=low, high=high)
+            ):
+                make = factory.until if isinstance(node, Until) is positive else factory.release
+                return make(self.of(left, positive), self.of(right, positive), low, high)
+            case Since() | Previous():
+                return factory.constant(True)
+            case _:
+                assert_never(node)
+
+    def _state(self, state: State, positive: bool) -> Core:
+        """A state formula as a combination of what is read off the input, or off the past."""
+        match state.op:
+            case StateOp.NOT:
+                return self._state(state.args[0], not positive)
+            case StateOp.AND | StateOp.OR:
+                conjunction = (state.op is StateOp.AND) is positive
+                join = self._factory.all_of if conjunction else self._factory.any_of
+                return join(self._state(arg, positive) for arg in state.args)
+            case StateOp.SURE:  # nothing is unknown
+                return self._state(state.args[0], positive)
+            case StateOp.LEAF if isinstance(state.leaf, Unborn | Lapsed):
+                return self._factory.constant(not positive)
+            case (
+                StateOp.LEAF
+                | StateOp.PREVIOUS
+                | StateOp.SINCE
+                | StateOp.AMOUNT
+                | StateOp.PASSED
+                | StateOp.DOUBT
+            ):
+                return self._factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+            case _:
+                assert_never(state.op)

@@ -1,0 +1,319 @@
+"""Smaller automata that do the same: fewer locations, age regions, clocks and classes of letters.
+
+Source: partition refinement after Moore 1956; clocks that are not read again after Daws and Yovine
+1996, Reducing the number of clock variables of timed automata.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
+from rvmon.logic.decision_diagram import LetterClasses, LetterDiagram
+from rvmon.logic.residual import NO_CLOCK, Residual
+
+Label = Callable[[Residual], Hashable]
+"""What is reported of a residual; locations of which it differs are kept apart."""
+
+Edge = tuple[int, tuple[int, ...]]
+Row = tuple[tuple[Edge | None, ...], int, int]
+"""Per class of letters the edge, or `None` where no run comes; the value in time, at the end."""
+
+Regions = tuple[int, ...]
+
+
+@dataclass(slots=True)
+class _Place:
+    """A location while it is worked on."""
+
+    residual: Residual
+    cuts: tuple[tuple[int, ...], ...]
+    rows: dict[Regions, Row]
+
+
+def reduce(automaton: Automaton, label: Label | None = None) -> Automaton:
+    """An automaton that decides the same attempts at the same instants.
+
+    Args:
+        automaton: as constructed.
+        label: what has to stay the same for people, clocks with it; `None`: only verdicts have to.
+    """
+    draft = _Draft(automaton)
+    while draft.merge(label) or draft.drop_cuts() or (label is None and draft.drop_clocks()):
+        pass
+    return draft.tables()
+
+
+class _Draft:
+    def __init__(self, automaton: Automaton) -> None:
+        self.source = automaton
+        self.initial = automaton.initial
+        known: dict[Edge, Edge] = {}
+        edges: list[Edge | None] = [
+            known.setdefault(edge, edge)
+            for edge in zip(automaton.targets, automaton.sources, strict=True)
+        ]
+        edges.append(None)  # for −1
+        width = automaton.classes
+        self.places: list[_Place] = []
+        for location, base in zip(automaton.locations, automaton.bases, strict=True):
+            rows: dict[Regions, Row] = {}
+            for row, regions in enumerate(_vectors(location.cuts), base):
+                numbers = automaton.edges[row * width : (row + 1) * width]
+                values = automaton.time_values[row], automaton.end_values[row]
+                rows[regions] = (tuple(map(edges.__getitem__, numbers)), *values)
+            self.places.append(_Place(location.residual, location.cuts, rows))
+
+    # Locations.
+
+    def merge(self, label: Label | None) -> bool:
+        """Make equivalent locations one; returns whether there were any."""
+        blocks = self._numbered([self._look(index, label) for index in range(len(self.places))])
+        while True:
+            finer = self._numbered(
+                [(blocks[index], self._moves(index, blocks)) for index in range(len(self.places))]
+            )
+            if max(finer) == max(blocks):
+                break
+            blocks = finer
+        if label is None:
+            blocks = self._with_initial(blocks)
+        chosen: dict[int, int] = {}
+        for index, block in enumerate(blocks):
+            # Nobody asks what is open in the initial location: the other one speaks for both.
+            if block not in chosen or chosen[block] == self.initial:
+                chosen[block] = index
+        if len(chosen) == len(self.places):
+            return False
+        kept = sorted(chosen.values())
+        renamed = {blocks[index]: new for new, index in enumerate(kept)}
+        self.initial = renamed[blocks[self.initial]]
+        known: dict[Edge, Edge] = {}
+
+        def moved(edge: Edge | None) -> Edge | None:
+            if edge is None:
+                return None
+            new = (renamed[blocks[edge[0]]], edge[1])
+            return known.setdefault(new, new)
+
+        self.places = [self.places[index] for index in kept]
+        self._rewrite(lambda _, edge: moved(edge))
+        return True
+
+    def _look(self, index: int, label: Label | None) -> Hashable:
+        """What tells a location from others at first sight."""
+        if index <= PASSED or index == self.initial:
+            return index
+        place = self.places[index]
+        values = tuple(row[1:] for row in place.rows.values())
+        labelled = None if label is None else label(place.residual)
+        return place.cuts, values, end_clauses(place.residual), labelled
+
+    def _moves(self, index: int, blocks: list[int]) -> Hashable:
+        """Where a location leads, up to what is known to be equivalent."""
+        seen: dict[int, Hashable] = {id(None): None}
+
+        def move(edge: Edge | None) -> Hashable:
+            key = id(edge)
+            if key not in seen and edge is not None:
+                seen[key] = (blocks[edge[0]], edge[1])
+            return seen[key]
+
+        return tuple(tuple(map(move, edges)) for edges, _, _ in self.places[index].rows.values())
+
+    def _with_initial(self, blocks: list[int]) -> list[int]:
+        """The initial location joins another that moves as it does, if no attempt rests there."""
+        initial = self.initial
+        if initial <= PASSED or self.places[initial].cuts or self._is_entered(initial):
+            return blocks
+        moves = self._moves(initial, blocks)
+        for index in range(PASSED + 1, len(self.places)):
+            same = not self.places[index].cuts and self._moves(index, blocks) == moves
+            if index != initial and same:
+                return [blocks[index] if old == blocks[initial] else old for old in blocks]
+        return blocks
+
+    def _is_entered(self, index: int) -> bool:
+        """Whether an edge leads to a location."""
+        return any(
+            edge is not None and edge[0] == index
+            for place in self.places
+            for edges, _, _ in place.rows.values()
+            for edge in edges
+        )
+
+    @staticmethod
+    def _numbered(looks: list[Hashable]) -> list[int]:
+        numbers: dict[Hashable, int] = {}
+        return [numbers.setdefault(look, len(numbers)) for look in looks]
+
+    # Regions.
+
+    def drop_cuts(self) -> bool:
+        """Make one region of two in which all is the same; returns whether there were any."""
+        found = False
+        for place in self.places:
+            for clock in range(len(place.cuts)):
+                cut = 0
+                while cut < len(place.cuts[clock]):
+                    joined = _joined(place, clock, cut)
+                    if joined is None:
+                        cut += 1
+                    else:
+                        place.cuts = _without(place.cuts, clock, cut)
+                        place.rows = joined
+                        found = True
+        return found
+
+    # Clocks.
+
+    def drop_clocks(self) -> bool:
+        """Leave out the clocks that are not read again; returns whether there were any."""
+        live = self._live_clocks()
+        kept = [
+            [clock for clock in range(len(place.cuts)) if (index, clock) in live]
+            for index, place in enumerate(self.places)
+        ]
+        if all(len(own) == len(place.cuts) for own, place in zip(kept, self.places, strict=True)):
+            return False
+
+        def moved(index: int, edge: Edge | None) -> Edge | None:
+            if edge is None:
+                return None
+            target, sources = edge
+            chosen = (sources[clock] for clock in kept[target])
+            return target, tuple(s if s < 0 else kept[index].index(s) for s in chosen)
+
+        self._rewrite(moved)
+        for place, own in zip(self.places, kept, strict=True):
+            number = {old: new for new, old in enumerate(own)}
+            place.residual = frozenset(
+                frozenset((node, number.get(clock, NO_CLOCK)) for node, clock in clause)
+                for clause in place.residual
+            )
+            place.rows = {
+                tuple(regions[clock] for clock in own): row for regions, row in place.rows.items()
+            }
+            place.cuts = tuple(place.cuts[clock] for clock in own)
+        return True
+
+    def _live_clocks(self) -> set[tuple[int, int]]:
+        """The clocks of which an age is read, in their location or later."""
+        live = {
+            (index, clock)
+            for index, place in enumerate(self.places)
+            for clock in range(len(place.cuts))
+            if place.cuts[clock]
+            or any(clock == test[0] for c in end_clauses(place.residual) for test in c)
+        }
+        passed_on = {
+            (index, edge)
+            for index, place in enumerate(self.places)
+            for edges, _, _ in place.rows.values()
+            for edge in edges
+            if edge is not None
+        }
+        size = -1
+        while size < len(live):
+            size = len(live)
+            for index, (target, sources) in passed_on:
+                for clock, source in enumerate(sources):
+                    if source >= 0 and (target, clock) in live:
+                        live.add((index, source))
+        return live
+
+    def _rewrite(self, moved: Callable[[int, Edge | None], Edge | None]) -> None:
+        for index, place in enumerate(self.places):
+            for regions, (edges, time_value, end_value) in place.rows.items():
+                made = {edge: moved(index, edge) for edge in set(edges)}
+                place.rows[regions] = (
+                    tuple([made[edge] for edge in edges]),
+                    time_value,
+                    end_value,
+                )
+
+    # Tables.
+
+    def tables(self) -> Automaton:
+        """The automaton, with letters of a class where no location tells them apart any more."""
+        rows = [row for place in self.places for row in _in_order(place)]
+        columns: dict[tuple[Edge | None, ...], int] = {}
+        new_class = [
+            columns.setdefault(column, len(columns))
+            for column in zip(*(edges for edges, _, _ in rows), strict=True)
+        ]
+        number: dict[Edge | None, int] = {}
+        edges = array("i")
+        for place_row in zip(*columns, strict=True):
+            for edge in place_row:
+                edges.append(-1 if edge is None else number.setdefault(edge, len(number)))
+        locations = tuple(Location(place.residual, place.cuts) for place in self.places)
+        bases, strides, _ = layout_of(locations)
+        source = self.source
+        return Automaton(
+            source.alphabet,
+            locations,
+            self.initial,
+            len(columns),
+            _renamed(source.class_of, new_class),
+            bases,
+            strides,
+            edges,
+            tuple(edge[0] for edge in number if edge is not None),
+            tuple(edge[1] for edge in number if edge is not None),
+            bytes(time_value for _, time_value, _ in rows),
+            bytes(end_value for _, _, end_value in rows),
+        )
+
+
+def _renamed(class_of: LetterClasses, classes: Sequence[int]) -> LetterClasses:
+    if isinstance(class_of, LetterDiagram):
+        return class_of.renamed(classes)
+    return array("H", map(classes.__getitem__, class_of))
+
+
+def _vectors(cuts: tuple[tuple[int, ...], ...]) -> Iterator[Regions]:
+    return product(*(range(len(own) + 1) for own in cuts))
+
+
+def _in_order(place: _Place) -> Iterator[Row]:
+    for regions in _vectors(place.cuts):
+        yield place.rows[regions]
+
+
+def _without(
+    cuts: tuple[tuple[int, ...], ...], clock: int, cut: int
+) -> tuple[tuple[int, ...], ...]:
+    own = cuts[clock]
+    return (*cuts[:clock], own[:cut] + own[cut + 1 :], *cuts[clock + 1 :])
+
+
+def _joined(place: _Place, clock: int, cut: int) -> dict[Regions, Row] | None:
+    """The rows when a cut is left out; `None` if something happens there."""
+    made: dict[Regions, Row] = {}
+    for regions, row in place.rows.items():
+        region = regions[clock]
+        key = (*regions[:clock], region - (region > cut), *regions[clock + 1 :])
+        known = made.get(key)
+        both = row if known is None else _either(known, row)
+        if both is None:
+            return None
+        made[key] = both
+    return made
+
+
+def _either(one: Row, other: Row) -> Row | None:
+    """A row that serves for both, if one does; where no run comes, anything serves."""
+    if one == other:
+        return one
+    if one[1:] != other[1:]:
+        return None
+    edges = []
+    for mine, its in zip(one[0], other[0], strict=True):
+        if mine is not its and mine is not None and its is not None and mine != its:
+            return None
+        edges.append(its if mine is None else mine)
+    return (tuple(edges), *one[1:])

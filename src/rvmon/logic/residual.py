@@ -1,0 +1,146 @@
+"""What an attempt still owes: a reduced disjunctive normal form of timed atoms.
+
+Source: AUTOMATA 1; reduced DNFs of monotone functions are their prime implicants (Quine 1952).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from rvmon.logic.formula import Literal, Next, Release, Until
+
+NO_CLOCK = -1
+"""The clock of an atom that does not depend on when it was instantiated."""
+
+Atom = tuple[Literal | Next | Until | Release, int]
+"""A subformula and the clock that measures its age: clocks count from the oldest, from 0.
+
+A literal occurs only where a step is computed for all letters at once.
+"""
+
+Clause = frozenset[Atom]
+Residual = frozenset[Clause]
+"""A disjunction of conjunctions of atoms, none of which can be dropped."""
+
+HOLDS: Residual = frozenset([frozenset()])
+FAILS: Residual = frozenset()
+
+_MOST_PAIRS = 1 << 10
+"""So many pairs of clauses are reduced at most, if few may be kept."""
+
+
+class TooManyClausesError(Exception):
+    """A residual outgrew the limit that was set for it."""
+
+
+def _follows(atom: Atom, clause: Clause) -> bool:
+    """Whether another atom of `clause` implies `atom`, whatever comes and wherever the trace ends.
+
+    All are pending. `U[0,b]`: the earlier deadline implies the later one; `R[0,b]`: the later one
+    the earlier. `U[a,inf)`: the later implies the earlier, and also the opened window. For
+    `R[a,inf)` the logic says the opposite of the rule for the end, by which only an opened window
+    counts: neither implies.
+    """
+    node, clock = atom
+    match node:
+        case Until(high=None):
+            return any(
+                its > clock if other is node else isinstance(other, Until) and other.opened is node
+                for other, its in clause
+            )
+        case Until(low=0):
+            return any(other is node and its < clock for other, its in clause)
+        case Release(low=0, high=int()):
+            return any(other is node and its > clock for other, its in clause)
+        case _:
+            return False
+
+
+def either(left: Residual, right: Residual) -> Residual:
+    """The reduced disjunction."""
+    if left == right or not right:
+        return left
+    if not left:
+        return right
+    return _reduced(left | right)
+
+
+def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
+    """The reduced conjunction.
+
+    Raises:
+        TooManyClausesError: it has more than `limit` clauses, or is too long to be reduced.
+    """
+    if left == right or right == HOLDS:
+        return left
+    if left == HOLDS:
+        return right
+    if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
+        raise TooManyClausesError
+    made = _reduced({_conjunction(first | second) for first in left for second in right})
+    if limit is not None and len(made) > limit:
+        raise TooManyClausesError
+    return made
+
+
+def _conjunction(clause: Clause) -> Clause:
+    """Without the atoms that others of the clause imply."""
+    implied = [atom for atom in clause.difference(_rigid(clause)) if _follows(atom, clause)]
+    return clause.difference(implied) if implied else clause
+
+
+def _reduced(clauses: Iterable[Clause]) -> Residual:
+    """Without the clauses that imply others; `clauses` are conjunctions without implied atoms."""
+    ordered = sorted(clauses, key=len)
+    if ordered and not ordered[0]:
+        return HOLDS
+    kept: list[Clause] = []
+    rigid: dict[Clause, Clause] = {}
+    for clause in ordered:
+        if any(map(clause.issuperset, kept)):
+            continue
+        rigid[clause] = _rigid(clause)
+        if not any(rigid[one] <= clause and _clause_implies(clause, one) for one in kept):
+            own = rigid[clause]
+            kept = [one for one in kept if not (own <= one and _clause_implies(one, clause))]
+            kept.append(clause)
+    return frozenset(kept)
+
+
+def _rigid(clause: Clause) -> Clause:
+    """The atoms that follow from no other: a clause that implies this one has them, too."""
+    return frozenset([atom for atom in clause if not isinstance(atom[0], (Until, Release))])
+
+
+def _clause_implies(strong: Clause, weak: Clause) -> bool:
+    return all(_follows(atom, strong) for atom in weak - strong)
+
+
+def substitute(
+    residual: Residual, values: Mapping[Atom, Residual], limit: int | None = None
+) -> Residual:
+    """The residual with some of its atoms replaced.
+
+    Raises:
+        TooManyClausesError: an intermediate result may have more than `limit` clauses.
+    """
+    found: set[Clause] = set()
+    # What is met on the way depends on the order: whether it keeps to a limit must not.
+    ordered = residual if limit is None else sorted(residual, key=_in_order)
+    for clause in ordered:
+        made: Residual = frozenset([clause.difference(values)])
+        for atom in clause if limit is None else sorted(clause, key=_by_number):
+            if atom in values:
+                made = both(made, values[atom], limit)
+        found |= made
+        if limit is not None and len(found) > limit:
+            found = set(_reduced(found))
+    return _reduced(found)
+
+
+def _by_number(atom: Atom) -> tuple[int, int]:
+    return atom[0].id, atom[1]
+
+
+def _in_order(clause: Clause) -> list[tuple[int, int]]:
+    return sorted(map(_by_number, clause))

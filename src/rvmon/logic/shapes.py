@@ -1,0 +1,222 @@
+"""Automata of formulas that differ in their propositions and bounds alone: constructed once.
+
+What is owed in a location is told apart, so that a run can be explained by where it stood.
+
+Bounds matter to an automaton by their order, and by how far they lie apart where that is little: an
+age that `construct` meets is 0 or a bound, and as many ticks more as steps were taken behind it.
+So bounds that lie far apart are replaced by others in the same order, and put back afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, TypeAlias, cast
+
+from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.automaton import Automaton, Location
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Release,
+    Until,
+    looks_back,
+    parts_of,
+)
+from rvmon.logic.reduce import reduce
+from rvmon.logic.residual import Residual
+
+_APART = 1 << 10
+"""Bounds that are replaced lie so many ticks apart, and from 0, or more."""
+
+_STRIDE = 1 << 20
+"""So far apart are those that stand in for them."""
+
+_Key: TypeAlias = tuple[object, ...]
+
+
+class Shapes:
+    """The reduced automata of a specification, those of one shape made once."""
+
+    def __init__(self) -> None:
+        self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
+        self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
+
+    def reduced(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
+        """The automaton of a formula; `None` if it has none, or that does not close.
+
+        Its alphabet and residuals speak of the propositions of whichever formula was first asked
+        for, of those that are equal but for propositions; see `residuals`.
+
+        Args:
+            owed: see `rvmon.logic.construct.construct`; so are the others.
+            alphabet: of that formula.
+            budget: when to give up.
+        """
+        return self._found(owed, alphabet, budget)[0]
+
+    def residuals(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
+        """What a formula owes in each location of its automaton, which it has; see `reduced`."""
+        automaton, nodes = self._found(owed, alphabet, budget)
+        if automaton is None:
+            raise ValueError("it has no automaton")
+        own = {id(node): mine for node, mine in zip(nodes, _nodes(owed), strict=True)}
+        return [_renamed(location.residual, own) for location in automaton.locations]
+
+    def _found(
+        self, owed: Next, alphabet: Alphabet, budget: Budget
+    ) -> tuple[Automaton | None, Sequence[Core]]:
+        nodes = _nodes(owed)
+        if looks_back(owed):
+            return None, nodes
+        bounds = sorted({bound for node in nodes for bound in _bounds(node)})
+        stand_ins = _stand_ins(bounds)
+        shape = (budget, *_description(nodes, alphabet, stand_ins))
+        key = (shape, *bounds)
+        if key not in self._automata:
+            made = self._made(shape, nodes, stand_ins, alphabet, budget)
+            self._automata[key] = made, nodes
+        return self._automata[key]
+
+    def _made(
+        self,
+        shape: _Key,
+        nodes: Sequence[Core],
+        stand_ins: Mapping[int, int],
+        alphabet: Alphabet,
+        budget: Budget,
+    ) -> Automaton | None:
+        if shape not in self._shapes:
+            others = _with_bounds(nodes, stand_ins)
+            made, steps = _constructed(others, alphabet, budget)
+            is_same = all(old == new for old, new in stand_ins.items())
+            # The oldest clock may be as much older than the youngest as there are clocks.
+            is_general = is_same or steps + budget.clocks < _APART
+            self._shapes[shape] = (made, others) if is_general else None
+        found = self._shapes[shape]
+        if found is None:  # then it matters how far they are apart
+            return _constructed(nodes, alphabet, budget)[0]
+        automaton, others = found
+        if automaton is None:
+            return None
+        own = {id(other): node for other, node in zip(others, nodes, strict=True)}
+        return _put_back(automaton, own, {new: old for old, new in stand_ins.items()})
+
+
+def _constructed(
+    nodes: Sequence[Core], alphabet: Alphabet, budget: Budget
+) -> tuple[Automaton | None, int]:
+    """The reduced automaton of the last of some nodes, and how far behind a bound an age was."""
+    ages: set[int] = set()
+    try:
+        made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages), _itself)
+    except DoesNotCloseError:
+        made = None
+    return made, max((age % _STRIDE for age in ages), default=0)
+
+
+def _itself(residual: Residual) -> Residual:
+    return residual
+
+
+def _nodes(owed: Core) -> list[Core]:
+    """A formula and all that it is made of, operands first."""
+    found: dict[int, Core] = {}
+    stack = [owed]
+    while stack:
+        node = stack.pop()
+        if node.id not in found:
+            found[node.id] = node
+            stack += _parts(node)
+    return [found[number] for number in sorted(found)]
+
+
+def _parts(node: Core) -> Iterator[Core]:
+    """The operands of a node, and what is left of its window once that is open."""
+    yield from parts_of(node)
+    if isinstance(node, Until | Release) and node.opened is not None:
+        yield node.opened
+
+
+def _bounds(node: Core) -> Iterator[int]:
+    """The ages at which something changes for a node."""
+    if isinstance(node, Until | Release):
+        if node.low:
+            yield node.low
+        if node.high is not None:
+            yield node.high + 1
+
+
+def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
+    """What each bound is replaced by: by itself, where it matters how near they lie."""
+    if any(high - low < _APART for low, high in pairwise((0, *bounds))):
+        return {bound: bound for bound in bounds}
+    return {bound: _STRIDE * rank for rank, bound in enumerate(bounds, start=1)}
+
+
+def _description(
+    nodes: Sequence[Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
+) -> Iterator[object]:
+    """What a formula is but for the names of its propositions."""
+    place = {id(node): number for number, node in enumerate(nodes)}
+    digits = {state: number for number, state in enumerate(alphabet.propositions)}
+    for node in nodes:
+        yield type(node)
+        match node:
+            case Constant(value=value):
+                yield value
+            case Literal(proposition=proposition, sense=sense):
+                yield digits[proposition], sense.value
+            case Until() | Release():
+                yield tuple(stand_ins[bound] for bound in _bounds(node))
+                yield node.low > 0, tuple(place[id(part)] for part in _parts(node))
+            case _:
+                yield tuple(place[id(part)] for part in _parts(node))
+
+
+def _with_bounds(nodes: Sequence[Core], stand_ins: Mapping[int, int]) -> Sequence[Core]:
+    """The same nodes with other bounds."""
+    made: dict[int, Any] = {}
+    for node in nodes:
+        match node:
+            case And(args=args) | Or(args=args):
+                made[node.id] = replace(node, args=tuple(made[arg.id] for arg in args))
+            case Next(operand=operand):
+                made[node.id] = Next(node.id, made[operand.id])
+            case Until() | Release():
+                made[node.id] = replace(
+                    node,
+                    left=made[node.left.id],
+                    right=made[node.right.id],
+                    low=stand_ins[node.low] if node.low else 0,
+                    high=None if node.high is None else stand_ins[node.high + 1] - 1,
+                    opened=None if node.opened is None else made[node.opened.id],
+                )
+            case _:
+                made[node.id] = node
+    return tuple(made.values())
+
+
+def _renamed(residual: Residual, own: Mapping[int, Any]) -> Residual:
+    """A residual with the nodes that others stood in for, which are found by their `id`."""
+    return frozenset(
+        frozenset((own[id(node)], clock) for node, clock in clause) for clause in residual
+    )
+
+
+def _put_back(automaton: Automaton, own: Mapping[int, Any], bounds: Mapping[int, int]) -> Automaton:
+    """An automaton with the nodes and bounds of a formula that others stood in for."""
+    locations = tuple(
+        Location(
+            _renamed(location.residual, own),
+            tuple(tuple(bounds[cut] for cut in cuts) for cuts in location.cuts),
+        )
+        for location in automaton.locations
+    )
+    return replace(automaton, locations=locations)

@@ -1,0 +1,401 @@
+"""Formulas of the present and past with four values, as state formulas with three.
+
+Before the birth of its signals a proposition is neither true nor false nor unknown. No monitor has
+that value: each place in which a formula stands says what it takes it for, and the formula is made
+into one that is that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import assert_never
+
+from rvmon.logic.formula import Factory
+from rvmon.logic.state_formula import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Elapsed,
+    Shown,
+    State,
+    Unborn,
+    reads_fields,
+    signals_of,
+)
+from rvmon.spec.checked.formula import (
+    Amount,
+    Atom,
+    Binary,
+    BinaryOp,
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Interval,
+    Measured,
+    Passed,
+    ProbeAtom,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.operators import Reading, Tense
+from rvmon.spec.checked.reading import read, rewritten
+
+
+class Four:
+    """A formula with four values.
+
+    Args:
+        read: gives the state formula with three that is FALSE, UNKNOWN or TRUE where this one is
+            not born.
+        mortal: whether there is a time before its birth.
+        fades: whether it is born for good as soon as it is.
+        unborn: two-valued, that it is not born; default as `read` gives it.
+        parts: of a conjunction, its operands; of anything else, it alone.
+
+    Attributes:
+        negated: what it is the negation of.
+    """
+
+    def __init__(
+        self,
+        factory: Factory,
+        read: Callable[[int], State],
+        *,
+        mortal: bool = True,
+        fades: bool = False,
+        unborn: State | None = None,
+        parts: Sequence[Four] = (),
+    ) -> None:
+        self._factory = factory
+        self.read = cache(read) if mortal else _same(read(UNKNOWN))
+        self.mortal = mortal
+        self.fades = fades
+        self.parts = tuple(parts) or (self,)
+        self.negated: Four | None = None
+        self._unborn = unborn
+
+    @property
+    def unborn(self) -> State:
+        """Two-valued: it is not born."""
+        if not self.mortal:
+            return self._factory.state_false
+        if self._unborn is not None:
+            return self._unborn
+        sure, negation = self._factory.sure, self._factory.negation
+        return self._factory.state_all([sure(self.read(TRUE)), sure(negation(self.read(FALSE)))])
+
+    @property
+    def missing(self) -> State:
+        """TRUE where it is not born, UNKNOWN where it is unknown, else FALSE."""
+        factory = self._factory
+        born = self.read(TRUE)
+        lost = factory.state_all([born, factory.negation(born)])
+        return factory.state_any([self.unborn, lost])
+
+
+def _same(state: State) -> Callable[[int], State]:
+    return lambda _: state
+
+
+class Reader(Reading[Four]):
+    """Makes formulas of the present and past into state formulas.
+
+    Args:
+        factory: where they are made.
+        period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+        measured: whether what is made has the robustness that the formula has, and not its truth
+            alone, which takes more formulas.
+
+    Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
+    """
+
+    def __init__(
+        self,
+        factory: Factory,
+        period: int | None,
+        *,
+        measured: bool = False,
+    ) -> None:
+        self.factory = factory
+        self.period = period
+        self.measured = measured
+        self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
+
+    def literal(self, formula: Formula, unborn: int) -> State:
+        """A formula whose propositions, not the whole, are taken for `unborn` where they are not.
+
+        A proposition is an atom or an operator of the past.
+        """
+        key = id(formula), unborn
+        if key not in self._literals:  # what `<->` is expressed by has each operand twice
+            self._literals[key] = formula, self._literal(formula, unborn)
+        return self._literals[key][1]
+
+    def _literal(self, formula: Formula, unborn: int) -> State:
+        factory = self.factory
+        match formula:
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                return factory.negation(self.literal(operand, TRUE - unborn))
+            case Binary(op=BinaryOp.AND | BinaryOp.OR as op, left=left, right=right):
+                join = factory.state_all if op is BinaryOp.AND else factory.state_any
+                return join([self.literal(left, unborn), self.literal(right, unborn)])
+            case Binary(op=op) if op.entry.tense is Tense.PRESENT:
+                return self.literal(rewritten(formula), unborn)
+            case _:
+                return self.four(formula).read(unborn)
+
+    def four(self, formula: Formula) -> Four:
+        """A formula with its four values."""
+        match formula:
+            # The instant before and a whole stretch have births of their own.
+            case Unary(op=UnaryOp.RISE, operand=operand):
+                arg = self.four(operand)
+                return self._all([arg, self.no(self._before(arg))])
+            case Unary(op=UnaryOp.FALL, operand=operand):
+                arg = self.four(operand)
+                return self._all([self.no(arg), self._before(arg)])
+            case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
+                return self._held(self.four(operand), interval)
+            case Unary() | Binary():
+                return read(formula, self.four, self)
+            case Amount():
+                return self._amount(formula)
+            case Passed(known=known):
+                value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
+                return self._born_with(value, (known,))
+            case Constant(value=value):
+                return self.constant(value)
+            case _:
+                return self._atom(formula)
+
+    def _amount(self, formula: Amount) -> Four:
+        """What is not born adds nothing; a limit, and what a mean is of, are born first."""
+        factory = self.factory
+        states = [self.four(part).read(FALSE) for part in formula.operands[:1]]
+        states += [self.four(part).read(UNKNOWN) for part in formula.operands[1:]]
+        value = factory.amount(formula, *states)
+        asked = formula.operands[formula.measured is not Measured.MEAN :]
+        return self._born_with(value, asked if formula.measured.of_numbers else ())
+
+    def _born_with(self, value: State, asked: Sequence[Formula]) -> Four:
+        """What is unknown until the signals of comparisons are born, and is not born till then."""
+        factory = self.factory
+        signals: dict[str, bool] = {}
+        for part in asked:
+            if isinstance(part, Compare):
+                for name, moved in signals_of(part).items():
+                    signals[name] = signals.get(name, False) or moved
+        if not signals:
+            return Four(factory, _same(value), mortal=False)
+        unborn = factory.leaf(Unborn(tuple(sorted(signals.items()))))
+
+        def read(reading: int) -> State:
+            if reading == UNKNOWN:
+                return value
+            if reading == TRUE:
+                return factory.state_any([value, unborn])
+            return factory.state_all([value, factory.negation(unborn)])
+
+        return Four(factory, read, fades=True, unborn=unborn)
+
+    def _atom(self, atom: Atom) -> Four:
+        factory = self.factory
+        leaf = without_span(atom)
+        if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
+            return Four(factory, lambda _: factory.leaf(leaf), mortal=False)
+        unborn = None
+        if not reads_fields(leaf):
+            unborn = factory.leaf(Unborn(tuple(sorted(signals_of(leaf).items()))))
+        return Four(
+            factory,
+            lambda reading: factory.leaf(leaf, reading),
+            fades=unborn is not None,
+            unborn=unborn,
+        )
+
+    # The operators that all others are made of.
+
+    def constant(self, value: bool) -> Four:
+        """A constant."""
+        state = self.factory.state_true if value else self.factory.state_false
+        return Four(self.factory, _same(state), mortal=False)
+
+    def no(self, arg: Four) -> Four:
+        """Not born where its operand is not."""
+        if arg.negated is not None:
+            return arg.negated
+        negation = self.factory.negation
+        made = Four(
+            self.factory,
+            lambda unborn: negation(arg.read(TRUE - unborn)),
+            mortal=arg.mortal,
+            fades=arg.fades,
+            unborn=arg._unborn,
+        )
+        made.negated = arg
+        return made
+
+    def both(self, left: Four, right: Four) -> Four:
+        """Not born where an operand is not, none is false, and none is unknown."""
+        return self._all([left, right])
+
+    def next(self, _: Four) -> Four:
+        """It does not occur."""
+        raise AssertionError("future operators were sorted out")
+
+    def until(self, *_: object) -> Four:
+        """It does not occur."""
+        raise AssertionError("future operators were sorted out")
+
+    def _all(self, args: Sequence[Four]) -> Four:
+        factory = self.factory
+        args = [part for arg in args for part in arg.parts]
+        # What was lost is not excused by what is not there: with it, the whole is unknown.
+        unborn = self._some_unborn(args)
+
+        def read(reading: int) -> State:
+            joined = factory.state_all([arg.read(reading or TRUE) for arg in args])
+            if reading == FALSE and self.measured:
+                return self._measured(args, joined, unborn)
+            if reading != FALSE or unborn is factory.state_false:
+                return joined
+            born_or_not_true = [factory.negation(unborn), factory.negation(joined)]
+            return factory.state_all([joined, factory.state_any(born_or_not_true)])
+
+        return Four(factory, read, mortal=any(arg.mortal for arg in args), parts=args)
+
+    def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
+        """All of some, FALSE where one is not born: by any distance, unless one was lost.
+
+        Args:
+            args: the formulas.
+            joined: all of them, TRUE where not born.
+            unborn: that one is not born.
+        """
+        factory = self.factory
+        lost = factory.state_all([joined, factory.negation(joined)])
+        born = factory.state_any([factory.negation(unborn), lost])
+        return factory.state_all([*(arg.read(UNKNOWN) for arg in args), born])
+
+    def _some_unborn(self, args: Sequence[Four]) -> State:
+        """Two-valued: one of them is not born; what is read off the input is one leaf."""
+        factory = self.factory
+        states, signals = [], dict[str, bool]()
+        for state in (arg.unborn for arg in args):
+            if isinstance(state.leaf, Unborn):
+                for name, moved in state.leaf.signals:
+                    signals[name] = signals.get(name, False) or moved
+            else:
+                states.append(state)
+        if signals:
+            states.append(factory.leaf(Unborn(tuple(sorted(signals.items())))))
+        return factory.state_any(states)
+
+    def since(self, left: Four, right: Four, interval: Interval) -> Four:
+        """Positions at which an operand is not born are passed over."""
+        factory = self.factory
+        low, high = self._window(interval)
+        if high is not None and low > high:
+            return self.constant(False)
+        value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
+        if low > 0 or right.mortal:
+            value = self._or_lost(value, left, right, low, high)
+        if not right.mortal:
+            return Four(factory, _same(value), mortal=False)
+        if right.fades and low == 0:
+            # In an outage before the first sample it may be born, or not.
+            unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])
+        else:
+            born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
+            some = factory.since(factory.state_true, factory.state_true, low, high)
+            unborn = factory.state_all([factory.negation(born), some])
+        return self._besides(value, unborn)
+
+    def _or_lost(self, value: State, left: Four, right: Four, low: int, high: int | None) -> State:
+        """A `since` that is unknown where its right side was lost throughout the window.
+
+        That may not be born, then; so it is not false, though the left side be.
+        """
+        factory = self.factory
+        if left.read(TRUE) is factory.state_true:
+            return value
+
+        def once(state: State) -> State:
+            return factory.since(factory.state_true, state, low, high)
+
+        is_false = factory.negation(right.read(TRUE))
+        known = factory.state_any([factory.sure(right.read(FALSE)), factory.sure(is_false)])
+        lost = [factory.negation(once(known)), once(factory.negation(right.unborn))]
+        return factory.state_any([value, factory.state_all([*lost, factory.unknown])])
+
+    def _besides(self, value: State, unborn: State) -> Four:
+        """The formula that is not born where `unborn` says so; `value` is FALSE there."""
+        factory = self.factory
+
+        def read(reading: int) -> State:
+            if reading == FALSE:
+                return value
+            there = unborn if reading == TRUE else factory.state_all([unborn, factory.unknown])
+            return factory.state_any([value, there])
+
+        return Four(factory, read, unborn=unborn)
+
+    def previous(self, arg: Four) -> Four:
+        """Not born where its operand was not."""
+        factory = self.factory
+        value = factory.previous(arg.read(FALSE))
+        if not arg.mortal:
+            return Four(factory, _same(value), mortal=False)
+        return self._besides(value, factory.previous(arg.unborn))
+
+    def _before(self, arg: Four) -> Four:
+        """What it was at the position before: false if not born, as what lies before the trace."""
+        return Four(self.factory, _same(self.previous(arg).read(FALSE)), mortal=False)
+
+    def _held(self, arg: Four, interval: Interval | None) -> Four:
+        """As long as it must have held, it must have been born."""
+        factory = self.factory
+        elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
+        value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
+        missing = self._historically(arg.missing, interval)
+        if not arg.mortal:
+            lost = factory.state_all([missing, factory.negation(missing)])
+            return Four(factory, _same(factory.state_any([value, lost])), mortal=False)
+
+        def read(unborn: int) -> State:
+            if unborn == TRUE:
+                return factory.state_any([value, missing])
+            other = factory.unknown if unborn == UNKNOWN else factory.negation(missing)
+            return factory.state_any([value, factory.state_all([missing, other])])
+
+        return Four(factory, read)
+
+    def _historically(self, arg: State, interval: Interval | None) -> State:
+        factory = self.factory
+        low, high = self._window(interval)
+        if high is not None and low > high:
+            return factory.state_true
+        return factory.negation(factory.since(factory.state_true, factory.negation(arg), low, high))
+
+    def _window(self, interval: Interval | None) -> tuple[int, int | None]:
+        low, high = (interval.low, interval.high) if interval else (0, None)
+        if self.period:
+            low = -(-low // self.period) * self.period
+            high = None if high is None else high // self.period * self.period
+        return low, high
+
+
+def without_span(atom: Atom) -> Shown:
+    """The atom as it is read off the input, wherever in a spec it stands."""
+    match atom:
+        case Constant():
+            raise AssertionError("constants are no leaves")
+        case SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
+            return replace(atom, span=None)
+        case _:
+            assert_never(atom)

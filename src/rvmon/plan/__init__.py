@@ -1,1 +1,0 @@
-"""How requirements run: state formulas as one graph, and what judges."""

@@ -1,0 +1,109 @@
+"""Automata: how large they get, and that they do the work they should."""
+
+from random import Random
+
+import pytest
+from tests.tools.build import always, eventually, no, p, q, r, requirement, two
+from tests.tools.progression import Progression
+from tests.tools.stepped import TableMachine
+
+from rvmon.logic.alphabet import alphabet_of
+from rvmon.logic.automaton import PASSED
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.decision_diagram import LetterDiagram
+from rvmon.logic.formula import Factory
+from rvmon.logic.lower import lower
+from rvmon.logic.reduce import reduce
+from rvmon.spec.checked.formula import SignalAtom
+
+SECOND = 10**9
+
+
+def core(formula, **more):
+    factory = Factory()
+    owed = lower(requirement(formula, **more), factory).owed
+    return factory.next(owed), alphabet_of(owed)
+
+
+def build(formula, budget=None, **more):
+    return construct(*core(formula, **more), budget or Budget())
+
+
+SIZES = {
+    "response": (eventually(p, 0, 3 * SECOND), None, 4, 1, 2),
+    "absence": (always(no(p), 0, 2 * SECOND), None, 4, 1, 2),
+    "invariant": (p, q, 4, 0, 4),
+    "response everywhere": (two(p, "->", eventually(q, 0, 5)), None, 4, 1, 4),
+    "hold after rise": (two(p, "->", always(r, 0, 3 * SECOND)), q, 6, 1, 7),
+}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_usual_requirements_stay_small(name):
+    """The shapes that people write need a handful of locations and at most one clock."""
+    formula, whenever, locations, clocks, classes = SIZES[name]
+    automaton = build(formula, **({"whenever": whenever} if whenever else {}))
+    assert len(automaton.locations) <= locations
+    assert automaton.clocks == clocks
+    assert automaton.classes <= classes
+
+
+def test_many_propositions_do_not_make_many_classes():
+    """Twelve propositions that matter one by one collapse to few classes of letters."""
+    names = [SignalAtom(f"s{number}") for number in range(12)]
+    formula = eventually(names[0], 0, 9)
+    for name in names[1:]:
+        formula = two(formula, "or", eventually(name, 0, 9))
+    automaton = build(formula)
+    assert automaton.alphabet.size == 2**12
+    assert automaton.classes == 2
+
+
+@pytest.mark.parametrize("high", [None, 5])
+def test_conjunctions_of_recurring_demands_close(high):
+    """A location is what of three is still required, however many ways lead there."""
+    demands = two(eventually(p, 0, high), "and", eventually(q, 0, high))
+    demands = two(demands, "and", eventually(r, 0, high))
+    assert build(always(demands)).clocks == (0 if high is None else 3)
+
+
+def test_respawned_windows_do_not_close():
+    """A window above zero that is opened again and again outgrows the budget, which is said."""
+    with pytest.raises(DoesNotCloseError, match="more than"):
+        build(always(two(p, "->", eventually(q, 20, 50))))
+
+
+def test_construction_is_deterministic():
+    """The same formula gives the same tables."""
+    formula = two(eventually(p, 0, 5), "and", always(two(q, "->", eventually(r, 0, 3))))
+    first, second = build(formula), build(formula)
+    assert (first.edges, first.class_of, first.targets) == (
+        second.edges,
+        second.class_of,
+        second.targets,
+    )
+
+
+@pytest.mark.slow
+def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
+    """Eighteen propositions have an automaton where they collapse, and it steps as it should."""
+    names = [SignalAtom(f"s{number}") for number in range(18)]
+    formula = eventually(names[0], 0, 1)
+    for number, name in enumerate(names[1:], 2):
+        formula = two(formula, "or", eventually(name, 0, number))
+    owed, alphabet = core(formula)
+    automaton = reduce(construct(owed, alphabet, Budget()))
+    assert alphabet.size == 2**18
+    assert isinstance(automaton.class_of, LetterDiagram)
+    assert automaton.classes == 19
+    rng = Random(1)
+    table, worked_out = TableMachine(automaton), Progression(owed, alphabet)
+    for _ in range(40):
+        tokens = table.start, worked_out.start
+        for t in range(20):
+            letter = 1 << rng.randrange(18) if rng.random() < 0.1 else 0
+            tokens = table.step(tokens[0], t, letter), worked_out.step(tokens[1], t, letter)
+            decided = [token[0] if token[0] <= PASSED else None for token in tokens]
+            assert decided[0] == decided[1]
+            if decided[0] is not None:
+                break

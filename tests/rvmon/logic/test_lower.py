@@ -1,0 +1,113 @@
+"""Formulas of the spec to core formulas."""
+
+import pytest
+from tests.tools.build import (
+    always,
+    compared,
+    e,
+    eventually,
+    following,
+    no,
+    once,
+    p,
+    q,
+    r,
+    requirement,
+    start,
+    two,
+    x,
+)
+
+import rvmon
+from rvmon.logic.formula import Factory, Literal, Release, Sense, Since, Until, horizon
+from rvmon.logic.lower import UnmonitorableError, lower
+
+
+def owed(formula, **more):
+    return lower(requirement(formula, **more), Factory()).owed
+
+
+def test_equal_meanings_become_one_object():
+    """Duals and De Morgan's variants of a formula are the same node of one factory."""
+    factory = Factory()
+    pairs = [
+        (no(eventually(p, 0, 3)), always(no(p), 0, 3)),
+        (no(two(p, "U", q, 1, 4)), two(no(p), "R", no(q), 1, 4)),
+        (two(p, "W", q), two(q, "R", two(p, "or", q))),
+        (two(p, "M", q), two(q, "U", two(p, "and", q))),
+        (no(two(p, "and", eventually(q))), two(no(p), "or", always(no(q)))),
+        (two(p, "->", eventually(q)), two(no(p), "or", eventually(q))),
+        (no(two(p, "xor", eventually(q))), no(no(no(two(p, "xor", eventually(q)))))),
+    ]
+    for left, right in pairs:
+        first = lower(requirement(left), factory).owed
+        assert first is lower(requirement(right), factory).owed
+
+
+def test_present_and_past_become_one_proposition():
+    """What is known at once is not taken apart, so that letters stay few."""
+    node = owed(eventually(two(two(p, "and", no(q)), "or", once(compared(x, ">", 1), 0, 5)), 0, 3))
+    assert isinstance(node, Until)
+    assert isinstance(node.right, Literal)
+
+
+def test_what_is_decided_late_is_not_folded():
+    """`G[0,3] true` is decided when its window is over, `p or not p` may be unknown."""
+    assert isinstance(owed(always(two(p, "or", no(p)), 0, 3)), Release)
+    tautology = owed(two(p, "or", no(p)))
+    assert isinstance(tautology, Literal)
+
+
+def test_constants_are_folded_where_that_changes_no_instant():
+    """`true` decides an eventuality at once if its window starts at zero."""
+    factory = Factory()
+
+    def made(formula):
+        return lower(requirement(formula), factory).owed
+
+    always_true = two(p, "or", always(two(q, "and", no(q)), 0, 3))
+    assert made(eventually(two(start, "->", start), 0, 3)) is not factory.true
+    assert isinstance(made(always_true), type(made(two(p, "or", always(q, 0, 3)))))
+
+
+def test_an_episode_ends_where_its_trigger_is_known_to_be_false():
+    """`whenever θ then ψ` is a release by the two-valued reading of not θ."""
+    node = owed(eventually(q, 0, 2), whenever=p)
+    assert isinstance(node, Release)
+    assert isinstance(node.left, Literal)
+    assert node.left.sense is Sense.KNOWN_FALSE
+
+
+@pytest.mark.parametrize(
+    ("formula", "ticks"),
+    [
+        (p, 0),
+        (eventually(p, 1, 3), 3),
+        (two(always(p, 0, 4), "U", eventually(q, 2, 5), 0, 7), 12),
+        (two(eventually(p, 0, 9), "and", always(r, 0, 3)), 9),
+        (eventually(p), None),
+        (following(p), None),
+    ],
+)
+def test_horizon(formula, ticks):
+    """The horizon is the sum of nested bounds, none if anything is unbounded."""
+    assert horizon(owed(formula)) == ticks
+
+
+def test_a_trigger_that_speaks_of_the_future_is_refused():
+    """Nothing is known at once of what lies ahead; in what is owed it may stand anywhere."""
+    with pytest.raises(UnmonitorableError):
+        owed(p, upon=once(eventually(p, 0, 2), 0, 3))
+    assert isinstance(owed(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
+
+
+@pytest.mark.slow
+def test_nested_equivalences_take_no_time():
+    """What stands for `<->` has each operand twice; yet each is read once."""
+    nested = "p"
+    for _ in range(30):
+        nested = f"(q <-> {nested})"
+    head = "spec s\nsignal p, q : bool\nrequirement R\n  upon"
+    spec = rvmon.loads(f"{head} {nested} then {nested}\n")
+    run = [(0, {"p": False, "q": False}), (10, {"p": True})]
+    assert spec.evaluate(run).verdicts == {"R": rvmon.Verdict.PASS}

@@ -1,0 +1,134 @@
+"""Reduced automata: smaller, and the same to whoever looks."""
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
+from tests.tools.stepped import TableMachine
+
+from rvmon.logic.alphabet import alphabet_of
+from rvmon.logic.automaton import PASSED, Automaton
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.formula import Factory
+from rvmon.logic.lower import lower
+from rvmon.logic.reduce import reduce
+from rvmon.logic.state_formula import FALSE, UNKNOWN
+from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.testing.generate.formula import Shape
+from rvmon.testing.strategies import formulas
+
+
+def built(formula, **more):
+    factory = Factory()
+    obligation = lower(requirement(formula, **more), factory)
+    automaton = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
+    return automaton, Words(obligation.origins).label
+
+
+def rows(automaton: Automaton) -> int:
+    return len(automaton.time_values)
+
+
+def walk(automaton, word):
+    """What is decided, and when; the truth in time and at the end at every step."""
+    machine = TableMachine(automaton)
+    token, seen = machine.start, []
+    for t, letter, gap in word:
+        token = machine.step(token, t, letter % automaton.alphabet.size)
+        if token[0] <= PASSED:
+            return [*seen, (t, token[0])]
+        seen += [machine.time_value(token, later) for later in range(t, t + gap + 1)]
+        if seen[-1] != seen[0]:  # time alone has decided
+            return seen
+    row = machine.row(token, word[-1][0])
+    return [*seen, automaton.end_values[row]]
+
+
+WORDS = st.lists(st.tuples(st.integers(0, 10**6), st.integers(1, 5)), min_size=1, max_size=8)
+
+
+@pytest.mark.law
+@settings(max_examples=150, deadline=None)
+@given(data=st.data(), steps=WORDS)
+def test_a_reduced_automaton_decides_the_same(data, steps):
+    """Verdicts, their instants and the values at the end stay, with labels and without."""
+    formula = data.draw(formulas(Shape(mixed=False, step=True)))
+    try:
+        original, told = built(formula)
+    except DoesNotCloseError:
+        assume(False)
+    word, t = [], 0
+    for letter, gap in steps:
+        word.append((t, letter, gap - 1))
+        t += gap
+    expected = walk(original, word)
+    for small in (reduce(original, told), reduce(original)):
+        assert walk(small, word) == expected
+        assert len(small.locations) <= len(original.locations)
+        assert rows(small) <= rows(original)
+
+
+@settings(max_examples=60, deadline=None)
+@given(formula=formulas(Shape(mixed=False)))
+def test_reduction_is_idempotent(formula):
+    """What is reduced cannot be reduced further."""
+    try:
+        original, told = built(formula)
+    except DoesNotCloseError:
+        assume(False)
+    for label in (told, None):
+        once = reduce(original, label)
+        twice = reduce(once, label)
+        assert (once.edges, once.class_of, rows(once)) == (twice.edges, twice.class_of, rows(twice))
+
+
+@settings(max_examples=60, deadline=None)
+@given(formula=formulas(Shape(mixed=False)))
+def test_what_people_are_told_stays(formula):
+    """No text of what is owed gets lost, and none is told of another location."""
+    try:
+        original, told = built(formula)
+    except DoesNotCloseError:
+        assume(False)
+    small = reduce(original, told)
+    texts = [{told(location.residual) for location in one.locations} for one in (original, small)]
+    assert texts[0] == texts[1]
+
+
+SMALLER = {
+    "recurrence": always(eventually(p)),
+    "nested windows": always(two(p, "U", two(q, "U", r, 2, 4), 1, 5)),
+    "recurrence until": two(always(eventually(r), 3), "U", q, 3, None),
+}
+
+
+@pytest.mark.parametrize("name", SMALLER)
+def test_equivalent_locations_are_one(name):
+    """Locations that only their text tells apart are merged where no text is asked for."""
+    original, told = built(SMALLER[name])
+    sizes = [len(one.locations) for one in (reduce(original), reduce(original, told), original)]
+    assert sizes[0] < sizes[2]
+    assert sizes[0] <= sizes[1] <= sizes[2]
+
+
+def test_a_clock_that_is_not_read_again_is_dropped():
+    """Once a window has opened and never closes, its age is of no account."""
+    original, told = built(two(eventually(p, 2), "and", always(two(q, "->", eventually(r, 2)))))
+    clocks = [sum(len(at.cuts) for at in one.locations) for one in (original, reduce(original))]
+    assert clocks[1] < clocks[0]
+    assert rows(reduce(original, told)) <= rows(original)
+
+
+def test_what_time_alone_decides_is_kept_apart():
+    """`F[0,3] false` is decided by time, `G[4, inf) false` by a position: the same moves else."""
+    by_time = two(p, "and", eventually(false, 0, 3))
+    by_position = two(always(false, 4), "and", eventually(q, 9))
+    original, _ = built(two(by_time, "or", two(no(p), "and", by_position)))
+    small = reduce(original)
+    machine = TableMachine(small)
+    values = set()
+    for letter in range(small.alphabet.size):
+        token = machine.step(machine.start, 0, letter)
+        if token[0] > PASSED:
+            values.add(machine.time_value(token, 4))
+    assert values == {UNKNOWN, FALSE}

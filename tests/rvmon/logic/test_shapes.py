@@ -1,0 +1,80 @@
+"""Automata of one shape, constructed once."""
+
+from collections.abc import Iterator
+from random import Random
+
+import pytest
+from tests.tools.build import scaled
+
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import Automaton, end_clauses
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.decision_diagram import LetterDiagram
+from rvmon.logic.formula import Factory, Next
+from rvmon.logic.lower import Obligation, lower
+from rvmon.logic.reduce import reduce
+from rvmon.logic.shapes import Shapes
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.testing.generate.spec import Profile, random_spec
+
+BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
+
+
+def owed_by(requirement: Requirement, factory: Factory) -> Iterator[tuple[Next, Alphabet]]:
+    """What the attempts of a requirement owe, those in doubt too."""
+    obligation: Obligation | None = lower(requirement, factory)
+    while obligation is not None:
+        yield factory.next(obligation.owed), alphabet_of(obligation.owed)
+        obligation = obligation.hidden
+
+
+def tables(automaton: Automaton | None) -> object:
+    """All that is stepped through."""
+    if automaton is None:
+        return None
+    classes = automaton.class_of
+    return (
+        automaton.initial,
+        automaton.classes,
+        classes.root if isinstance(classes, LetterDiagram) else classes,
+        (automaton.bases, automaton.strides, automaton.edges),
+        (automaton.targets, automaton.sources),
+        (automaton.time_values, automaton.end_values),
+        [(place.cuts, end_clauses(place.residual)) for place in automaton.locations],
+    )
+
+
+def constructed(owed: Next, alphabet: Alphabet) -> Automaton | None:
+    """The automaton of a formula, made for it alone."""
+    try:
+        return reduce(construct(owed, alphabet, BUDGET), lambda residual: residual)
+    except DoesNotCloseError:
+        return None
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("part", range(3))
+def test_an_automaton_of_a_known_shape_is_that_of_its_formula(part):
+    """It has the tables that construction gives, whatever the bounds and how near they lie."""
+    shapes = Shapes()
+    found = []
+    for seed in range(20 * part, 20 * (part + 1)):
+        spec = random_spec(Random(seed), Profile(mixed=False, captures=False, for_each=False))
+        # A tick more or less makes a difference to the first of them alone.
+        for factor in (1, 500, 1_000_000, 7_000_001):
+            for owed, alphabet in _retimed(spec, factor):
+                made = shapes.reduced(owed, alphabet, BUDGET)
+                alone = constructed(owed, alphabet)
+                assert tables(made) == tables(alone)
+                if alone is not None:
+                    owing = [place.residual for place in alone.locations]
+                    assert shapes.residuals(owed, alphabet, BUDGET) == owing
+                found.append(made)
+    assert sum(made is not None for made in found) >= 100
+
+
+def _retimed(spec: CheckedSpec, factor: int) -> Iterator[tuple[Next, Alphabet]]:
+    factory = Factory()
+    for one in spec.requirements.values():
+        formulas = [scaled(part, factor) for part in (one.trigger, one.consequent)]
+        yield from owed_by(Requirement(one.id, one.mode, *formulas, pulse=one.pulse), factory)
