@@ -28,7 +28,7 @@ from rvmon.logic.forecast import Forecaster
 from rvmon.logic.formula import Factory
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
-from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
 from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.formula import Shape, formula

@@ -32,7 +32,7 @@ from tests.tools.forms import Compiler, Maker
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.core import amalgamate
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile

@@ -32,7 +32,7 @@ from benchmarks.peers.with_faults import resident_kib
 import rvmon
 from rvmon.core import amalgamate
 from rvmon.errors import TraceError
-from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.trace.time import TIME_LIMIT
 
 SPEC = """

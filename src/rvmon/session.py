@@ -91,7 +91,7 @@ class Spec:
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
-        from rvmon.monitor.compiled.specification import CompiledSpec
+        from rvmon.monitor.compiled_spec import CompiledSpec
 
         return CompiledSpec(self.checked, is_kept=True)
 
@@ -137,7 +137,7 @@ class Spec:
         Raises:
             SnapshotError: they are none, damaged, of another specification, or of another rvmon.
         """
-        from rvmon.monitor.core.monitor import restore
+        from rvmon.monitor.monitor import restore
 
         return restore(self._compiled, data)
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, Monitor, build_monitor, compile_spec
-from rvmon.monitor.core.monitor import restore
-from rvmon.monitor.core.planned import PlannedCore, planned_core
-from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.monitor import restore
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.trace.health import Health, HealthKind

@@ -10,8 +10,8 @@ from typing import Any
 
 from rvmon import native
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.core.planned import PlannedCore, planned_core
-from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.records import report_of_run
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.plan import Plan, plan_of_truths
-from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
 
 TRACED_MOST = 64
 """As plan.h has it."""

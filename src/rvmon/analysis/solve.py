@@ -9,7 +9,7 @@ from typing import assert_never
 
 from rvmon.logic.formula import Factory, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
-from rvmon.monitor.core.watching import Positions, known_truths
+from rvmon.monitor.watching import Positions, known_truths
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,

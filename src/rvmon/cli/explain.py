@@ -13,7 +13,7 @@ from rvmon.cli.output import say
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.monitor.compiled_spec import CompiledSpec
     from rvmon.session import Spec
 
 _CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)

@@ -14,7 +14,7 @@ from rvmon.errors import RvmonError
 from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.compile import CompiledRequirement
     from rvmon.session import Spec
 
 _OF_MODELS = ("dot", "uppaal")
@@ -93,7 +93,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
 def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
     from rvmon.export.c_files import c_files
     from rvmon.monitor import compile_spec
-    from rvmon.monitor.compiled.code_plan import plan_alone
+    from rvmon.monitor.plans import plan_alone
 
     if output is None:
         raise RvmonError("C is several files: name a folder with -o DIR")

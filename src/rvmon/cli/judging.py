@@ -15,7 +15,7 @@ from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.inputs.missing import expect_names
+from rvmon.monitor.missing import expect_names
 from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source

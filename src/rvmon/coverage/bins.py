@@ -13,8 +13,8 @@ from rvmon.logic.formula import Factory
 from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.logic.state_formula import FALSE
 from rvmon.logic.three_valued import Reader
-from rvmon.monitor.core.packed_cache import Kept
-from rvmon.monitor.core.planned import PlannedCore, planned_as
+from rvmon.monitor.compiled_spec import Kept
+from rvmon.monitor.planned import PlannedCore, planned_as
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec

@@ -11,12 +11,12 @@ from rvmon.coverage.bins import Bins
 from rvmon.coverage.model import Hits, Model, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
-from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.monitor import Monitor
-from rvmon.monitor.core.planned import PlannedCore
-from rvmon.monitor.core.recording import RecordingRun
-from rvmon.monitor.core.snapshot import Options
-from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.intake import WAYS_TO_SETTLE
+from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.recording import RecordingRun
+from rvmon.monitor.snapshot import Options
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording

@@ -14,11 +14,11 @@ from rvmon import native
 from rvmon.coverage.model import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.explain.graph import Graph, graph_of
-from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore, kept_of, planned_as
-from rvmon.monitor.core.recorded import RECORD
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore, kept_of, planned_as
+from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.records import RECORD
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement

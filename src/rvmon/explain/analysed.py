@@ -10,7 +10,7 @@ from rvmon.analysis.requirement import Conflict, Subject
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.explain.example import Budget, Example
 from rvmon.explain.search import Goal, shortest_examples
-from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.verdict.verdict import Verdict
 
 CONFLICT_RUNS = 400

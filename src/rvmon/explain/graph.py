@@ -12,7 +12,7 @@ from rvmon.diagnostics.shown import shown
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.formula import Core, Literal, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
-from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration, format_formula

@@ -10,12 +10,11 @@ from itertools import count
 from rvmon.analysis.choices import SILENT, Choices, Silence, Valuation, choices_of
 from rvmon.core.plan import pack
 from rvmon.explain.example import Budget, Example, Found, small_step
-from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.packed_cache import Kept
-from rvmon.monitor.core.planned import planned_as
-from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec, Kept
+from rvmon.monitor.planned import planned_as
+from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
-from rvmon.monitor.core.watching import TruthsPlan, TruthsRun
+from rvmon.monitor.watching import TruthsPlan, TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp

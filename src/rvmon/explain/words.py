@@ -9,8 +9,8 @@ from rvmon.logic.automaton import Automaton
 from rvmon.logic.formula import horizon
 from rvmon.logic.state_formula import StateOp
 from rvmon.logic.state_graph import graph_of
-from rvmon.monitor.compiled.code_plan import planned_rule
-from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.plans import planned_rule
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,

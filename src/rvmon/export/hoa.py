@@ -13,7 +13,7 @@ from rvmon.explain.graph import graph_of, proposition_texts, quoted
 from rvmon.logic.automaton import FAILED, PASSED, Automaton
 from rvmon.logic.forecast import ltl3_monitor
 from rvmon.logic.state_formula import FALSE, TRUE
-from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.verdict import Verdict
 

@@ -6,19 +6,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.requirement import CompiledRequirement
-    from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-    from rvmon.monitor.core.monitor import Monitor, build_monitor
+    from rvmon.monitor.compile import CompiledRequirement
+    from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
+    from rvmon.monitor.monitor import Monitor, build_monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
 
 # Recordings in columns are judged without a monitor: a name is imported when it is asked for.
 _HOMES = {
-    "CompiledRequirement": "rvmon.monitor.compiled.requirement",
-    "CompiledSpec": "rvmon.monitor.compiled.specification",
-    "Monitor": "rvmon.monitor.core.monitor",
-    "build_monitor": "rvmon.monitor.core.monitor",
-    "compile_spec": "rvmon.monitor.compiled.specification",
+    "CompiledRequirement": "rvmon.monitor.compile",
+    "CompiledSpec": "rvmon.monitor.compiled_spec",
+    "Monitor": "rvmon.monitor.monitor",
+    "build_monitor": "rvmon.monitor.monitor",
+    "compile_spec": "rvmon.monitor.compiled_spec",
 }
 
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.diagnostics.shown import shown_path
-from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.planned import planned_core
-from rvmon.monitor.core.recording import RecordingRun, judge_recording
-from rvmon.monitor.inputs.missing import expect_names
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.missing import expect_names
+from rvmon.monitor.planned import planned_core
+from rvmon.monitor.recording import RecordingRun, judge_recording
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.joined import Joined

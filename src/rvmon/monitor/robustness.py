@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 from rvmon.errors import TraceError, UnknownNameError
-from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.feed import FedMonitor, Feed
-from rvmon.monitor.core.one_call import OneCall
-from rvmon.monitor.core.planned import planned_core
-from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.feed import FedMonitor, Feed
+from rvmon.monitor.intake import WAYS_TO_SETTLE
+from rvmon.monitor.listeners import OneCall
+from rvmon.monitor.planned import planned_core
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
 from rvmon.verdict.verdict import Verdict

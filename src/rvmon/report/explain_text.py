@@ -12,8 +12,8 @@ from rvmon.explain.example import Budget, Example, Found
 from rvmon.explain.graph import graph_lines, graph_of
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.explain.words import facts_of, requirement_in_words
-from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration

@@ -13,8 +13,8 @@ import numpy as np
 from tests.tools.forms import Compiler, column_of
 
 from rvmon import native
-from rvmon.monitor.core.planned import DECISIONS, PlannedCore, planned_core
-from rvmon.monitor.core.recorded import NUMBER, RECORD
+from rvmon.monitor.planned import DECISIONS, PlannedCore, planned_core
+from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.trace import TraceProfile, random_trace

@@ -14,8 +14,8 @@ import pytest
 
 import rvmon
 from rvmon.monitor import compile_spec
-from rvmon.monitor.core.planned import PlannedCore, planned_core
-from rvmon.monitor.core.recorded import NUMBER, RECORD
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.native import Monitor as Run
 
 SPEC = """

@@ -14,9 +14,9 @@ from tests.tools.law import judge
 
 import rvmon
 from rvmon import native
-from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-from rvmon.monitor.core.planned import PlannedCore, planned_core
-from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile

@@ -16,7 +16,7 @@ from tests.tools.put_away import Twins, forged, put_away
 from tests.tools.special_specs import random_chain
 
 from rvmon.monitor import compile_spec
-from rvmon.monitor.core.planned import PlannedCore
+from rvmon.monitor.planned import PlannedCore
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile

@@ -20,10 +20,10 @@ from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.normal_form import Lowering
 from rvmon.logic.plan import WatchGroup
 from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.core.packed_cache import Kept
-from rvmon.monitor.core.planned import planned_as
-from rvmon.monitor.core.watching import known_truths
+from rvmon.monitor.compiled_spec import Kept
+from rvmon.monitor.planned import planned_as
+from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.watching import known_truths
 from rvmon.testing.generate.spec import Profile
 from rvmon.trace.sample import Sample
 

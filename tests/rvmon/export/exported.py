@@ -15,9 +15,9 @@ import numpy as np
 
 from rvmon.export.c_files import core_files, plan_files, prefix_of
 from rvmon.monitor import CompiledSpec, compile_spec
-from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.core.planned import PlannedCore, planned_core
-from rvmon.monitor.core.recorded import NUMBER, RECORD
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind

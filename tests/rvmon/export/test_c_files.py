@@ -14,7 +14,7 @@ import rvmon
 from rvmon.core.plan import pack
 from rvmon.export.c_files import FEWEST, c_files, identifiers
 from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.monitor.plans import plan_alone
 from rvmon.native import memory_of
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case

@@ -21,7 +21,7 @@ from rvmon.cdv.mutation.mutant import third_of
 from rvmon.cdv.mutation.tried import Score
 from rvmon.cdv.system import Checker
 from rvmon.logic.formula import horizon
-from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
     Amount,

@@ -1,1 +1,0 @@
-"""State formulas over the input, evaluated as it changes."""

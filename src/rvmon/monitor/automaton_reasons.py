@@ -1,0 +1,184 @@
+"""The sentences and details of a record that the run of an automaton decided, or has open."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.logic.automaton import FAILED, PASSED, Token, location_of
+from rvmon.logic.progress import after, value
+from rvmon.logic.residual import NO_CLOCK, Residual
+from rvmon.logic.state_formula import UNKNOWN
+from rvmon.monitor.cause import Cause, CauseFinder, Sentence, Standing, rendered
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.explanation import (
+    Explanation,
+    Undecided,
+    earlier,
+    longer,
+    still_required,
+    unborn,
+)
+from rvmon.monitor.obligation_words import deadline, settled_alone
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What decisions have in common that differ in instants alone.
+
+    Attributes:
+        cause: `None` if nothing could decide otherwise.
+        sentence: about it.
+    """
+
+    cause: Cause | None
+    sentence: Sentence
+
+    def start(self, anchors: Sequence[int], t: int, triggered: int) -> int:
+        """The instant at which what decided was instantiated."""
+        clock = self.cause.start if self.cause else NO_CLOCK
+        if clock == NO_CLOCK:
+            return triggered
+        return anchors[clock] if clock > NO_CLOCK else t
+
+
+class Reasons:
+    """Finds the reasons of the decisions of one requirement.
+
+    What was owed, in which of its windows, and the letter: more makes no difference to a reason.
+    """
+
+    def __init__(self, compiled: CompiledRequirement) -> None:
+        self.words = compiled.words
+        self._alphabet = compiled.alphabet
+        self._residuals = compiled.shaped_residuals
+        self._cuts: dict[int, tuple[tuple[int, ...], ...]] = {}
+        self._found: dict[tuple[int, ...], Finding] = {}
+        self._deadlines: dict[int, int | None] = {}
+
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """For each clock of a location, the ages at which a window opens or is over, ascending."""
+        cuts = self._cuts.get(location)
+        if cuts is None:
+            cuts = self._cuts[location] = location_of(self._residuals[location]).cuts
+        return cuts
+
+    def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
+        """What is reported of a decision."""
+        location, anchors = before
+        ages = zip(self.cuts(location), anchors, strict=True)
+        key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
+        found = self._found.get(key)
+        if found is None:
+            found = self._found[key] = self._find(before, letter, verdict, t)
+        return found
+
+    def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
+        residual = self._residuals[before[0]]
+        ages = [t - anchor for anchor in before[1]]
+        by_time = value(after(residual, ages)) != UNKNOWN
+        valuation = self._alphabet.valuation(letter)
+        cause = CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
+        if cause is None:
+            return Finding(None, ("there was no obligation" if verdict else "it can never hold",))
+        return Finding(cause, self.words.sentence(cause, verdict))
+
+    def deadline(self, before: Token) -> int | None:
+        """The last instant before time alone settles what was owed; see `Attempt`."""
+        location, anchors = before
+        if len(anchors) != 1:
+            return deadline(self._residuals[location], anchors)
+        if location not in self._deadlines:
+            self._deadlines[location] = deadline(self._residuals[location], (0,))
+        after_start = self._deadlines[location]
+        return None if after_start is None else anchors[0] + after_start
+
+
+def explained(
+    reasons: Reasons,
+    before: Token,
+    letter: int,
+    verdict: bool,
+    t: int,
+    triggered: int,
+    flow: Standing,
+) -> Explanation:
+    """Why an attempt was decided.
+
+    Args:
+        reasons: of the requirement.
+        before: where the run stood at the last position before that.
+        letter: at the decision.
+        verdict: the decision.
+        t: its instant.
+        triggered: that of the trigger.
+        flow: how the propositions stood.
+    """
+    finding = reasons.of(before, letter, verdict, t)
+    cause = finding.cause
+    start = finding.start(before[1], t, triggered)
+    return Explanation(
+        rendered(finding.sentence, t, start, triggered, flow),
+        deadline=None if cause is None else reasons.deadline(before),
+        blame=None if verdict or cause is None else reasons.words.blame(cause, t, start, flow),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MachineRuns:
+    """Runs of an automaton, as `rvmon.monitor.explanation.Judged`.
+
+    Attributes:
+        residuals: what is owed in its locations.
+        position: the last one that the runs were stepped at; letters stay behind it.
+        gap: ticks between two positions; `None` if only samples are positions.
+    """
+
+    residuals: Sequence[Residual]
+    position: int
+    gap: int | None
+
+    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
+        """See `Judged`."""
+        token = attempt.worse if attempt.worse[0] != FAILED else attempt.better
+        if token[0] <= PASSED:
+            return Explanation(f"left open by the input: {attempt.doubt}")
+        location, anchors = token
+        ages = [now // 2 - anchor for anchor in anchors]
+        compiled = attempt.compiled
+        owed = compiled.words.owed(after(self.residuals[location], ages), anchors)
+        doubt = f"; {attempt.doubt}" if attempt.doubt else ""
+        lasting = longer(compiled.obligation.owed, attempt.triggered, end)
+        reason = f"{still_required(owed, end)}{lasting}{doubt}{unborn(attempt.unborn, end)}"
+        alone = (self._alone(attempt.worse), self._alone(attempt.better))
+        return Explanation(reason, owed, deadline=earlier(*alone, void=attempt.void))
+
+    def _alone(self, token: Token) -> tuple[int, bool] | None:
+        """What time alone makes of a run, and the last instant before that."""
+        if token[0] <= PASSED:
+            return None
+        return settled_alone(self.residuals[token[0]], token[1])
+
+    def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
+        """`P` or `F` if every continuation brings an attempt to it; never folded into its verdict.
+
+        What was unknown stays so: `P` if the run that takes it for the worse passes anyway, `F` if
+        the one that takes it for the better fails.
+        """
+        known = (now - 1) // 2
+        if self._value(attempt, attempt.worse, known) is True:
+            return Verdict.PASS
+        return Verdict.FAIL if self._value(attempt, attempt.better, known) is False else None
+
+    def _value(self, attempt: Undecided, token: Token, known: int) -> bool | None:
+        location, anchors = token
+        if location <= PASSED:
+            return location != FAILED
+        # Positions that change nothing are not visited.
+        gap = self.gap or 1
+        at = self.position + max(known - self.position, 0) // gap * gap
+        ages = [at - anchor for anchor in anchors]
+        residual = self.residuals[location]
+        return attempt.compiled.forecaster.of(residual, ages, self.gap)

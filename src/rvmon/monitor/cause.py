@@ -1,0 +1,285 @@
+"""Which part of a requirement decided an attempt, and the one sentence that says so.
+
+Decisions that are alike share a sentence, with places for what differs between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, assert_never
+
+from rvmon.logic.alphabet import TruthValue, holds
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
+from rvmon.logic.progress import Phase, after, instance, phase, step
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
+from rvmon.logic.state_formula import State
+from rvmon.trace.time import format_ticks
+
+AT_DECISION = -2
+"""The start of what was instantiated at the instant of the decision; no clock has this number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """What decided.
+
+    Attributes:
+        node: the obligation, or the literal if none lies above it.
+        start: what shows when the obligation was instantiated: of a run of a machine the number of
+            a clock, `NO_CLOCK` if that was at the trigger, `AT_DECISION` if then; of a network
+            the instant.
+        over: whether its window passed; else `literal` decided it at the instant of decision.
+        literal: the proposition that decided it, if a single one did.
+    """
+
+    node: Literal | Until | Release
+    start: int
+    over: bool
+    literal: Literal | None
+
+
+class CauseFinder:
+    """Looks for the cause of a decision.
+
+    Args:
+        valuation: the truths of the propositions at the decision, as the deciding run takes them.
+        ages: of the clocks at the decision.
+        verdict: the decision.
+        by_time: whether time alone decided, without a letter.
+    """
+
+    def __init__(
+        self,
+        valuation: Mapping[State, TruthValue],
+        ages: Sequence[int],
+        *,
+        verdict: bool,
+        by_time: bool,
+    ) -> None:
+        self.valuation = valuation
+        self.ages = ages
+        self.verdict = verdict
+        self.by_time = by_time
+        self.wanted = HOLDS if verdict else FAILS
+
+    def of(self, residual: Residual) -> Cause | None:
+        """The cause of a decision, which this residual became; `None` if it is constant."""
+
+        def decided(atom: Atom) -> bool:
+            alone: Residual = frozenset([frozenset([atom])])
+            left = after(alone, self.ages) if self.by_time else step(alone, self.ages, self._read)
+            return left == self.wanted
+
+        clauses = sorted(residual, key=len)
+        if self.verdict:
+            clauses = [c for c in clauses if all(decided(atom) for atom in c)]
+        found = sorted(
+            {atom for clause in clauses for atom in clause if decided(atom)},
+            key=lambda atom: (atom[1], atom[0].id),
+        )
+        for node, clock in found:
+            cause = self._of_atom(node, clock)
+            if cause is not None:
+                return cause
+        return None
+
+    def _read(self, literal: Literal) -> Residual:
+        return HOLDS if holds(literal.sense, self.valuation[literal.proposition]) else FAILS
+
+    def _of_atom(self, node: Literal | Next | Until | Release, clock: int) -> Cause | None:
+        match node:
+            case Literal():
+                return Cause(node, AT_DECISION, False, node)
+            case Next(operand=operand):
+                return self._of_instance(operand)
+            case Until() | Release():
+                if clock > NO_CLOCK and phase(node, self.ages[clock]) is Phase.OVER:
+                    return Cause(node, clock, True, None)
+                ends_it = isinstance(node, Until) is self.verdict
+                part = node.right if ends_it else node.left
+                if isinstance(part, Literal):
+                    return Cause(node, clock, False, part)
+                return self._of_instance(part) or Cause(node, clock, False, None)
+            case _:
+                assert_never(node)
+
+    def _of_instance(self, node: Core) -> Cause | None:
+        match node:
+            case Constant():
+                return None
+            case And(args=args) | Or(args=args):
+                decided = [arg for arg in args if instance(arg, self._read) == self.wanted]
+                # What is owed over time says more than what was only asked for besides.
+                decided.sort(key=lambda arg: isinstance(arg, Literal))
+                causes = (self._of_instance(arg) for arg in decided)
+                return next((cause for cause in causes if cause is not None), None)
+            case Literal() | Next() | Until() | Release():
+                return self._of_atom(node, AT_DECISION)
+            case Since() | Previous():
+                raise AssertionError("a residual holds nothing of the past")
+            case _:
+                assert_never(node)
+
+
+class Base(Enum):
+    """What an instant or a duration in a sentence is counted from."""
+
+    DECISION = 0
+    """The instant of the decision."""
+
+    START = 1
+    """The instant at which what decided was instantiated."""
+
+    AGE = 2
+    """A duration: the time from that to the decision."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """An instant or a duration.
+
+    Attributes:
+        base: what it is counted from.
+        plus: so many ticks later.
+    """
+
+    base: Base
+    plus: int = 0
+
+    def ticks(self, decided: Any, start: Any) -> Any:
+        """What stands there.
+
+        Args:
+            decided: the instant of the decision, ticks; or an array of such instants.
+            start: the instant at which what decided was instantiated; or as many.
+        """
+        match self.base:
+            case Base.DECISION:
+                return decided + self.plus
+            case Base.START:
+                return start + self.plus
+            case Base.AGE:
+                return decided - start + self.plus
+            case _:
+                assert_never(self.base)
+
+
+@dataclass(frozen=True, slots=True)
+class Turned:
+    """What a proposition was at the decision, and whether it became so just then.
+
+    Attributes:
+        proposition: which.
+        seen: `true` or `false`.
+    """
+
+    proposition: State
+    seen: str
+
+
+@dataclass(frozen=True, slots=True)
+class AfterTrigger:
+    """How long after the trigger the decision was, if what decided began there."""
+
+
+@dataclass(frozen=True, slots=True)
+class LastWith:
+    """When a proposition had a truth for the last time.
+
+    Attributes:
+        proposition: of which.
+        value: the truth.
+        verb: `been true`, `been false` or `occurred`.
+        lasting: whether it is more than a matter of single instants.
+    """
+
+    proposition: State
+    value: int
+    verb: str
+    lasting: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How the propositions of a requirement stood at a position.
+
+    Attributes:
+        gap: ticks between two positions; `None` if only samples are positions.
+        begun: the position from which on it saw what is its own; `None`: it saw all.
+        values: by proposition, its truth.
+        since: by proposition, the position from which on it has had that.
+        before: by proposition and truth, the last position at which it had another one.
+    """
+
+    gap: int | None
+    begun: int | None
+    values: Mapping[State, int]
+    since: Mapping[State, int]
+    before: Mapping[tuple[State, int], int | None]
+
+    def last_with(self, proposition: State, value: int, t: int) -> int | None:
+        """The last position up to `t`, not before the present one, with a value."""
+        is_now = self.values[proposition] == value
+        return t if is_now else self.before[proposition, value]
+
+
+Part = str | Place | Turned | AfterTrigger | LastWith
+
+Sentence = tuple[Part, ...]
+"""Its parts in order."""
+
+
+def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow: Standing) -> str:
+    """A sentence about one decision.
+
+    Args:
+        sentence: about all that are like it.
+        decided: its instant, ticks.
+        start: the instant at which what decided was instantiated, ticks.
+        triggered: the instant of the trigger of the attempt, ticks.
+        flow: as it stood at the decision.
+    """
+
+    def part(one: Part) -> str:
+        match one:
+            case str():
+                return one
+            case Place():
+                return format_ticks(one.ticks(decided, start))
+            case Turned(proposition=proposition, seen=seen):
+                since = flow.since[proposition]
+                verb = "became" if start < since == decided else "was"
+                long = f" (since {format_ticks(since)})" if since < decided else ""
+                return f"{verb} {seen} at {format_ticks(decided)}{long}"
+            case AfterTrigger():
+                if start != triggered or start == decided:
+                    return ""
+                return f", {format_ticks(decided - start)} after the trigger"
+            case LastWith(proposition=proposition, value=value, verb=verb):
+                last = flow.last_with(proposition, value, decided)
+                if last is None and flow.begun is not None:
+                    return f"it had not {verb} since {format_ticks(flow.begun)}"
+                if last is None:
+                    return f"it had never {verb} before"
+                if last == decided:
+                    return f"it came at {format_ticks(last)}, too late"
+                if flow.gap == 1 and one.lasting:
+                    return f"it had {verb} until {format_ticks(last + 1)}"
+                return f"it had last {verb} at {format_ticks(last)}"
+            case _:
+                assert_never(one)
+
+    return "".join(map(part, sentence))

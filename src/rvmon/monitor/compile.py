@@ -1,0 +1,251 @@
+"""A specification made ready for the core: formulas, alphabets, automata."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
+
+from rvmon.errors import RvmonError
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import Automaton, moves_in_runs
+from rvmon.logic.chain import reach_of
+from rvmon.logic.construct import Budget, DoesNotCloseError, construct
+from rvmon.logic.forecast import Forecaster
+from rvmon.logic.formula import Core, Factory
+from rvmon.logic.lower import Obligation, UnmonitorableError, lower
+from rvmon.logic.network_plan import NetworkPlan, plan_of
+from rvmon.logic.normal_form import expanded
+from rvmon.logic.reduce import reduce
+from rvmon.logic.residual import Residual
+from rvmon.logic.shapes import Shapes
+from rvmon.logic.state_formula import State, events_of, inputs_of
+from rvmon.logic.state_graph import graph_of, leaf_count, leaf_texts
+from rvmon.monitor.obligation_words import Words
+from rvmon.spec.checked.formula import Compare
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
+
+MOST_SEEN = 19
+"""So many truth values, seen at the trigger, fit into a number of 32 bits."""
+
+_BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
+"""What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
+
+
+class CompiledRequirement:
+    """One requirement, ready to be judged; what is needed of it is made at first use.
+
+    Attributes:
+        rank: its place in the file.
+        spec: the specification that it is of.
+        requirement: as checked.
+        obligation: its formulas.
+        alphabet: of what it owes.
+        gap: ticks between two positions; `None` if only samples are positions.
+        beside: the requirement whose attempts in doubt this judges; `None`: it is no such.
+        measured: its formulas as they are measured: their truth is that of `obligation`.
+    """
+
+    def __init__(
+        self,
+        rank: int,
+        spec: CheckedSpec,
+        requirement: Requirement,
+        obligation: Obligation,
+        factory: Factory,
+        shapes: Shapes,
+        *,
+        beside: CompiledRequirement | None = None,
+        measured: Callable[[], Obligation],
+    ) -> None:
+        self._factory = factory
+        self._shapes = shapes
+        self.beside = beside
+        self._measured = measured
+        self.rank = rank
+        self.spec = spec
+        self.gap = spec.gap
+        self.requirement = requirement
+        self.obligation = obligation
+        self.alphabet: Alphabet = alphabet_of(obligation.owed)
+        self._owed = factory.next(obligation.owed)
+
+    @cached_property
+    def _built(self) -> Automaton | DoesNotCloseError:
+        if self.network_plan.looks_back:
+            return DoesNotCloseError("something of the future below an operator of the past")
+        try:
+            return reduce(construct(self._owed, self.alphabet, self._budget), self.words.label)
+        except DoesNotCloseError as error:
+            return error.with_traceback(None)  # which would keep the frames of whoever asked
+
+    @property
+    def automaton(self) -> Automaton | None:
+        """Its automaton; `None` if that does not close."""
+        return self._built if isinstance(self._built, Automaton) else None
+
+    @cached_property
+    def shaped(self) -> Automaton | None:
+        """Its automaton as the core has it, which those of its shape share; `None`: as above."""
+        return self._shapes.reduced(self._owed, self.alphabet, self._budget)
+
+    @cached_property
+    def shaped_residuals(self) -> Sequence[Residual]:
+        """What is owed in the locations of that."""
+        return self._shapes.residuals(self._owed, self.alphabet, self._budget)
+
+    @property
+    def _budget(self) -> Budget:
+        return Budget() if self.beside is None else _BESIDE
+
+    @property
+    def refusal(self) -> str:
+        """Why it has no automaton, or empty."""
+        return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
+
+    def in_runs(self, automaton: Automaton | None) -> bool:
+        """Whether its open attempts are kept in runs if an automaton of it judges them."""
+        requirement = self.requirement
+        return (
+            automaton is not None
+            and self.obligation.trigger is not None
+            and not requirement.captures
+            and requirement.for_each is None
+            and leaf_count(self._read) <= MOST_SEEN
+            and moves_in_runs(automaton)
+        )
+
+    @cached_property
+    def hidden(self) -> CompiledRequirement | None:
+        """What judges its attempts in doubt; `None` if there are none."""
+        return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
+
+    @cached_property
+    def doubted(self) -> CompiledRequirement | None:
+        """The same where no trigger is sure."""
+        return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
+
+    def _beside(
+        self, obligation: Obligation | None, measured: Callable[[], Obligation | None]
+    ) -> CompiledRequirement | None:
+        if obligation is None:
+            return None
+        return CompiledRequirement(
+            self.rank,
+            self.spec,
+            self.requirement,
+            obligation,
+            self._factory,
+            self._shapes,
+            beside=self,
+            measured=lambda: measured() or obligation,
+        )
+
+    @cached_property
+    def network_plan(self) -> NetworkPlan:
+        """The nodes of its delay network."""
+        return plan_of(self.obligation.owed, self.gap)
+
+    @cached_property
+    def reach(self) -> int | None:
+        """Of its network, as `reach_of` says it."""
+        return reach_of(self.network_plan)
+
+    @cached_property
+    def measured_owed(self) -> Core:
+        """What it owes as far as that is measured, propositions that look back taken apart."""
+        return expanded(self.measured.owed)
+
+    @cached_property
+    def measured(self) -> Obligation:
+        """See `CompiledRequirement`."""
+        return self._measured()
+
+    @property
+    def counts_alone(self) -> bool:
+        """Whether which attempts it has does not hang on what becomes of them.
+
+        Episodes go on after a failure; what is in doubt leaves no record if it is met.
+        """
+        upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
+        bare = self.requirement.for_each is None and not self.requirement.captures
+        return upon and bare and self.beside is None
+
+    @cached_property
+    def forecaster(self) -> Forecaster:
+        """Tells what is still possible for its open attempts."""
+        return Forecaster()
+
+    @cached_property
+    def leaves(self) -> tuple[tuple[State, str], ...]:
+        """What it reads of the input, with its text."""
+        determined = (self.beside or self).obligation.determined
+        return leaf_texts(self._read, () if determined is None else (determined,))
+
+    @property
+    def _read(self) -> Sequence[State]:
+        """The state formulas whose leaves are shown of it."""
+        trigger = self.obligation.trigger
+        return (*(() if trigger is None else (trigger,)), *self.alphabet.propositions)
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The signals and events that it reads."""
+        graph = graph_of(state for state, _ in self.leaves)
+        return frozenset(graph.by_name) | frozenset(
+            name for capture in self.requirement.captures for name in inputs_of(capture.value)
+        )
+
+    @cached_property
+    def single_payloads(self) -> frozenset[str]:
+        """The events of which it can judge one payload at an instant only."""
+        own = self.requirement.for_each
+        read = {
+            event
+            for state, _ in self.leaves
+            if isinstance(state.leaf, Compare)
+            for event in events_of(state.leaf.left, state.leaf.right)
+        }
+        return frozenset(read) - frozenset([own.value.event] if own else [])
+
+    @cached_property
+    def words(self) -> Words:
+        """Names its parts."""
+        return Words(self.obligation.origins)
+
+
+def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
+    """The requirements of a specification, compiled, by id.
+
+    Args:
+        checked: as checked.
+
+    Raises:
+        RvmonError: one cannot be monitored; which one and why is in the message.
+    """
+    factory, shapes = Factory(), Shapes()
+    made = {}
+    for rank, (name, requirement) in enumerate(checked.requirements.items()):
+        try:
+            obligation = lower(
+                requirement,
+                factory,
+                checked.period,
+                sampled=checked.gap is None,
+            )
+        except UnmonitorableError as error:
+            span = requirement.span
+            place = "" if span is None else f"{span.source.name}:{span.line}: "
+            raise RvmonError(
+                f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
+            ) from None
+        measured = partial(
+            lower,
+            requirement,
+            factory,
+            checked.period,
+            measured=True,
+            sampled=checked.gap is None,
+        )
+        given = (rank, checked, requirement, obligation, factory, shapes)
+        made[name] = CompiledRequirement(*given, measured=measured)
+    return made

@@ -1,1 +1,0 @@
-"""Requirements made ready for the core, and the plan of them."""

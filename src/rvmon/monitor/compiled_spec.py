@@ -1,0 +1,133 @@
+"""A specification of which requirements are compiled when they are first asked for, and its plans.
+
+Packed plans are kept in the user's cache folder: data, of which nothing is executed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rvmon.cache import cache_folder, file_stamps, keep, read_kept
+from rvmon.spec.checked.plain_data import told_apart
+from rvmon.spec.checked.specification import CheckedSpec
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compile import CompiledRequirement
+
+
+class CompiledSpec:
+    """A specification from which any number of monitors can be built.
+
+    Attributes:
+        checked: as checked.
+        is_kept: whether what is dear to make of it is kept in the user's cache folder.
+        forms: what was made for its monitors, by what it depends on.
+    """
+
+    def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
+        self.checked = checked
+        self.is_kept = is_kept
+        self.forms: dict[object, object] = {}
+
+    @cached_property
+    def requirements(self) -> Mapping[str, CompiledRequirement]:
+        """The compiled requirements by id.
+
+        Raises:
+            RvmonError: one cannot be monitored; which one and why is in the message.
+        """
+        # What compiles them is imported now: some recordings are judged without it.
+        from rvmon.monitor.compile import compiled_requirements
+
+        return compiled_requirements(self.checked)
+
+    def chosen(self, only: Collection[str] | None) -> Sequence[CompiledRequirement]:
+        """Some requirements in the order of the file."""
+        wanted = self.requirements.keys() if only is None else frozenset(only)
+        return [one for name, one in self.requirements.items() if name in wanted]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Compiled again elsewhere: what was made here stays here.
+        again = partial(CompiledSpec, is_kept=self.is_kept)
+        return again, (self.checked,)
+
+
+def compile_spec(checked: CheckedSpec) -> CompiledSpec:
+    """Compile a specification, once for all its monitors.
+
+    Args:
+        checked: as checked.
+
+    Raises:
+        RvmonError: a requirement cannot be monitored; which one and why is in the message.
+    """
+    compiled = CompiledSpec(checked)
+    _ = compiled.requirements
+    return compiled
+
+
+_HERE = Path(__file__).parents[1]
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What requirements are compiled and planned for.
+
+    Attributes:
+        data: the packed plan.
+        single: events of which only one payload can be judged at one instant.
+        readers: by name that is read, the ids of the requirements that do.
+    """
+
+    data: bytes
+    single: frozenset[str] = frozenset()
+    readers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+class Place:
+    """Where the packed plan of some requirements is kept, if anywhere.
+
+    It is keyed by all that it depends on: what was checked of the specification, the requirements,
+    and the files of rvmon by size and time. The key stands in the file, too: one that was renamed
+    is none of this place.
+
+    Args:
+        spec: the specification.
+        ids: of the requirements.
+        measured: whether attempts are measured as well.
+    """
+
+    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...], *, measured: bool) -> None:
+        folder = cache_folder()
+        if folder is None:
+            self._path = None
+            return
+        how = (ids, measured)
+        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), *how])
+        self._key = hashlib.sha256(content.encode()).hexdigest()
+        self._path = folder / f"plan-{self._key}.bin"
+
+    def read(self) -> Kept | None:
+        """What is kept; `None` if that is nothing, or damaged. The core has to check the plan."""
+        body = None if self._path is None else read_kept(self._path)
+        if body is None:
+            return None
+        try:
+            key, names, data = body.split(b"\n", 2)
+            single, readers = json.loads(names)
+            found = Kept(data, frozenset(single), {n: tuple(ids) for n, ids in readers.items()})
+        except (ValueError, TypeError, AttributeError, RecursionError):
+            return None
+        return found if key == self._key.encode() else None
+
+    def write(self, made: Kept) -> None:
+        """Keep a plan; if that fails, never mind."""
+        if self._path is not None:
+            names = json.dumps([sorted(made.single), made.readers])
+            keep(self._path, b"\n".join([self._key.encode(), names.encode(), made.data]))

@@ -1,1 +1,0 @@
-"""What the core judges: of streams, of columns; and its records as reports."""

@@ -1,1 +1,0 @@
-"""What records say beside the verdict, from plain data: whoever judged has noted it."""

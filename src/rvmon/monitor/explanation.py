@@ -1,0 +1,242 @@
+"""What a record says beside the verdict: why an attempt is undecided, and what left it open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from rvmon.logic.automaton import FAILED, Token
+from rvmon.logic.formula import Core, horizon
+from rvmon.logic.state_formula import TRUE, UNKNOWN
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.spec.checked.specification import EndPolicy
+from rvmon.spec.print.printer import format_duration
+from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import Scalar
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Blame, Decision
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outage:
+    """A stretch over which a signal or event was not known; it ends when a value comes.
+
+    Attributes:
+        name: of the signal or event.
+        why: what it began with; `MISSING` if there was no value yet, `ABSENT` if there is no
+            source.
+        since: its first instant, ticks; of no meaning for `MISSING` and `ABSENT`.
+        until: the instant from which on it was known again, ticks; `None` if it still is not.
+        bound: if it is stale, the time without an update that made it so, ticks.
+    """
+
+    name: str
+    why: HealthKind
+    since: int = 0
+    until: int | None = None
+    bound: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """Why the two runs of an attempt parted: what was not known.
+
+    Attributes:
+        position: where.
+        outages: of the signals and events in question; that they ended may become known later.
+        texts: of propositions that were unknown though all they read was known.
+    """
+
+    position: int
+    outages: tuple[Outage, ...]
+    texts: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """One or several clauses.
+
+        >>> second = 10**9
+        >>> stale = Outage("far", HealthKind.STALE, second + 1, 4 * second, second // 2)
+        >>> print(Doubt(2 * second, (stale,), ()))
+        `far` was not known from 1 s to 4 s: no update for 500 ms (stale)
+        """
+        causes = [outage_in_words(outage) for outage in self.outages]
+        at = format_ticks(self.position)
+        causes += [f"`{text}` was not known at {at}" for text in self.texts]
+        return "; ".join(causes) or f"what was not known before still mattered at {at}"
+
+
+def outage_in_words(outage: Outage) -> str:
+    """From when to when a signal was not known, and why."""
+    name = f"`{outage.name}`"
+    if outage.why is HealthKind.ABSENT:
+        return f"{name} has no source"
+    if outage.why is HealthKind.MISSING:
+        if outage.until is None:
+            return f"{name} never had a value"
+        return f"{name} had no value before {format_ticks(outage.until)}"
+    # What is stale is so a tick after the time that it is given.
+    since = format_ticks(outage.since - (outage.why is HealthKind.STALE))
+    end = "on" if outage.until is None else f"to {format_ticks(outage.until)}"
+    match outage.why:
+        case HealthKind.STALE:
+            why = f"no update for {format_duration(outage.bound)} (stale)"
+        case HealthKind.NAN:
+            why = f"NaN at {since}"
+        case HealthKind.NONE:
+            why = f"None at {since}"
+        case _:
+            raise AssertionError(f"{outage.why} makes no signal unknown")
+    return f"{name} was not known from {since} {end}: {why}"
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What a record says beside the verdict; see `rvmon.verdict.attempt.Attempt`."""
+
+    reason: str = ""
+    required: str = ""
+    deadline: int | None = None
+    blame: Blame | None = None
+
+
+def earlier(
+    worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, void: bool
+) -> int | None:
+    """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
+
+    Args:
+        worse: what time alone makes of the run that takes the unknown for the worse, and when.
+        better: the same of the run that takes it for the better.
+        void: whether the attempt does not pass.
+    """
+    found = [worse[0]] if worse is not None and worse[1] and not void else []
+    found += [better[0]] if better is not None and not better[1] else []
+    return min(found, default=None)
+
+
+def still_required(required: str, end: int | None) -> str:
+    """What an undecided attempt waits for, or waited for when the trace ended."""
+    when = "" if end is None else f" when the recording ended at {format_ticks(end)}"
+    return f"still required{when}: {required}"
+
+
+def unborn_of(
+    names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
+) -> tuple[Outage, ...]:
+    """Which of some names have had no value so far; what has left the attempt open is named there.
+
+    Args:
+        names: that a requirement reads.
+        outages: what is not known now.
+        doubt: of the attempt.
+    """
+    told = set() if doubt is None else {one.name for one in doubt.outages}
+    found = (outages[name] for name in sorted(set(names) & outages.keys() - told))
+    return tuple(one for one in found if one.why is HealthKind.MISSING)
+
+
+def unborn(outages: Sequence[Outage], end: int | None) -> str:
+    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
+    ended = "" if end is not None else " so far"
+    return "".join(f"; {outage_in_words(one)}{ended}" for one in outages)
+
+
+def longer(owed: Core, triggered: int, end: int | None) -> str:
+    """How much longer a trace that has ended would decide an attempt, whatever it brings."""
+    if end is None:
+        return ""
+    reach = horizon(owed)
+    if reach is None:
+        return "; it has no deadline"
+    latest = triggered + reach
+    if latest <= end:
+        return "; 1 ns more would have decided it"
+    return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"
+
+
+def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
+    """Truth values by the text of what has them; `None` is unknown."""
+    pairs = zip(texts, seen, strict=True)
+    return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
+
+
+@dataclass(frozen=True, slots=True)
+class Undecided:
+    """An attempt as it stands by now.
+
+    Attributes:
+        compiled: the requirement, or what judges its attempts in doubt.
+        triggered: the instant of its trigger, ticks.
+        worse: where the run stands that takes the unknown for the worse.
+        better: the same for the better.
+        doubt: when and why the two runs parted, or it is not known whether there was a trigger.
+        unborn: which of what it reads has had no value so far.
+        sure: whether its trigger was TRUE.
+        void: whether it cannot pass, since its episode was over before all was born.
+        cut: whether it is not known any more which values it captured.
+    """
+
+    compiled: CompiledRequirement
+    triggered: int
+    worse: Token
+    better: Token
+    doubt: Doubt | None
+    unborn: tuple[Outage, ...]
+    sure: bool
+    void: bool
+    cut: bool
+
+
+class Judged(Protocol):
+    """What judged an attempt, as it stands at a stamp."""
+
+    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
+        """What an undecided attempt waits for, or why it can wait no more; see `why_open`."""
+
+    def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
+        """What every continuation brings an open attempt to, where that is known."""
+
+
+def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = None) -> Explanation:
+    """What an undecided attempt waits for; one in doubt waits for nothing but to be met.
+
+    Args:
+        judged: what judges it.
+        attempt: undecided.
+        now: twice the instant that time has come to, one more if its letter is known.
+        end: the last instant of the trace, if it has ended.
+    """
+    if attempt.sure:
+        why = judged.why_open(attempt, now, end)
+        # What is owed of signals without a value does not fail, and time gives them none.
+        is_unborn = attempt.void and not attempt.cut
+        return replace(why, deadline=None) if is_unborn else why
+    if attempt.worse[0] == FAILED:
+        cause = f"; {attempt.doubt}" if attempt.doubt else ""
+        return Explanation(f"it is not known whether there was a trigger{cause}")
+    alone = replace(attempt, better=attempt.worse, void=False)
+    return replace(judged.why_open(alone, now, end), deadline=None)
+
+
+def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
+    """What every continuation brings an open attempt to, where that is known; `now` as above.
+
+    Source: SEMANTICS 2, Truth after a prefix.
+    """
+    return judged.forecast(attempt, now) if attempt.sure and not attempt.void else None
+
+
+def why_settled(decision: Decision, policy: EndPolicy) -> str:
+    """How the end of the trace settled an attempt."""
+    if decision is Decision.HELD_TO_END:
+        return "held to the end of the trace"
+    return f"settled by `at end: {policy}`"
+
+
+def why_nothing(*, cut: bool) -> Explanation:
+    """Why an attempt stays undecided, whatever comes, though it is over."""
+    if cut:
+        return Explanation("it is not known which values it captured")
+    return Explanation("it was over before all that it speaks of had a value")

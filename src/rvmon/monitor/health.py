@@ -1,0 +1,357 @@
+"""Input health of a run: names that were not known for a while, samples that were lost or late."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from struct import iter_unpack
+from typing import TYPE_CHECKING, Any
+
+from rvmon import native
+from rvmon.monitor.intake import MOST_HELD, Intake, Turn
+from rvmon.monitor.planned import PlannedCore
+from rvmon.spec.checked.selection import sources_asked
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Value, payloads_of
+from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch
+
+
+class HealthLog:
+    """Counts unknown values as they come.
+
+    Attributes:
+        began: the instant of the first sample; `None` before it.
+    """
+
+    def __init__(self) -> None:
+        self.began: int | None = None
+        self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
+
+    def note(self, t: int, values: Mapping[str, Value]) -> None:
+        """Look through a sample that was taken."""
+        if self.began is None:
+            self.began = t
+        for name, value in values.items():
+            if value is None or value != value:
+                self._add(name, name, value, t)
+            elif type(value) is dict or type(value) is tuple:
+                for payload in payloads_of(value):
+                    for field, scalar in (payload or {}).items():
+                        if scalar is None or scalar != scalar:
+                            self._add(f"{name}.{field}", name, scalar, t)
+
+    def add(self, kind: HealthKind, shown: str, name: str, times: NDArray[Any]) -> None:
+        """Count unknown values at instants, in order, of a name that is shown so."""
+        if len(times):
+            count, first = self._seen.get((kind, shown, name), (0, int(times[0])))
+            self._seen[kind, shown, name] = (count + len(times), first)
+
+    def add_count(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
+        """Take so many unknown values that were counted, none being known before."""
+        if count:
+            self._seen[kind, shown, name] = (count, first)
+
+    def _add(self, shown: str, name: str, value: object, t: int) -> None:
+        key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
+        count, first = self._seen.get(key, (0, t))
+        self._seen[key] = (count + 1, first)
+
+    def told(
+        self,
+        planned: PlannedCore,
+        run: native.Monitor,
+        absent: frozenset[str],
+        first: Mapping[str, int | None],
+        further: Iterable[Health] = (),
+    ) -> tuple[Health, ...]:
+        """All findings, by name with the requirements that read it.
+
+        Args:
+            planned: the plan of the requirements.
+            run: is finished.
+            absent: the names without a source.
+            first: by signal, the instant of its first update, ticks; `None`: there was none.
+            further: what was found elsewhere.
+        """
+        readers, names = planned.readers, list(planned.numbers)
+        found = [
+            Health(kind, shown, count, at, readers.get(name, ()))
+            for (kind, shown, name), (count, at) in self._seen.items()
+        ]
+        for name, ids in readers.items():
+            if name in absent:
+                found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
+            elif name in first and self.began not in (None, first[name]):
+                at = first[name]
+                since = "no value" if at is None else f"first value at {format_ticks(at)}"
+                found.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
+        for number, count, at in run.stale():
+            ids = readers.get(names[number], ())
+            found.append(Health(HealthKind.STALE, names[number], count, at, ids))
+        for one in further:
+            ids = one.requirements or readers.get(one.name, ())
+            found.append(replace(one, requirements=ids))
+        return tuple(sorted(found, key=lambda entry: (entry.name, entry.kind)))
+
+
+def of_intake(intake: Intake) -> list[Health]:
+    """What was found of samples that were held back, whoever reads them."""
+    found = intake.conflicts.health()
+    if intake.crowded is not None:
+        count, first = intake.crowded
+        early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
+        found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
+    return found
+
+
+class Findings:
+    """Looks through what is judged.
+
+    Args:
+        checked: the specification.
+        planned: the plan of the requirements.
+        absent: the names without a source.
+    """
+
+    def __init__(self, checked: CheckedSpec, planned: PlannedCore, absent: frozenset[str]) -> None:
+        self._log = HealthLog()
+        self._planned = planned
+        self._absent = absent
+        signals = [name for name in planned.readers if name in checked.signals]
+        self._first: dict[str, int | None] = dict.fromkeys(signals)
+        self._to_come = set(signals) - absent
+
+    def note_sample(self, t: int, values: Mapping[str, Value]) -> None:
+        """Look through a sample."""
+        self._log.note(t, values)
+        for name in self._to_come & values.keys():
+            self._come(name, t)
+
+    def note_batch(self, batch: Batch) -> None:
+        """Look through rows."""
+        from rvmon.readers.batch_notes import unknown_rows
+
+        times = batch.times
+        if self._log.began is None:
+            self._log.began = int(times[0])
+        for name in self._to_come & batch.signals.keys():
+            row = batch.signals[name].first_said
+            if row is not None:
+                self._come(name, int(times[row]))
+        columns = dict(batch.signals)
+        for event, one in batch.events.items():
+            columns |= {f"{event}.{field}": cells for field, cells in one.fields.items()}
+            self._log.add(HealthKind.NONE, event, event, one.unknown_at(times))
+        for shown, cells in columns.items():
+            is_signal = shown in batch.signals
+            name = shown if is_signal else shown.rpartition(".")[0]
+            for is_nan, at in unknown_rows(batch, cells, is_signal=is_signal):
+                self._log.add(HealthKind.NAN if is_nan else HealthKind.NONE, shown, name, at)
+
+    def _come(self, name: str, t: int) -> None:
+        self._first[name] = t
+        self._to_come.discard(name)
+
+    def found(self, run: native.Monitor) -> tuple[Health, ...]:
+        """All findings, once the run is finished."""
+        return self._log.told(self._planned, run, self._absent, self._first)
+
+
+def health_of_run(
+    planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
+) -> tuple[Health, ...]:
+    """The input health of a run that took samples.
+
+    Args:
+        planned: the plan of its requirements.
+        run: is finished.
+        absent: the names without a source.
+        further: what was found of samples on their way.
+    """
+    log = HealthLog()
+    log.began, _, _ = run.times()
+    names = [(name, name) for name in planned.numbers]
+    names += [(f"{event}.{field}", event) for event, field in planned.packed.fields]
+    first: dict[str, int | None] = {}
+    for (shown, name), found in zip(names, iter_unpack("=5q", run.arrivals()), strict=True):
+        came, none_count, none_first, nan_count, nan_first = found
+        if shown in planned.packed.signals:
+            first[name] = None if came < -TIME_LIMIT else came
+        log.add_count(HealthKind.NONE, shown, name, none_count, none_first)
+        log.add_count(HealthKind.NAN, shown, name, nan_count, nan_first)
+    return log.told(planned, run, absent, first, further)
+
+
+ANY = "samples"
+"""What input health is said of where it is not known what was lost."""
+
+_UNREAD = ""
+"""For names that no requirement reads: in sampled time what is lost of them is a position."""
+
+
+_MOST_TOLD = 1_000
+"""With more entries of input health, reasons that were not heard of are told as one."""
+
+
+class Losses:
+    """Has names of a run lost and found, and keeps what is said of it (SEMANTICS 1 and 6).
+
+    Args:
+        checked: the specification.
+        planned: the plan of its requirements.
+        core: the run.
+        intake: holds samples back; `None`: nothing does.
+    """
+
+    def __init__(
+        self,
+        checked: CheckedSpec,
+        planned: PlannedCore,
+        core: native.Monitor,
+        intake: Intake | None,
+    ) -> None:
+        self._checked = checked
+        self._planned = planned
+        self._core = core
+        self._intake = intake
+        self._lost: set[str] = set()
+        self._missed: set[str] = set()
+        self._stretches: Counter[str] = Counter()
+        self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
+
+    @property
+    def awaits_sample(self) -> bool:
+        """Whether what was missed ends with the next sample."""
+        return bool(self._missed)
+
+    def lose(
+        self, names: Iterable[str] | None, since: int, until: int | None, why: str
+    ) -> Sequence[Turn]:
+        """What is to be done so that names are lost; see `rvmon.monitor.feed.FedMonitor`."""
+        some = self._named(names)
+        self._note(HealthKind.DROPPED, None if names is None else some, since, why)
+        if until is None:
+            some, self._lost = some - self._lost, self._lost | some
+        return self._stretch(some, since, until)
+
+    def find(self, names: Iterable[str] | None, at: int) -> Sequence[Turn]:
+        """What is to be done so that they are lost no more behind an instant."""
+        some = self._named(names) & self._lost
+        self._lost -= some
+        return self._end(some, at)
+
+    def miss(self, names: Iterable[str] | None, since: int | None, why: str) -> Sequence[Turn]:
+        """What is to be done as a sample was lost behind `since`; `None`: before all others."""
+        some = self._named(names)
+        if since is None:
+            self.come_late(names, 0, why)
+            return ()
+        self._note(HealthKind.DROPPED, None if names is None else some, since, why)
+        some, self._missed = some - self._missed, self._missed | some
+        return self._stretch(some, since + (self._intake is None), None)
+
+    def end_missed(self, t: int) -> Sequence[Turn]:
+        """What is to be done before the next sample, which is at `t`."""
+        some, self._missed = self._missed, set()
+        return self._end(some, t - (self._intake is None))
+
+    def come_late(self, names: Iterable[str] | None, t: int, why: str) -> None:
+        """A sample with such names came behind what was judged, or (`None`) may have."""
+        some = None if names is None else self._named(names)
+        self._note(HealthKind.LATE, some, t, why)
+        self._core.late(None if some is None else self._numbers(some), t)
+
+    def turn(self, one: Turn) -> None:
+        """Have the core lose or find names; all before was judged."""
+        was = {name for name in one.names if self._stretches[name]}
+        self._stretches.update(dict.fromkeys(one.names, 1 if one.lost else -1))
+        some = {name for name in one.names if bool(self._stretches[name]) is not (name in was)}
+        tell = self._core.lose if one.lost else self._core.found
+        if _UNREAD in some:
+            tell([], one.t)
+        if numbers := self._numbers(some):
+            tell(numbers, one.t)
+
+    def _stretch(self, names: set[str], since: int, until: int | None) -> Sequence[Turn]:
+        """From when to when they are lost, as far as that is not judged yet."""
+        if not names:
+            return ()
+        delay, floor = self._delay_and_floor()
+        since = since - delay
+        if since < floor:
+            self._core.late(self._numbers(names), since)
+            if until is not None and until + delay < floor:
+                return ()
+        made = [Turn(max(since, floor), tuple(sorted(names)), lost=True)]
+        return made if until is None else [*made, *self._end(names, until)]
+
+    def _end(self, names: set[str], at: int) -> Sequence[Turn]:
+        if not names:
+            return ()
+        delay, floor = self._delay_and_floor()
+        return [Turn(max(at + delay, floor), tuple(sorted(names)), lost=False)]
+
+    def _delay_and_floor(self) -> tuple[int, int]:
+        """By how much stretches are wider, and the first instant that is not judged yet."""
+        if self._intake is not None:
+            return self._intake.delay, self._intake.floor
+        _, last, reached = self._core.times()
+        behind = -TIME_LIMIT if last is None else last + 1
+        return 0, behind if reached is None else max(behind, reached)
+
+    def _named(self, names: Iterable[str] | None) -> set[str]:
+        """Names as far as a requirement reads them; `_UNREAD` if none does.
+
+        Raises:
+            UnknownNameError: one is not declared.
+        """
+        known = self._planned.numbers.keys()
+        asked = sources_asked(self._checked, names)
+        return {*known} if asked is None else {*(asked & known)} or {_UNREAD}
+
+    def known(self, names: Iterable[Any]) -> set[str]:
+        """Names that are lost in a snapshot; it raises `KeyError` if one cannot be."""
+        return {name for name in names if name == _UNREAD or self._planned.numbers[name] >= 0}
+
+    def _numbers(self, names: Iterable[str]) -> list[int]:
+        return [self._planned.numbers[name] for name in names if name != _UNREAD]
+
+    def _note(self, kind: HealthKind, names: Iterable[str] | None, t: int, why: str) -> None:
+        if len(self._seen) >= _MOST_TOLD and not any(why == known for _, _, known in self._seen):
+            why = "for other reasons"
+        for name in (ANY,) if names is None else sorted({*names} - {_UNREAD}):
+            count, first = self._seen.get((kind, name, why), (0, t))
+            self._seen[kind, name, why] = (count + 1, min(first, t))
+
+    def health(self) -> list[Health]:
+        """What was lost, and why."""
+        readers = {ANY: tuple(self._planned.packed.ids), **self._planned.readers}
+        return [
+            Health(kind, name, count, first, readers.get(name, ()), why)
+            for (kind, name, why), (count, first) in self._seen.items()
+        ]
+
+    def state(self) -> Mapping[str, Any]:
+        """What is lost, as JSON has it."""
+        return {
+            "lost": sorted(self._lost),
+            "missed": sorted(self._missed),
+            "stretches": +self._stretches,
+            "seen": [[*key, *found] for key, found in self._seen.items()],
+        }
+
+    def take_up(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` gave."""
+        self._lost, self._missed = self.known(state["lost"]), self.known(state["missed"])
+        for name in self.known(state["stretches"]):
+            self._stretches[name] = whole_ticks(state["stretches"][name])
+        for kind, name, why, count, first in state["seen"]:
+            key = (HealthKind(kind), str(name), str(why))
+            self._seen[key] = (whole_ticks(count), whole_ticks(first))

@@ -1,0 +1,317 @@
+"""Samples as they arrive: valid or not, equal stamps, and what may be late."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import Any
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
+from rvmon.spec.checked.specification import CheckedSpec, Type
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
+
+WAYS_TO_SETTLE = ("now", "next")
+"""When a sample is taken for complete: at once, or when another stamp follows."""
+
+MOST_HELD = 65_536
+"""So many samples at most wait for late ones; with more, the oldest are judged early."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """From an instant on names are lost, or behind it found again.
+
+    Attributes:
+        t: the instant, ticks.
+        names: the names.
+        lost: whether they are lost.
+    """
+
+    t: int
+    names: tuple[str, ...]
+    lost: bool
+
+
+class Intake:
+    """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
+
+    Args:
+        delay: how much later than the newest sample one may come, ticks.
+        events: the names that are events.
+
+    Attributes:
+        floor: no sample before this instant is taken any more.
+        conflicts: signals that got two values at one instant.
+        newest: the latest instant of a sample; `None`: none came.
+        crowded: samples judged early because too many waited: how many, and the first's instant.
+    """
+
+    def __init__(self, delay: int, events: Container[str]) -> None:
+        self.delay = delay
+        self.events = events
+        self.floor = -TIME_LIMIT
+        self.conflicts = Conflicts()
+        self.newest: int | None = None
+        self.crowded: tuple[int, int] | None = None
+        # What turns at an instant does so before the sample there.
+        self._held: list[tuple[int, bool, int, Mapping[str, Value] | Turn]] = []
+        self._taken = 0
+
+    def is_too_late(self, t: int) -> bool:
+        """Whether a sample at an instant comes later than it may be late."""
+        return self.delay > 0 and t < self.floor
+
+    def take(self, t: int, values: Mapping[str, Value]) -> list[Sample | Turn]:
+        """Take a sample; returns what is settled by it, in order.
+
+        Raises:
+            TimeOrderError: it comes before the floor; nothing changed.
+        """
+        if t < self.floor:
+            raise TimeOrderError(
+                f"sample at {format_ticks(t)}, but time has come to "
+                f"{format_ticks(self.floor)}: sort the samples, or allow a `max delay`"
+            )
+        self.newest = t if self.newest is None else max(self.newest, t)
+        self._hold(t, values)
+        ready = self.settle(t - self.delay)
+        if self.delay and len(self._held) > MOST_HELD:
+            oldest = self._held[0][0]
+            count, first = self.crowded or (0, oldest)
+            self.crowded = (count + 1, first)
+            ready += self.settle(oldest + 1)
+        return ready
+
+    def turn(self, turns: Sequence[Turn]) -> None:
+        """Take what turns at the floor or later."""
+        for one in turns:
+            self._hold(one.t, one)
+
+    def _hold(self, t: int, what: Mapping[str, Value] | Turn) -> None:
+        self._taken += 1
+        heappush(self._held, (t, not isinstance(what, Turn), self._taken, what))
+
+    def settle(self, t: int) -> list[Sample | Turn]:
+        """Learn that no sample before `t` will come; returns what is settled, in order."""
+        self.floor = max(self.floor, t)
+        ready: list[Sample | Turn] = []
+        neighbours: list[Sample] = []
+        while self._held and self._held[0][0] < self.floor:
+            instant, _, _, what = heappop(self._held)
+            if isinstance(what, Turn):
+                ready += coalesce(neighbours, self.events, self.conflicts)
+                ready.append(what)
+                neighbours = []
+            else:
+                neighbours.append(Sample(instant, what))
+        return [*ready, *coalesce(neighbours, self.events, self.conflicts)]
+
+    def state(self) -> Mapping[str, Any]:
+        """What is held, as JSON has it."""
+        held: list[list[Any]] = []
+        turns: list[list[Any]] = []
+        for t, _, place, what in self._held:
+            if isinstance(what, Turn):
+                turns.append([t, place, what.names, what.lost])
+            else:
+                held.append([t, place, dict(what)])
+        return {
+            "floor": self.floor,
+            "newest": self.newest,
+            "crowded": self.crowded,
+            "conflicts": self.conflicts.seen,
+            "held": held,
+            "turns": turns,
+        }
+
+    def take_up(
+        self,
+        state: Mapping[str, Any],
+        check: Callable[[int, Any], Mapping[str, Value]],
+        known: Callable[[Iterable[Any]], set[str]],
+    ) -> None:
+        """Hold what `state` gave.
+
+        Args:
+            state: as JSON has it.
+            check: of the values of a sample.
+            known: of the names that are lost or found.
+
+        Raises:
+            TraceError: a sample is none of the specification.
+        """
+        self.floor, self.crowded = _integer(state["floor"]), _counted(state["crowded"])
+        self.newest = None if state["newest"] is None else _integer(state["newest"])
+        for name, found in state["conflicts"].items():
+            count, first = _counted(found) or (0, 0)
+            self.conflicts.add(str(name), first, count)
+        for t, place, values in state["held"]:
+            self._hold_again(whole_ticks(t), place, check(whole_ticks(t), values))
+        for t, place, names, lost in state["turns"]:
+            turn = Turn(whole_ticks(t), tuple(known(names)), lost is True)
+            self._hold_again(turn.t, place, turn)
+
+    def _hold_again(self, t: int, place: Any, what: Mapping[str, Value] | Turn) -> None:
+        heappush(self._held, (t, not isinstance(what, Turn), _integer(place), what))
+        self._taken = max(self._taken, place)
+
+    def close(self) -> list[Sample | Turn]:
+        """Learn that no sample will come; returns all that is held, in order."""
+        return self.settle(TIME_LIMIT)
+
+
+def _counted(found: Any) -> tuple[int, int] | None:
+    """How many there were and the first's instant, as JSON has it."""
+    if found is None:
+        return None
+    count, first = found
+    return _integer(count), whole_ticks(first)
+
+
+def _integer(number: Any) -> int:
+    if type(number) is not int:
+        raise TypeError(f"expected a whole number, found {number!r}")
+    return number
+
+
+def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
+    """Refuse a sample at `t` ticks that does not come behind what was taken.
+
+    Args:
+        t: its instant.
+        last: that of the sample before; `None`: there was none.
+        reached: the instant that time has come to.
+
+    Raises:
+        TimeOrderError: it is not later, or an `advance` ruled it out.
+    """
+    if last is not None and t <= last:
+        raise TimeOrderError(
+            f"sample at {format_ticks(t)} is not after the one at {format_ticks(last)}: "
+            "merge what has equal stamps (settle='next' does), sort what is out of order"
+        )
+    if reached is not None and t < reached:
+        raise TimeOrderError(
+            f"sample at {format_ticks(t)}, but advance({format_ticks(reached)}) promised that "
+            "none before would come: advance later, or drop the sample"
+        )
+
+
+_TAKES: Mapping[Kind, tuple[type, ...]] = {
+    Kind.BOOL: (bool,),
+    Kind.INT: (int,),
+    Kind.REAL: (float, int),
+    Kind.LABEL: (str,),
+}
+
+
+class Validator:
+    """Checks samples against the declarations.
+
+    Args:
+        spec: declares signals and events.
+        sources: the names that can arrive; `None`: all.
+        single: events of which only one payload can be judged at one instant.
+    """
+
+    def __init__(
+        self, spec: CheckedSpec, sources: frozenset[str] | None, single: frozenset[str]
+    ) -> None:
+        self._signals = {name: signal.type for name, signal in spec.signals.items()}
+        self._events = {name: event.fields for name, event in spec.events.items()}
+        self._ignoring = spec.ignoring
+        self._single = single
+        declared = {*self._signals, *self._events}
+        self._expected = frozenset(declared if sources is None else declared & sources)
+        self._declared = declared
+
+    def check(self, t: int, values: Mapping[str, Any]) -> Mapping[str, Value]:
+        """The sample in plain Python values, without what is no update.
+
+        Raises:
+            TraceError: a name or a value that the specification does not know; it is named.
+        """
+        if not isinstance(values, Mapping):
+            raise TraceError(
+                f"sample at {format_ticks(t)}: expected values by name, found {values!r}"
+            )
+        plain: dict[str, Value] = {}
+        for name, value in values.items():
+            if name not in self._expected:
+                raise TraceError(self._unknown(name, t))
+            type_ = self._signals.get(name)
+            if type_ is None:
+                plain[name] = self._occurrence(name, value, t)
+            else:
+                plain[name] = _scalar(value, type_, f"`{name}`", t)
+        return updates_in(plain, self._ignoring)
+
+    def _unknown(self, name: str, t: int) -> str:
+        where = f"sample at {format_ticks(t)}: "
+        if name in self._declared:
+            return f"{where}`{name}` arrived, but it is not among the sources of this monitor"
+        return f"{where}no signal or event named `{name}`: declare it in the spec, or leave it out"
+
+    def _occurrence(self, name: str, value: Any, t: int) -> Value:
+        if value is None or value is True or value is False:
+            return value
+        if isinstance(value, Mapping):
+            return self._payload(name, value, t)
+        if isinstance(value, tuple | list):
+            if len(value) > 1 and name in self._single:
+                raise TraceError(
+                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{name}`: only "
+                    "`for each` can distinguish them, and not all that reads its fields has it"
+                )
+            return tuple(self._payload(name, payload, t) for payload in value)
+        raise TraceError(
+            f"sample at {format_ticks(t)}: `{name}` is an event: expected True, False, None or its "
+            f"payload, found {value!r}"
+        )
+
+    def _payload(self, name: str, payload: Any, t: int) -> Mapping[str, Scalar]:
+        fields = self._events[name]
+        if not isinstance(payload, Mapping):
+            raise TraceError(
+                f"sample at {format_ticks(t)}: `{name}`: expected a payload, found {payload!r}"
+            )
+        unknown = [field for field in payload if field not in fields]
+        if unknown:
+            known = ", ".join(fields) or "none"
+            raise TraceError(
+                f"sample at {format_ticks(t)}: `{name}` has no field `{unknown[0]}`: it has {known}"
+            )
+        return {
+            field: _scalar(value, fields[field], f"`{name}.{field}`", t)
+            for field, value in payload.items()
+        }
+
+
+def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
+    takes = _TAKES[type_.kind]
+    if type(value) in takes and (type_.kind is not Kind.LABEL or value in type_.labels):
+        known: Scalar = value
+        return known
+    if value is None:
+        return None
+    item = getattr(value, "item", None)
+    if callable(item) and type(value) not in (bool, int, float, str):
+        try:
+            plain = item()
+        except (TypeError, ValueError):  # an array of several values
+            plain = value
+        if not hasattr(plain, "item"):
+            return _scalar(plain, type_, name, t)  # a NumPy scalar
+    if isinstance(value, float | int) and isinstance(value, takes) and type(value) is not bool:
+        return value + 0  # an instance of a subclass
+    if type_.kind is Kind.LABEL:
+        expected = "one of " + ", ".join(type_.labels)
+    else:
+        expected = {Kind.BOOL: "True or False", Kind.INT: "a whole number"}.get(
+            type_.kind, "a number"
+        )
+    raise TraceError(f"sample at {format_ticks(t)}: {name}: expected {expected}, found {value!r}")

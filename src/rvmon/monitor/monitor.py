@@ -1,0 +1,369 @@
+"""The online monitor of a specification: a run of the core, and what Python adds to it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from heapq import nsmallest
+from typing import Any, NoReturn
+
+from rvmon import native
+from rvmon.errors import RvmonError, SnapshotError, TraceError, UnknownNameError
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.feed import FedMonitor, Feed
+from rvmon.monitor.health import health_of_run
+from rvmon.monitor.intake import WAYS_TO_SETTLE
+from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
+from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
+from rvmon.monitor.snapshot import Options, document_of, put_back, written
+from rvmon.spec.checked.selection import requirements_asked
+from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict, fold
+
+
+class Monitor(FedMonitor[Attempt]):
+    """Judges a stream of samples; made by `rvmon.monitor.monitor`.
+
+    What takes one sample is a function of the core, which gives samples back to Python for a closer
+    look that are no plain values in a `dict`, or refused.
+
+    Args:
+        planned: the plan of the requirements.
+        compiled: the specification.
+        options: what was asked for.
+
+    Attributes:
+        compiled: the specification.
+        options: what was asked for.
+    """
+
+    def __init__(self, planned: PlannedCore, compiled: CompiledSpec, options: Options) -> None:
+        checked, sources = compiled.checked, options.sources
+        self.options = options
+        self.compiled = compiled
+        self._planned = planned
+        declared = frozenset((*checked.signals, *checked.events))
+        self._absent = frozenset() if sources is None else declared - sources
+        self._core = planned.monitor(self._absent, self._take_at, self._look_closer, self._many)
+        if options.keep is not None:
+            self._core.keep(options.keep)
+        self._listeners = Listeners()
+        self._one_call = OneCall(self._core)
+        self._begin()
+
+    @property
+    def core(self) -> native.Monitor:
+        """The run of the core."""
+        return self._core
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another. Callbacks stay."""
+        self._one_call(self._begin)
+
+    def _begin(self) -> None:
+        checked, options = self.compiled.checked, self.options
+        self._feed = Feed(checked, self._planned, self._core, options.sources, options.settle)
+        self._report: Report | None = None
+        self._one_call.interrupted = None
+        self._core.reset()
+        self._one_call.note_times()
+        self._attend()
+
+    def _attend(self) -> None:
+        """Let the core take samples itself, unless somebody listens or there is more to do."""
+        if self._feed.is_direct and not self._listeners:
+            self.step, self.step_ns = self._core.step, self._core.step_ns
+        else:
+            self.step, self.step_ns = self._take_at, self._take
+
+    def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample, and call who listens."""
+        if self._feed.is_direct:
+            decided = self._core.step_ns(t_ns, values)
+        else:
+            decided = self._one_call(self._step, t_ns, values)
+        self._listeners.call(decided)
+        return decided
+
+    def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample that the core has left; who called it reports what that decides."""
+        return self._one_call(self._step, t_ns, values)
+
+    def _many(self, raw: tuple[bytes, bytes, bytes, Any]) -> Sequence[Attempt]:
+        from rvmon.monitor.records import recorded  # NumPy is needed for so many alone
+
+        return recorded(self._planned, raw)
+
+    def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        t_ns = self._taken_time(t_ns)
+        checked = self._one_call.spare(self._feed.check, t_ns, values)
+        if self._feed.is_too_late(t_ns):
+            self._feed.losses.come_late(checked, t_ns, "left out")
+        else:
+            self._feed.take(t_ns, checked)
+            self._attend()
+        return self._core.flush()
+
+    def on_decided(self, callback: Callback) -> Callable[[], None]:
+        r"""Have a function called with each attempt that passes or fails, as it is decided.
+
+        `step`, `advance` and `finish` call it when all their records are made, in the order in
+        which they return them, in the thread that called them; it may look at the monitor. An
+        attempt that ends undecided is only in the report. What a callback raises comes out of
+        that call when all callbacks were called for all attempts (several errors as an
+        `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
+        no part of snapshots: register them again after `Spec.restore`.
+
+        Args:
+            callback: takes an attempt.
+
+        Returns:
+            A function without arguments that ends this; to call it again does nothing.
+
+        Raises:
+            RvmonError: it cannot be called.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> stop = monitor.on_decided(lambda attempt: print(attempt.name, attempt.verdict.name))
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        R1#1 FAIL
+        >>> _ = monitor.finish(5)
+        R1#2 PASS
+        >>> stop()
+        """
+        return self._listeners.add(callback, self._attend, failures_only=False)
+
+    def on_failure(self, callback: Callback) -> Callable[[], None]:
+        """Have a function called with each attempt that fails; otherwise as `on_decided`."""
+        return self._listeners.add(callback, self._attend, failures_only=True)
+
+    def _tell(self, tell: Callable[[], None]) -> Sequence[Attempt]:
+        """Make a call, and no other until it is over; who listens hears what it decided."""
+        decided = self._one_call(self._decided, tell)
+        self._listeners.call(decided)
+        return decided
+
+    def _decided(self, tell: Callable[[], None]) -> Sequence[Attempt]:
+        tell()
+        self._attend()
+        return self._core.flush()
+
+    def _taken_time(self, t: int) -> int:
+        """A time that was given, as a plain integer."""
+        if self._report is not None:
+            raise TraceError("the run is finished: call reset() before the next")
+        return whole_ticks(t)
+
+    def finish(self, t: float | None = None) -> Report:
+        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        return self.finish_ns(None if t is None else ticks_of_seconds(t))
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """End the run and judge it.
+
+        Args:
+            t_ns: the end of the trace in ticks, if it is later than all so far.
+
+        Returns:
+            The report; the same again if the run was finished before.
+        """
+        report, decided = self._one_call(self._finish, t_ns)
+        self._listeners.call(decided)
+        return report
+
+    def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        if self._report is not None:
+            return self._report, ()
+        if t_ns is not None:
+            t_ns = self._taken_time(t_ns)
+        self._feed.close()
+        end = self._core.finish(t_ns)
+        decided = self._core.flush()
+        self._one_call.note_times()
+        report, interrupted = self._reported(end), self._one_call.interrupted
+        self._report = report if interrupted is None else capped(report, interrupted)
+        return self._report, decided
+
+    def _reported(self, end: int | None) -> Report:
+        """What is said of the run, which is over."""
+        from rvmon.monitor.records import report_of_run  # NumPy is needed at the end alone
+
+        report = report_of_run(self._planned, self._core, self._one_call.began or 0, end)
+        health = health_of_run(self._planned, self._core, self._absent, self._feed.health())
+        return replace(report, health=health)
+
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        r"""The verdict of each requirement so far: the fold of the attempts decided by now.
+
+        `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
+        not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
+        a call that an interrupt tore, what has not failed is `I`.
+        A call costs what was decided since the last one.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        ...     print(monitor.verdicts["R1"])
+        NT
+        F
+        F
+        """
+        return self._one_call(self._verdicts)
+
+    def _verdicts(self) -> Mapping[str, Verdict]:
+        if self._report is not None:
+            return self._report.verdicts
+        so_far = (Verdict.FAIL, Verdict.PASS)
+        found = {}
+        for name, (*counts, determined) in zip(
+            self._planned.packed.ids, self._core.counts(), strict=True
+        ):
+            seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
+            # What has passed was triggered: it is undetermined only if something came too late.
+            found[name] = fold(seen, complete=bool(determined or not seen))
+        return found if self._one_call.interrupted is None else not_passed(found)
+
+    def snapshot(self) -> bytes:
+        """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
+
+        It holds the open attempts, held values, samples held back and all records so far, and no
+        code; another specification or version refuses it.
+
+        Raises:
+            SnapshotError: the run is finished.
+        """
+        return self._one_call(self._put_away)
+
+    def __reduce__(self) -> NoReturn:
+        """Refused: pickles and copies would share or lack what is under way.
+
+        Raises:
+            RvmonError: always; it says what to do.
+        """
+        raise RvmonError(
+            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
+            "and spec.restore(data) makes a monitor of them, in this process or another"
+        )
+
+    def _put_away(self) -> bytes:
+        if self._report is not None:
+            raise SnapshotError("the run is finished: keep its report, or call reset()")
+        state = {"interrupted": self._one_call.interrupted, **self._feed.state()}
+        return written(self.compiled, self.options, self._planned, self._core, state)
+
+    def take_up(self, document: Mapping[str, Any]) -> None:
+        """Go on as the run of a snapshot; this monitor was just made as that was.
+
+        Args:
+            document: from `rvmon.monitor.snapshot.document_of`.
+
+        Raises:
+            SnapshotError: it fits no such monitor.
+        """
+        state = put_back(document, self._planned, self._core)
+        interrupted = state["interrupted"]
+        self._one_call.interrupted = None if interrupted is None else whole_ticks(interrupted)
+        self._feed.take_up(state)
+        self._attend()
+        self._one_call.note_times()
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+        return self.open_counts()[1]
+
+    def open_counts(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+        """How many attempts of each requirement are open, and `open` or the oldest of it."""
+        return self._one_call(self._open_counts, most)
+
+    def _open_counts(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+        found = () if self._report is not None else self._core.open()
+        if most is None:
+            return Counter(one.requirement for one in found), found
+        oldest: dict[object, Attempt] = {}
+        for one in found:
+            each = self._planned.instance(one)
+            if each not in oldest or one.triggered < oldest[each].triggered:
+                oldest[each] = one
+        chosen = nsmallest(most, oldest.values(), key=lambda one: one.triggered)
+        return Counter(one.requirement for one in found), chosen
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant (ticks) at which time alone can decide something."""
+        return self._one_call(self._next_due)
+
+    def _next_due(self) -> int | None:
+        reached = self._one_call.reached
+        if reached is None or self._report is not None:
+            return None
+        found = self._core.next_due()
+        return None if found is None else max(found, reached + 1)
+
+
+def build_monitor(
+    compiled: CompiledSpec,
+    *,
+    only: Iterable[str] | None = None,
+    settle: str = "now",
+    sources: Iterable[str] | None = None,
+    keep: int | None = None,
+) -> Monitor:
+    """Build a monitor from a compiled specification.
+
+    Args:
+        compiled: from `compile_spec`; any number of monitors can share it.
+        only: ids of the requirements to judge; default all.
+        settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
+            each when the next stamp settles it.
+        sources: the signals and events that can arrive; the others are unknown throughout.
+        keep: so many records of each verdict, the newest, are kept per requirement; default all.
+
+    Raises:
+        UnknownNameError: `only` or `settle` names what does not exist.
+        RvmonError: a requirement is beyond the core; `keep` is no count.
+    """
+    if keep is not None and (type(keep) is not int or keep < 0):
+        raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
+    if settle not in WAYS_TO_SETTLE:
+        ways = ", ".join(WAYS_TO_SETTLE)
+        raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
+    given = None if sources is None else frozenset(sources)
+    planned = planned_core(compiled, requirements_asked(compiled.checked, only))
+    return Monitor(planned, compiled, Options(settle, given, keep))
+
+
+def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
+    """The monitor that a snapshot was taken of.
+
+    Raises:
+        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+    """
+    document = document_of(compiled, data)
+    try:
+        sources = document["sources"]
+        if sources is not None and not all(isinstance(one, str) for one in sources):
+            raise TypeError("names are texts")
+        monitor = build_monitor(
+            compiled,
+            only=document["only"],
+            settle=document["settle"],
+            sources=sources,
+            keep=document["keep"],
+        )
+        monitor.take_up(document)
+    except SnapshotError:
+        raise
+    except (RvmonError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        raise SnapshotError("the snapshot is damaged: what it holds fits no monitor") from None
+    return monitor

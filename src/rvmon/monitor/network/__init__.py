@@ -1,0 +1,1 @@
+"""The one-shot evaluation of networks of windows, for reasons, forecasts and pictures."""

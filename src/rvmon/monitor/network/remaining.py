@@ -1,0 +1,227 @@
+"""What an undecided formula still asks of what is to come, read off what a network knows.
+
+The residual is that of progression (AUTOMATA 1), or a weaker one: where too many positions are
+undecided, or something of the past is, what they ask for is left out. So what no continuation
+satisfies, none can make true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import assert_never
+
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
+from rvmon.logic.progress import Duals, opened
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
+from rvmon.monitor.network.network import Network
+from rvmon.monitor.network.piecewise import FAR, unchanged_until
+
+MOST_POSITIONS = 60
+"""So many undecided positions are looked at, of all parts of a formula together."""
+
+MOST_CLAUSES = 60
+
+_FEW = 8
+"""Of a longer stretch of undecided positions only the ends are looked at."""
+
+
+class Remaining:
+    """Works out residuals of the formulas of a network, or of their negations.
+
+    Args:
+        network: what is known.
+        duals: makes the formulas of the residuals, of propositions that are known.
+    """
+
+    def __init__(self, network: Network, duals: Duals) -> None:
+        self.network = network
+        self.duals = duals
+        positions = network.positions
+        self.gap = positions.gap
+        known = positions.last if positions.sparse else (network.limit - 1) // positions.slope
+        self.now = min(known, positions.last)
+        self._looked = 0
+        self._owed: Core | None = None
+
+    def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
+        """What a formula, or its negation, at a position asks for at least.
+
+        Args:
+            core: the formula, of the network's plan.
+            position: as the network counts them.
+            positive: whether it is the formula that is asked about, and not its negation.
+
+        Returns:
+            A residual that is no stronger, and the ages of its clocks at the last position, ticks.
+
+        Raises:
+            TooManyClausesError: it may have more than `MOST_CLAUSES` clauses.
+        """
+        self._looked = 0
+        self._owed = core
+        found = self._at(core, position, positive)
+        anchors = sorted({c for clause in found for _, c in clause if c != NO_CLOCK})
+        number = {anchor: clock for clock, anchor in enumerate(anchors)}
+        number[NO_CLOCK] = NO_CLOCK
+        residual = frozenset(
+            frozenset((node, number[clock]) for node, clock in clause) for clause in found
+        )
+        return residual, [(self.now - _position(anchor)) * self.gap for anchor in anchors]
+
+    def _value(self, core: Core, position: int, positive: bool) -> bool | None:
+        if isinstance(core, Constant):
+            return core.value is positive
+        found = self.network.value_at(core, position)
+        return None if found is None else found is positive
+
+    def _at(self, core: Core, position: int, positive: bool) -> Residual:
+        """The residual; its clocks are the positions where they were started, moved up."""
+        value = self._value(core, position, positive)
+        if value is not None:
+            return HOLDS if value else FAILS
+        unheard = position < self.network.start and core is not self._owed
+        if unheard or self._looked > MOST_POSITIONS:
+            return HOLDS
+        match core:
+            case Constant() | Literal() | Previous() | Since():
+                return HOLDS
+            case And(args=args) | Or(args=args):
+                every = isinstance(core, And) is positive
+                found = HOLDS if every else FAILS
+                for arg in args:
+                    own = self._at(arg, position, positive)
+                    found = _both(found, own) if every else either(found, own)
+                return found
+            case Next(operand=operand):
+                following = self.network.positions.following(position + 1)
+                if following <= self.now:
+                    return self._at(operand, following, positive)
+                return self._atom(core, NO_CLOCK, positive)
+            case Until() | Release() if isinstance(core, Until) is positive:
+                return self._some(core, position, positive)
+            case Until() | Release():
+                return self._every(core, position, positive)
+            case _:
+                assert_never(core)
+
+    def _some(self, core: Until | Release, position: int, positive: bool) -> Residual:
+        """Met at some position of the window, and kept on the way."""
+        found, way = FAILS, HOLDS
+        for k, _, right_left_out in self._open_positions(core, position, positive):
+            if self._is_in_window(core, position, k):
+                own = self._at(core.right, k, positive)
+                found = either(found, _both(way, own))
+                if own == HOLDS or right_left_out:
+                    return either(found, way)
+            way = _both(way, self._at(core.left, k, positive))
+            if way == FAILS:
+                return found
+        return either(found, _both(way, self._pending(core, position, positive)))
+
+    def _every(self, core: Until | Release, position: int, positive: bool) -> Residual:
+        """Kept at all positions of the window, unless released before."""
+        found, release = HOLDS, FAILS
+        for k, left_left_out, _ in self._open_positions(core, position, positive):
+            if self._is_in_window(core, position, k):
+                own = self._at(core.right, k, positive)
+                found = _both(found, either(own, release))
+                if own == FAILS:
+                    return found
+            release = either(release, self._at(core.left, k, positive))
+            if release == HOLDS or left_left_out:
+                return found
+        return _both(found, either(release, self._pending(core, position, positive)))
+
+    def _open_positions(
+        self, core: Until | Release, position: int, positive: bool
+    ) -> Iterator[tuple[int, bool, bool]]:
+        """The positions up to now at which an operand does not only lead on to the next one.
+
+        Each with whether positions behind it are left out at which the left operand is not known,
+        and whether the right one is not.
+        """
+        some = isinstance(core, Until) is positive
+        k = max(position, self.network.start)
+        positions = self.network.positions
+        last = self.now
+        if core.high is not None:
+            last = min(last, position + core.high // self.gap)
+        opening = position + -(-core.low // self.gap)
+        k = positions.following(k)
+        while k <= last:
+            left, right = (self._value(part, k, positive) for part in (core.left, core.right))
+            inside = k >= opening
+            end = last if inside else min(last, opening - 1)
+            end = min(end, *(self._end(part, k) for part in (core.left, core.right)))
+            if left is some and (not inside or (right is not some and right is not None)):
+                k = positions.following(end + 1)
+                continue
+            for count in range(_FEW):
+                following = positions.following(k + 1)
+                if following > end or count < _FEW - 1:
+                    yield k, False, False
+                else:
+                    yield k, left is None, right is None and inside
+                    following = positions.within(k, end)[-1] if positions.sparse else end
+                    yield following, False, False
+                    following = positions.following(following + 1)
+                self._looked += 1
+                k = following
+                if k > end:
+                    break
+
+    def _end(self, core: Core, position: int) -> int:
+        """The last integer up to which what is known of a formula stays as it is at a position."""
+        if isinstance(core, Constant):
+            return FAR
+        return unchanged_until(self.network.known_of(core), position)
+
+    def _is_in_window(self, core: Until | Release, position: int, k: int) -> bool:
+        age = (k - position) * self.gap
+        return core.low <= age and (core.high is None or age <= core.high)
+
+    def _pending(self, core: Until | Release, position: int, positive: bool) -> Residual:
+        """What positions to come can do for it."""
+        if core.high is not None and (self.now + 1 - position) * self.gap > core.high:
+            return FAILS if isinstance(core, Until) is positive else HOLDS
+        return self._atom(core, _clock(position), positive, (self.now - position) * self.gap)
+
+    def _atom(self, core: Core, clock: int, positive: bool, age: int = 0) -> Residual:
+        made = self.duals.of(core, positive)
+        match made:
+            case Next():
+                atom: Atom = (made, clock)
+            case Until(low=low) | Release(low=low):
+                atom = opened(made, clock) if age >= low else (made, clock)
+            case Constant(value=False):
+                return FAILS
+            case _:
+                return HOLDS
+        return frozenset([frozenset([atom])])
+
+
+def _both(left: Residual, right: Residual) -> Residual:
+    return both(left, right, MOST_CLAUSES)
+
+
+_START = 1 << 100
+
+
+def _clock(position: int) -> int:
+    """A clock that was started at a position; older ones are less, as everywhere."""
+    return position + _START
+
+
+def _position(clock: int) -> int:
+    return clock - _START

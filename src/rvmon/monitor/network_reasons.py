@@ -1,0 +1,316 @@
+"""The sentences and details of a record that a network decided, or has open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+from rvmon.logic.automaton import FAILED, PASSED, Token
+from rvmon.logic.formula import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
+from rvmon.logic.residual import TooManyClausesError
+from rvmon.monitor.cause import Cause, Standing, rendered
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.explanation import (
+    Explanation,
+    Undecided,
+    earlier,
+    longer,
+    still_required,
+    unborn,
+)
+from rvmon.monitor.network.network import Network, settled
+from rvmon.monitor.network.piecewise import FAR
+from rvmon.monitor.network.remaining import Remaining
+from rvmon.monitor.obligation_words import Words, all_of
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Blame
+from rvmon.verdict.verdict import Verdict
+
+
+def owed_at(network: Network, core: Core, position: int, words: Words) -> str:
+    """What a formula at a position asks for, as text; empty if it is decided."""
+    return _Owing(network, words).at(core, position)
+
+
+class _Owing:
+    def __init__(self, network: Network, words: Words) -> None:
+        self.network = network
+        self.words = words
+        self.gap = network.positions.gap
+
+    def at(self, core: Core, position: int) -> str:
+        if self.network.value_at(core, position) is not None:
+            return ""
+        match core:
+            case Constant() | Literal():
+                return ""
+            case And(args=args):
+                return all_of([self.at(arg, position) for arg in args])
+            case Or(args=args):
+                found = dict.fromkeys(self.at(arg, position) for arg in args)
+                return ", or ".join(part for part in found if part)
+            case Next() | Previous() | Since():
+                return f"`{self.words.text(core)}`"
+            case Until(high=high):
+                return self._own(core, "by", position, high)
+            case Release(right=right, low=low, high=high):
+                spawned = self._spawned(right, position - (-low // self.gap))
+                own = self._own(core, "until", position, high)
+                return all_of([spawned, own])
+            case _:
+                assert_never(core)
+
+    def _own(self, core: Core, word: str, position: int, high: int | None) -> str:
+        text = f"`{self.words.text(core)}`"
+        if high is None:
+            return text
+        return f"{text} {word} {format_ticks(position * self.gap + high)}"
+
+    def _spawned(self, core: Core, first: int) -> str:
+        """What the first position asks for, of those from `first` on that are not known."""
+        if isinstance(core, Literal | Constant):
+            return ""
+        position = self.network.first_unknown(core, first)
+        return "" if position is None else self.at(core, position)
+
+
+class NetworkCauseFinder:
+    """Looks for the cause of a decision, while what it brought is fresh.
+
+    What decided became known at the very stamp of the decision, and so did all between it and the
+    formula.
+    """
+
+    def __init__(self, network: Network, verdict: bool, at: int) -> None:
+        self.network = network
+        self.verdict = verdict
+        self.at = at
+        self.gap = network.positions.gap
+
+    def of(self, core: Core, position: int) -> Cause | None:
+        """The cause of a formula's value at a position; `None` if it is constant."""
+        match core:
+            case Constant():
+                return None
+            case Literal():
+                return Cause(core, position * self.gap, False, core)
+            case And(args=args) | Or(args=args):
+                # What is owed over time says more than what was only asked for besides.
+                parts = sorted(args, key=lambda arg: isinstance(arg, Literal))
+                causes = (self.of(arg, position) for arg in parts if self._fresh(arg, position))
+                return next((cause for cause in causes if cause is not None), None)
+            case Next(operand=operand):
+                return self._within(operand, position + 1, FAR)
+            case Previous(operand=operand):
+                return self._within(operand, -FAR, position - 1)
+            case Until() | Release():
+                return self._ahead(core, position)
+            case Since(left=left, right=right, low=low, high=high):
+                last = position - -(-low // self.gap)
+                first = -FAR if high is None else position - high // self.gap
+                return self._within(right, first, last) or self._within(left, -FAR, position)
+            case _:
+                assert_never(core)
+
+    def _ahead(self, core: Until | Release, position: int) -> Cause | None:
+        start = position * self.gap
+        first = position - (-core.low // self.gap)
+        last = FAR if core.high is None else position + core.high // self.gap
+        if isinstance(core, Until) is self.verdict:
+            return self._of_part(core, core.right, first, last, start)
+        if core.high is not None and self.at == 2 * (start + core.high + 1):
+            return Cause(core, start, True, None)
+        if self._when(core.left, position, FAR) is not None:
+            return self._of_part(core, core.left, position, FAR, start)
+        return self._of_part(core, core.right, first, last, start)
+
+    def _of_part(
+        self, core: Until | Release, part: Core, first: int, last: int, start: int
+    ) -> Cause:
+        """What one operand has to do with the value of an operator that began at `start`."""
+        if isinstance(part, Literal):
+            return Cause(core, start, False, part)
+        return self._within(part, first, last) or Cause(core, start, False, None)
+
+    def _within(self, core: Core, first: int, last: int) -> Cause | None:
+        """The cause at the first position of a window that brought the decision."""
+        position = self._when(core, first, last)
+        return None if position is None else self.of(core, position)
+
+    def _fresh(self, core: Core, position: int) -> bool:
+        return self._when(core, position, position) is not None
+
+    def _when(self, core: Core, first: int, last: int) -> int | None:
+        """The first position at which a formula got the decision's value at its stamp."""
+        if isinstance(core, Constant):
+            return None
+        positions = self.network.positions
+        for left, right, at, slope in self.network.known_of(core)[not self.verdict]:
+            low, high = max(left, first), min(right, last)
+            if low > high:
+                continue
+            found, rest = low, 0
+            if slope:
+                found, rest = divmod(self.at - at, slope)
+            elif at != self.at:
+                continue
+            elif low > -FAR:
+                found = positions.following(low)
+            is_met = low <= found <= min(high, positions.last) and not rest
+            if is_met and found == positions.following(found):
+                return found if found > -FAR else None
+        return None
+
+
+MOST_ATTEMPTS = 32
+"""With more of a requirement open at once in a network, none is forecast."""
+
+WAITING = PASSED + 1
+"""In the place of a location: neither `FAILED` nor `PASSED`.
+
+The token of an attempt is how it stands in a network, and the position whose value it is.
+"""
+
+
+def explained_by_network(
+    compiled: CompiledRequirement,
+    network: Network | None,
+    position: int,
+    verdict: bool,
+    t: int,
+    triggered: int,
+    flow: Standing,
+) -> Explanation:
+    """Why an attempt was decided.
+
+    Args:
+        compiled: the requirement.
+        network: that decided, as it stood then; `None` if there was none.
+        position: the instant of the position whose value was waited for, ticks.
+        verdict: the decision.
+        t: its instant.
+        triggered: that of the trigger.
+        flow: how the propositions stood.
+    """
+    found = None if network is None else network.truth(position)
+    if network is None or found is None:
+        return Explanation()
+    core, integer = compiled.obligation.owed, position // network.positions.gap
+    cause = NetworkCauseFinder(network, verdict, found[1]).of(core, integer)
+    if cause is None:
+        return Explanation("there was no obligation" if verdict else "it can never hold")
+    words, start = compiled.words, cause.start
+    blame: Blame | None = None if verdict else words.blame(cause, t, start, flow)
+    deadline = None
+    if t > position:  # else it owed nothing yet
+        last = _settled_before(network, integer, found[1])
+        # What had long been settled when the attempt began was no deadline of it.
+        if last is not None and last >= position - 1:
+            deadline = last
+    sentence = rendered(words.sentence(cause, verdict), t, start, triggered, flow)
+    return Explanation(sentence, deadline=deadline, blame=blame)
+
+
+def _settled_before(network: Network, position: int, at: int) -> int | None:
+    """The last instant before time alone would have settled what became known at a stamp."""
+    if at % 2 == 0:
+        return at // 2 - 1  # as it did: no letter of that instant was needed
+    alone = settled(network.alone_from(at - 1), position)
+    return None if alone is None else alone[0]
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkRuns:
+    """Networks at a moment, as `rvmon.monitor.explanation.Judged`.
+
+    Attributes:
+        worse: the network that takes the unknown for the worse; `None`: there is none.
+        better: the same for the better.
+        count: how many attempts are open in it.
+        gap: ticks between two positions; `None` if only samples are positions.
+    """
+
+    worse: Network | None
+    better: Network | None
+    count: int
+    gap: int | None
+
+    def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
+        """Two runs that wait, of which one may have come to its end by now."""
+        for network, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
+            token = better if value else worse
+            if network is None or token[0] != WAITING:
+                continue
+            found = network.truth(token[1][0])
+            if found is not None and found[0] is value and value:
+                better = (ended, token[1])
+            elif found is not None and found[0] is value:
+                worse = (ended, token[1])
+        return worse, better
+
+    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
+        """See `Judged`."""
+        del now  # the networks have come to it
+        network, token = self.worse, attempt.worse
+        if token[0] == FAILED and attempt.better != attempt.worse:
+            network, token = self.better, attempt.better
+        if network is None or token[0] != WAITING:
+            return Explanation(f"left open by the input: {attempt.doubt}")
+        compiled = attempt.compiled
+        position = token[1][0] // network.positions.gap
+        core = compiled.obligation.owed
+        owed = owed_at(network, core, position, compiled.words)
+        doubt = f"; {attempt.doubt}" if attempt.doubt else ""
+        waiting = still_required(owed or "what lies ahead", end)
+        lasting = longer(core, attempt.triggered, end)
+        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end)}"
+        alone = (_alone(self.worse, attempt.worse), _alone(self.better, attempt.better))
+        return Explanation(reason, owed, earlier(*alone, void=attempt.void))
+
+    def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
+        """As of an automaton; `None`, too, where too much is undecided.
+
+        Each attempt costs a search of its own, so there is none with more than `MOST_ATTEMPTS`.
+        """
+        del now
+        if self.count > MOST_ATTEMPTS:
+            return None
+        worse, better = attempt.worse, attempt.better
+        if worse[0] > PASSED and not self._may_become(self.worse, attempt, worse, False):
+            return Verdict.PASS
+        if better[0] > PASSED and not self._may_become(self.better, attempt, better, True):
+            return Verdict.FAIL
+        return None
+
+    def _may_become(
+        self, network: Network | None, attempt: Undecided, token: Token, value: bool
+    ) -> bool:
+        """Whether continuations may give an attempt a value in a network."""
+        if network is None:
+            return True
+        forecaster = attempt.compiled.forecaster
+        remaining = Remaining(network, forecaster.duals)
+        position = token[1][0] // network.positions.gap
+        try:
+            residual, ages = remaining.of(attempt.compiled.obligation.owed, position, value)
+        except TooManyClausesError:
+            return True
+        return forecaster.admits(residual, ages, self.gap)
+
+
+def _alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
+    """What time alone makes of a run, and the last instant before that."""
+    if network is None or token[0] != WAITING:
+        return None
+    return settled(network.alone, token[1][0] // network.positions.gap)

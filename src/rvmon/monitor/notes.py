@@ -1,0 +1,376 @@
+"""Reasons, deadlines, what is owed, forecasts: worked out from what the core has noted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from struct import Struct, unpack_from
+from typing import Any
+
+from rvmon.logic.automaton import Token
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
+from rvmon.logic.state_graph import names_of
+from rvmon.monitor.automaton_reasons import MachineRuns, Reasons, explained
+from rvmon.monitor.cause import Standing
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.explanation import (
+    Doubt,
+    Explanation,
+    Judged,
+    Outage,
+    Undecided,
+    forecast_of,
+    truths_shown,
+    unborn_of,
+    why_nothing,
+    why_open,
+    why_settled,
+)
+from rvmon.monitor.network_reasons import explained_by_network
+from rvmon.monitor.replayed import Letters, at_decision, at_moment
+from rvmon.trace.health import HealthKind
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.verdict import Verdict
+
+_DECIDED, _OPEN, _NOTHING = 0, 1, 2
+_NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
+_HEAD = 7
+"""Words of a note before those of the leaves."""
+_NEVER = -(1 << 63)
+_NOT_YET = (1 << 63) - 1
+_SPAN = (1 << 31) - 1
+_IN_WORD = 32
+_WHY = (
+    *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
+    *(HealthKind.MISSING, HealthKind.ABSENT),
+)
+"""In the order of `core.h` and `state.h`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """What the core noted of an attempt; see `told.c`.
+
+    Attributes:
+        words: of the note.
+        state: of the propositions at the decision; empty if nobody asks.
+        letters: by which a network judged; `None` if none did.
+    """
+
+    words: Sequence[int]
+    state: Sequence[int]
+    letters: Letters | None
+
+    @property
+    def kind(self) -> int:
+        """Whether it is of a decision, of an open attempt, of one that says nothing."""
+        return self.words[0] & 0xFF
+
+    @property
+    def flags(self) -> int:
+        """What else is said of it."""
+        return self.words[0] >> 8 & 0xFFFF
+
+    @property
+    def judge(self) -> int:
+        """The number of its judge in the part."""
+        return self.words[0] >> 24 & 0xFFFF
+
+    @property
+    def at(self) -> int:
+        """The instant of the decision; of an open attempt a stamp."""
+        return self.words[2]
+
+
+def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -> Note:
+    """A note as the core gives it out."""
+    return Note(
+        _words(data),
+        () if state is None else _words(state),
+        None if last is None else Letters((*pieces, last)),
+    )
+
+
+def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Note:
+    """A note among all that were made of the records of a run.
+
+    Args:
+        notes: all of them.
+        place: of the note.
+        spans: the letters that they refer to.
+    """
+    (head,) = unpack_from("=q", notes, 8 * place)
+    words = unpack_from(f"={head >> 40}q", notes, 8 * place)
+    state: Sequence[int] = ()
+    if words[1] >= 0:
+        (count,) = unpack_from("=q", notes, 8 * words[1])
+        state = unpack_from(f"={count}q", notes, 8 * words[1])
+    letters = None
+    if head >> 8 & _NETWORK and words[3] >= 0:
+        pieces, last = spans[words[3] & _SPAN]
+        letters = Letters((*pieces, last))
+    return Note(words, state, letters)
+
+
+def _words(data: bytes) -> Sequence[int]:
+    return Struct(f"={len(data) // 8}q").unpack(data)
+
+
+def truths(words: Sequence[int], count: int) -> tuple[int, ...]:
+    """The truths that stand in some words, two bits each."""
+    return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
+
+
+def words_for(count: int) -> int:
+    """How many words so many truths take."""
+    return -(-count // _IN_WORD)
+
+
+class Told:
+    """Tells what the attempts of one judge of the core say beside their verdicts.
+
+    Args:
+        compiled: the requirement, or what judges its attempts in doubt.
+        gap: ticks between two positions; `None` if only samples are positions.
+    """
+
+    def __init__(self, compiled: CompiledRequirement, gap: int | None) -> None:
+        self.compiled = compiled
+        self._gap = gap
+        self._texts = tuple(text for _, text in compiled.leaves)
+        self._propositions = compiled.alphabet.propositions
+        self._leaf_words = words_for(len(self._texts))
+
+    @cached_property
+    def _reasons(self) -> Reasons:
+        return Reasons(self.compiled)
+
+    def _then(self, note: Note) -> tuple[int, ...]:
+        return truths(note.words[_HEAD:], len(self._texts))
+
+    def _stood(self, note: Note) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
+        """The leaves, the propositions, and how these were."""
+        words, propositions = note.state, self._propositions
+        leaves = truths(words[2:], len(self._texts))
+        at = 2 + self._leaf_words
+        values = truths(words[at:], len(propositions))
+        at += words_for(len(propositions))
+        since: dict[State, int] = {}
+        before: dict[tuple[State, int], int | None] = {}
+        for state in propositions:
+            since[state] = words[at]
+            before[state, FALSE], before[state, TRUE] = map(_instant, words[at + 1 : at + 3])
+            at += 3
+        held = dict(zip(propositions, values, strict=True))
+        return leaves, values, Standing(self._gap, _instant(words[1]), held, since, before)
+
+    def _letters(self, values: Sequence[int]) -> tuple[int, int]:
+        """The letters of both readings."""
+        alphabet = self.compiled.alphabet
+        worse = zip(alphabet.pessimistic, values, strict=True)
+        better = zip(alphabet.optimistic, values, strict=True)
+        return sum(own[value] for own, value in worse), sum(own[value] for own, value in better)
+
+    def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
+        """All that is said of an attempt beside its verdict and what it captured."""
+        seen: Mapping[str, Any] = {}
+        forecast = None
+        if note.kind == _NOTHING:
+            why = why_nothing(cut=bool(note.flags & _CUT))
+        elif note.kind == _DECIDED:
+            why, leaves = self._decided(attempt, note)
+            seen = truths_shown(self._texts, leaves)
+        else:
+            why, forecast = self._open(attempt, note)
+            if attempt.decided is not None:
+                seen = truths_shown(self._texts, self._stood(note)[0])
+        return {
+            "reason": why.reason,
+            "deadline": why.deadline,
+            "at_trigger": truths_shown(self._texts, self._then(note)),
+            "at_decision": seen,
+            "required": why.required,
+            "blame": why.blame,
+            "forecast": forecast,
+        }
+
+    def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
+        leaves, values, flow = self._stood(note)
+        passed = attempt.verdict is Verdict.PASS
+        if note.flags & _NETWORK:
+            position = note.words[6]
+            network = at_decision(
+                self.compiled,
+                self._gap,
+                note.letters,
+                position,
+                attempt.triggered,
+                passed,
+                note.at,
+            )
+            why = explained_by_network(
+                self.compiled, network, position, passed, note.at, attempt.triggered, flow
+            )
+            return why, leaves
+        letter = self._letters(values)[not passed]
+        token, _ = _token(note.words, _HEAD + self._leaf_words, note.words[3])
+        return explained(
+            self._reasons, token, letter, passed, note.at, attempt.triggered, flow
+        ), leaves
+
+    def _open(self, attempt: Attempt, note: Note) -> tuple[Explanation, Verdict | None]:
+        now = note.at
+        judged, one = self._undecided(attempt, note)
+        why = why_open(judged, one, now, _instant(note.words[5]))
+        if attempt.decision is not Decision.OPEN:
+            policy = self.compiled.requirement.at_end
+            return _replaced(why, why_settled(attempt.decision, policy)), None
+        return why, forecast_of(judged, one, now)
+
+    def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
+        words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
+        leaves: Sequence[int] = ()
+        if words[4] != _NEVER:
+            leaves = truths(words[at:], len(self._texts))
+            at += self._leaf_words
+        runs = self._networks if flags & _NETWORK else self._machines
+        judged, worse, better, at = runs(note, at)
+        outages = self._outages(words[at:])
+        known = {one.name: one for one in outages if one.until is None}
+        doubt = self._doubt(words[4], leaves, outages)
+        names = frozenset().union(*self._reads)
+        return judged, Undecided(
+            self.compiled,
+            attempt.triggered,
+            worse,
+            better,
+            doubt,
+            unborn_of(names, known, doubt),
+            bool(flags & _SURE),
+            bool(flags & _HOLLOW),
+            bool(flags & _CUT),
+        )
+
+    def _networks(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+        """Networks, two runs in them, and where the words of these end."""
+        words = note.words
+        position = (words[6],)
+        judged = at_moment(
+            self.compiled, self._gap, note.letters, words[6], note.at, words[3] >> 32
+        )
+        worse, better = judged.met((words[at], position), (words[at + 1], position))
+        return judged, worse, better, at + 2
+
+    def _machines(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+        """The same of an automaton."""
+        words = note.words
+        reached, gap = (note.at - 1) // 2, self._gap or 1
+        worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
+        better, at = _token(words, at, words[3] >> 32)
+        return (
+            MachineRuns(self.compiled.shaped_residuals, reached // gap * gap, self._gap),
+            worse,
+            better,
+            at,
+        )
+
+    def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
+        """What was not known."""
+        spec = self.compiled.spec
+        names = (*spec.signals, *spec.events)
+        found = []
+        for at in range(1, 1 + 3 * words[0], 3):
+            name = names[words[at] & 0xFFFFFFFF]
+            why = _WHY[words[at] >> 32]
+            until = None if words[at + 2] == _NOT_YET else words[at + 2]
+            signal = spec.signals.get(name)
+            bound = 0 if signal is None else signal.stale_after or 0
+            since = 0 if words[at + 1] == _NEVER else words[at + 1]
+            found.append(Outage(name, why, since, until, bound))
+        return found
+
+    def _doubt(
+        self, position: int, leaves: Sequence[int], outages: Sequence[Outage]
+    ) -> Doubt | None:
+        """What left an attempt open; `None`: nothing has."""
+        if position == _NEVER:
+            return None
+        lost = {
+            one.name: one
+            for one in outages
+            if one.why in (HealthKind.MISSING, HealthKind.ABSENT) or one.since <= position
+            if one.until is None or one.until > position
+        }
+        found: dict[str, Outage] = {}
+        texts = []
+        for names, text, truth in zip(self._reads, self._texts, leaves, strict=True):
+            if truth == UNKNOWN:
+                own = {name: lost[name] for name in sorted(names & lost.keys())}
+                found |= own
+                texts += [] if own else [text]
+        return Doubt(position, tuple(found.values()), tuple(texts))
+
+    @cached_property
+    def _reads(self) -> Sequence[frozenset[str]]:
+        """The names that each leaf reads."""
+        return [
+            frozenset() if state.leaf is None else names_of(state.leaf)
+            for state, _ in self.compiled.leaves
+        ]
+
+
+def _replaced(why: Explanation, reason: str) -> Explanation:
+    return Explanation(reason, why.required, why.deadline, why.blame)
+
+
+def _instant(word: int) -> int | None:
+    return None if word == _NEVER else word
+
+
+def _token(words: Sequence[int], at: int, width: int) -> tuple[Token, int]:
+    """A run that stands in some words, and what is behind it."""
+    end = at + 1 + width
+    return (words[at], tuple(words[at + 1 : end])), end
+
+
+class NotesReader:
+    """Reads the notes of all judges of a plan.
+
+    Args:
+        compiled: the specification.
+        ids: of the requirements, by number.
+    """
+
+    def __init__(self, compiled: CompiledSpec, ids: Sequence[str]) -> None:
+        self._compiled = compiled
+        self._ids = ids
+
+    @cached_property
+    def _told(self) -> Mapping[str, Sequence[Told]]:
+        """By requirement, the judges of its part."""
+        gap = self._compiled.checked.gap
+        chosen = self._compiled.chosen(self._ids)
+        parts = [[one for one in chosen if not _is_apart(one)]]
+        parts += [[one] for one in chosen if _is_apart(one)]
+        found: dict[str, Sequence[Told]] = {}
+        for part in parts:
+            judges = [*part, *(beside for one in part for beside in _beside(one))]
+            told = [Told(one, gap) for one in judges]
+            found |= {one.requirement.id: told for one in part}
+        return found
+
+    def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
+        """All that is said of an attempt beside its verdict and what it captured."""
+        return self._told[attempt.requirement][note.judge].details(attempt, note)
+
+
+def _is_apart(one: CompiledRequirement) -> bool:
+    return bool(one.requirement.captures) or one.requirement.for_each is not None
+
+
+def _beside(one: CompiledRequirement) -> Sequence[CompiledRequirement]:
+    """What judges its attempts in doubt; the plan has it in this order."""
+    doubted = one.doubted if one.requirement.for_each is not None else None
+    return [beside for beside in (one.hidden, doubted) if beside is not None]

@@ -1,0 +1,276 @@
+"""Causes and obligations in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.logic.formula import Constant, Core, Literal, Release, Sense, Until
+from rvmon.logic.normal_form import Origin
+from rvmon.logic.progress import after, value
+from rvmon.logic.residual import NO_CLOCK, Residual
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
+from rvmon.monitor.cause import (
+    AfterTrigger,
+    Base,
+    Cause,
+    LastWith,
+    Place,
+    Sentence,
+    Standing,
+    Turned,
+)
+from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.tense import has_future, is_pulse
+from rvmon.spec.print.printer import format_formula
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Blame
+
+_APART = 50
+"""Instants that are so many binary digits apart are distinguished."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Atom:
+    """A proposition as people read of it.
+
+    Attributes:
+        quoted: its text.
+        positive: whether it has to be true.
+        is_event: whether it occurs, rather than being true.
+        lasting: whether what it has to be is more than a matter of single instants.
+    """
+
+    quoted: str
+    positive: bool
+    is_event: bool
+    lasting: bool
+
+    def truth(self, right: bool) -> str:
+        """What it is if it is as it has to be, or is not."""
+        return "true" if self.positive is right else "false"
+
+    def was(self, right: bool) -> str:
+        """The same, as what was seen."""
+        if self.is_event:
+            return "occurred" if self.positive is right else "did not occur"
+        return f"was {self.truth(right)}"
+
+    def had_to(self, verb: str) -> str:
+        """What was required, with `be` or `stay`."""
+        if self.is_event:
+            return "it had to occur" if self.positive else "it was not to occur"
+        return f"it had to {verb} {self.truth(True)}"
+
+    @property
+    def kept(self) -> str:
+        """That it was all the time as it had to be."""
+        return self.was(True) if self.is_event else f"stayed {self.truth(True)}"
+
+    @property
+    def due(self) -> str:
+        """What had to come."""
+        if self.is_event:
+            return "had to occur" if self.positive else "had to be absent"
+        return "had to come true" if self.positive else "had to become false"
+
+    @property
+    def been(self) -> str:
+        """What it had done when it was last as it had to be."""
+        if self.is_event and self.positive:
+            return "occurred"
+        return "been absent" if self.is_event else f"been {self.truth(True)}"
+
+
+class Words:
+    """Names the parts of one requirement as its text does."""
+
+    def __init__(self, origins: Mapping[Core, Origin]) -> None:
+        self._origins = dict(origins)
+        for node, origin in origins.items():
+            opened = node.opened if isinstance(node, Until | Release) else None
+            if opened is not None:
+                self._origins.setdefault(opened, origin)
+        self._windows = {
+            node.opened: node
+            for node in origins
+            if isinstance(node, Until | Release) and node.opened and node.opened not in origins
+        }
+
+    def formula(self, node: Core) -> Formula | None:
+        """The formula of the spec that a node stands for; `None` if none does."""
+        origin = self._origins.get(node)
+        if origin is None:
+            return None
+        return origin.formula if origin.positive else Unary(UnaryOp.NOT, origin.formula)
+
+    def text(self, node: Core) -> str:
+        """A node as text of the spec."""
+        formula = self.formula(node)
+        return "the consequent" if formula is None else format_formula(formula)
+
+    def window(self, node: Until | Release) -> tuple[int, int | None]:
+        """The window of a node, in ticks after its start; of an opened one as it was before."""
+        whole = self._windows.get(node, node)
+        return whole.low, whole.high
+
+    def sentence(self, cause: Cause, verdict: bool) -> Sentence:
+        """One sentence about a decision and all that have this cause."""
+        node = cause.node
+        if cause.over and not isinstance(node, Literal):
+            return self._window_over(node)
+        if cause.literal is None:
+            became = "was fulfilled" if verdict else "could be fulfilled no more"
+            return (f"{self._quoted(node)} {became} at ", Place(Base.DECISION))
+        atom = self._atom(cause.literal)
+        if verdict:
+            seen: Sentence = (f"{atom.quoted} {atom.was(True)} at ", Place(Base.DECISION))
+            return (*seen, *self._in_time(node))
+        if atom.is_event:
+            seen = (f"{atom.quoted} {atom.was(False)} at ", Place(Base.DECISION))
+        else:
+            seen = (f"{atom.quoted} ", Turned(cause.literal.proposition, atom.truth(False)))
+        return (*seen, *self._asked(node, atom))
+
+    def _in_time(self, node: Literal | Until | Release) -> Sentence:
+        """What is to be reported of what came true and ended an obligation."""
+        if isinstance(node, Literal):
+            return ()
+        if isinstance(node, Release):
+            return ("; after that no obligation was left",)
+        after: Sentence = (", ", Place(Base.AGE), " after ", Place(Base.START))
+        high = self.window(node)[1]
+        return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
+
+    def _asked(self, node: Literal | Until | Release, atom: _Atom) -> Sentence:
+        """What was required of a proposition that was otherwise."""
+        if isinstance(node, Literal):
+            return (f"; {atom.had_to('be')} then",)
+        if isinstance(node, Until):
+            high = self.window(node)[1]
+            due: Sentence = () if high is None else (", due by ", Place(Base.START, high))
+            return (
+                AfterTrigger(),
+                f"; {atom.had_to('stay')} until {self._quoted(node.right)}",
+                *due,
+            )
+        formula = self.formula(node)
+        if formula is None or not has_future(formula):  # a `whenever` or `always` around it
+            all_along = " at all times" if isinstance(node.left, Constant) else " then"
+            return (f"; {atom.had_to('be')}{all_along}",)
+        if not isinstance(node.left, Constant):
+            return (AfterTrigger(), f"; {atom.had_to('stay')} until {self._quoted(node.left)}")
+        low, high = self.window(node)
+        from_ = (" from ", Place(Base.START, low))
+        if high is None:
+            return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " on")
+        if low == high:
+            return (AfterTrigger(), f"; {atom.had_to('be')} at ", Place(Base.START, high))
+        to = Place(Base.START, high)
+        if low == 0 and not atom.is_event:
+            return (AfterTrigger(), f"; {atom.had_to('stay')} until ", to)
+        return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " to ", to)
+
+    def _window_over(self, node: Until | Release) -> Sentence:
+        low, high = self.window(node)
+        first = Place(Base.START, low)
+        last = Place(Base.DECISION) if high is None else Place(Base.START, high)
+        right = node.right
+        atom = self._atom(right) if isinstance(right, Literal) else None
+        if isinstance(node, Release):
+            held = "held" if atom is None else atom.kept
+            named = self._quoted(right) if atom is None else atom.quoted
+            return (f"{named} {held} from ", first, " to ", last)
+        window: Sentence = (" at ", last) if low == high else (" between ", first, " and ", last)
+        if atom is None or not isinstance(right, Literal):
+            return (f"{self._quoted(right)} had to come true", *window, ", and did not")
+        value = TRUE if right.sense is Sense.TRUE else FALSE
+        seen = LastWith(right.proposition, value, atom.been, atom.lasting)
+        return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
+
+    def _quoted(self, node: Core) -> str:
+        return "the consequent" if self.formula(node) is None else f"`{self.text(node)}`"
+
+    def _atom(self, literal: Literal) -> _Atom:
+        """A proposition, and what it has to be for the literal to hold."""
+        origin = self._origins.get(literal)
+        if origin is None:
+            return _Atom("a proposition", literal.sense is Sense.TRUE, False, True)
+        formula, positive = origin.formula, origin.positive
+        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
+            formula, positive = formula.operand, not positive
+        quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
+        return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
+
+    def blame(self, cause: Cause, t: int, start: int, flow: Standing) -> Blame:
+        """What failed at `t`, instantiated at `start`."""
+        node = cause.node
+        formula = self.formula(node)
+        span = None if formula is None else formula.span
+        if span is None and isinstance(formula, Unary):
+            span = formula.operand.span
+        window: tuple[int, int | None] = (t, t)
+        if isinstance(node, Until | Release):
+            low, high = self.window(node)
+            window = (start + low, None if high is None else start + high)
+        at: tuple[int, ...] = ()
+        if cause.literal is not None:
+            at = (flow.since[cause.literal.proposition],)
+        first, last = (0, 0) if span is None else (span.start, span.end)
+        return Blame(self.text(node), first, last, window, at)
+
+    def owed(self, residual: Residual, anchors: Sequence[int]) -> str:
+        """What a residual still asks for, as text of the spec."""
+        clauses = []
+        for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
+            parts = [
+                self._with_deadline(node, anchors, clock)
+                for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
+            ]
+            clauses.append(all_of(parts))
+        return ", or ".join(dict.fromkeys(clauses))
+
+    def label(self, residual: Residual) -> tuple[str, int | None]:
+        """All that is reported of a residual, for clocks that were started at any time."""
+        clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
+        anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
+        return self.owed(residual, anchors), deadline(residual, anchors)
+
+    def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int) -> str:
+        text = f"`{self.text(node)}`"
+        if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
+            return text
+        last = anchors[clock] + node.high
+        return f"{text} {'by' if isinstance(node, Until) else 'until'} {format_ticks(last)}"
+
+
+def all_of(parts: Sequence[str]) -> str:
+    """Parts that are all owed: none twice, nor without its deadline where it stands with one.
+
+    >>> all_of(["`p`", "`q` by 7 s", "`q`"])
+    '`p` and `q` by 7 s'
+    """
+    kept = dict.fromkeys(part for part in parts if part)
+    dated = {f"{part.rpartition(word)[0]}`" for part in kept for word in ("` by ", "` until ")}
+    return " and ".join(part for part in kept if part not in dated)
+
+
+def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool] | None:
+    """What time alone makes of what is owed, and the last instant before; `None` if nothing."""
+    ends = {
+        anchors[clock] + node.high
+        for clause in residual
+        for node, clock in clause
+        if clock != NO_CLOCK and isinstance(node, Until | Release) and node.high is not None
+    }
+    for last in sorted(ends):
+        found = value(after(residual, [last + 1 - anchor for anchor in anchors]))
+        if found != UNKNOWN:
+            return last, found == TRUE
+    return None
+
+
+def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
+    """The last instant before time alone settles what is owed; see `Attempt`."""
+    found = settled_alone(residual, anchors)
+    return None if found is None else found[0]

@@ -1,0 +1,359 @@
+"""Some requirements of a specification, packed for the core, and how samples of them are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rvmon import native
+from rvmon.core.packed import packed
+from rvmon.errors import TraceError
+from rvmon.monitor.compiled_spec import Kept, Place
+from rvmon.spec.checked.formula import (
+    Captured,
+    FieldValue,
+    Literal,
+    Numeric,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, Type
+from rvmon.trace.sample import Payload, Scalar, Value
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.core.packed import Packed
+    from rvmon.logic.plan import Plan
+    from rvmon.monitor.compile import CompiledRequirement
+    from rvmon.monitor.compiled_spec import CompiledSpec
+    from rvmon.monitor.notes import Note
+
+
+class CapturedValues:
+    """Reads captured values.
+
+    Args:
+        spec: the specification.
+        ids: of the requirements, in the order of their numbers.
+        labels: by label, its number.
+    """
+
+    def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
+        self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]
+        self._labels = {number: label for label, number in labels.items()}
+
+    def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
+        """What an attempt captured, by name.
+
+        Args:
+            requirement: its number.
+            numbers: in their order, `None` where one is not known; there may be more.
+        """
+        own = self._kinds[requirement].items()
+        return {
+            name: self._value(number, kind)
+            for (name, kind), number in zip(own, numbers, strict=False)
+        }
+
+    def _value(self, number: float | None, kind: Kind | None) -> Scalar:
+        if number is None:
+            return None
+        if kind is Kind.BOOL:
+            return bool(number)
+        return self._labels[int(number)] if kind is Kind.LABEL else number
+
+
+def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None]:
+    """By name, what a requirement captures; `None`: a number, which says itself of what kind."""
+    found: dict[str, Kind | None] = {}
+    each = requirement.for_each
+    if each is not None:
+        found[each.name] = _kind(spec, each.value, found)
+    for capture in requirement.captures:
+        found[capture.name] = _kind(spec, capture.value, found)
+    return found
+
+
+def _kind(spec: CheckedSpec, value: Numeric, found: Mapping[str, Kind | None]) -> Kind | None:
+    match value:
+        case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
+            return spec.signals[name].type.kind
+        case FieldValue(event=event, field=field):
+            return spec.events[event].fields[field].kind
+        case Captured(name=name):
+            return found[name]
+        case Literal(value=str()):
+            return Kind.LABEL
+        case _:
+            return None
+
+
+VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
+DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
+"""In the order of `core.h`; so are the verdicts."""
+
+_KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
+"""In the order of `module_intake.h`."""
+
+Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
+"""What an attempt keeps: captured values, its note, how all stood then, letters but for the last
+piece of them, that; see `module_notes.h`."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedCore:
+    """A packed plan, from which monitors are made.
+
+    Attributes:
+        packed: the plan as bytes, and what its numbers stand for.
+        captured: reads the values that attempts captured.
+        numbers: of names: signals first, then events.
+        words: of signals, events, fields: a number for each label, or field.
+        kinds: of the same; of events they mean nothing.
+        limits: of an event, whether only one payload of it can be judged at one instant; of a
+            signal, whether that it is unknown is no update.
+        single_payloads: the events of which only one payload can be judged at one instant.
+        readers: by name that is read, the ids of the requirements that do.
+        compiled: the specification, to tell of attempts; `None`: there are none.
+    """
+
+    packed: Packed
+    captured: CapturedValues
+    numbers: Mapping[str, int]
+    words: tuple[Mapping[str, int] | None, ...]
+    kinds: bytes
+    limits: bytes
+    single_payloads: frozenset[str]
+    readers: Mapping[str, tuple[str, ...]]
+    compiled: CompiledSpec | None
+
+    @property
+    def _specification(self) -> CompiledSpec:
+        if self.compiled is None:
+            raise ValueError("a plan of watches has no attempts to tell of")
+        return self.compiled
+
+    def monitor(
+        self,
+        absent: frozenset[str],
+        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
+        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
+        many: Callable[[Any], Sequence[Attempt]] | None = None,
+    ) -> native.Monitor:
+        """Begin a run.
+
+        Args:
+            absent: the names without a source.
+            look_closer: judges the samples that are not plain values in a `dict`, at seconds.
+            look_closer_ns: the same at ticks.
+            many: makes a sequence of raw records, where thousands are decided at once; see
+                `rvmon.monitor.records.recorded`.
+        """
+        coming = {name: number for name, number in self.numbers.items() if name not in absent}
+        attempts = (
+            Attempt,
+            self.packed.ids,
+            VERDICTS,
+            DECISIONS,
+            self._details,
+            many,
+        )
+        return native.Monitor(
+            self.packed.data,
+            (coming, self.words, self.kinds, self.limits),
+            bytes(name in absent for name in self.numbers),
+            (look_closer, look_closer_ns),
+            attempts,
+        )
+
+    def plain(self, t: int, values: Mapping[str, Value]) -> dict[str, Value]:
+        """A checked sample as the core takes it.
+
+        Raises:
+            TraceError: a whole number is too large.
+        """
+        # It takes `str` alone, no subclasses of it, such as members of an enumeration.
+        return {str.__str__(name): self._plain(name, value, t) for name, value in values.items()}
+
+    def _plain(self, name: str, value: Value, t: int) -> Value:
+        if isinstance(value, tuple):
+            return tuple(self._payload(name, payload, t) for payload in value)
+        if isinstance(value, Mapping):
+            return self._payload(name, value, t)
+        kind = self.packed.signals.get(name)
+        return value if kind is None else _number(name, value, kind, t)
+
+    def _payload(self, event: str, payload: Payload, t: int) -> Payload:
+        kinds = self.packed.fields
+        return {
+            str.__str__(field): _number(f"{event}.{field}", value, kinds[event, field], t)
+            for field, value in payload.items()
+        }
+
+    def instance(self, attempt: Attempt) -> object:
+        """What is the same of attempts of one instance, or one alone with values of its own."""
+        one = self._specification.checked.requirements[attempt.requirement]
+        if one.captures:
+            return attempt.requirement, attempt.in_doubt, attempt.number
+        each = None if one.for_each is None else attempt.captured[one.for_each.name]
+        return attempt.requirement, attempt.in_doubt, each
+
+    def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C."""
+        from rvmon.monitor.notes import note_of
+
+        captured, *note = noted
+        return self.details(attempt, captured, note_of(*note))
+
+    def details(
+        self, attempt: Attempt, captured: Sequence[float | None] | None, note: Note
+    ) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C.
+
+        Args:
+            attempt: what is set in C.
+            captured: the values that it captured; `None`: it captures none.
+            note: what the core noted of it.
+        """
+        # What tells of attempts is imported now: many are never asked.
+        from rvmon.monitor.notes import NotesReader
+
+        ids = self.packed.ids
+        compiled = self._specification
+        reader = compiled.forms.get(("told", ids))
+        if not isinstance(reader, NotesReader):
+            reader = NotesReader(compiled, ids)
+            compiled.forms["told", ids] = reader
+        values = () if captured is None else captured
+        return {
+            **reader.details(attempt, note),
+            "captured": self.captured.of(ids.index(attempt.requirement), values),
+            "robustness": None,
+        }
+
+
+def planned_core(
+    compiled: CompiledSpec, only: Collection[str] | None = None, *, measured: bool = False
+) -> PlannedCore:
+    """The packed plan of some requirements; made once for a specification.
+
+    Args:
+        compiled: the specification.
+        only: ids of its requirements; default all.
+        measured: whether attempts are to be measured as well.
+
+    Raises:
+        RvmonError: a requirement is beyond the core.
+    """
+    spec = compiled.checked
+    ids = tuple(one for one in spec.requirements if only is None or one in only)
+    key = "core", ids, measured
+    found = compiled.forms.get(key)
+    if not isinstance(found, PlannedCore):
+        place = Place(spec, ids, measured=measured) if compiled.is_kept else None
+        found = None if place is None else _checked(compiled, ids, place.read())
+        if found is None:
+            made = _made(compiled, ids, measured=measured)
+            found = planned_as(spec, ids, made, compiled)
+            if place is not None:
+                place.write(made)
+        compiled.forms[key] = found
+    return found
+
+
+def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
+    """A plan of requirements, packed."""
+    from rvmon.core.plan import pack
+
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    readers: dict[str, tuple[str, ...]] = {}
+    for one in chosen:
+        for name in one.reads:
+            readers[name] = (*readers.get(name, ()), one.requirement.id)
+    return Kept(pack(plan).data, single, readers)
+
+
+def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Kept:
+    # What makes it is imported now: it is seldom made where it is kept.
+    from rvmon.monitor.plans import plan_alone
+
+    return kept_of(plan_alone(compiled, ids, measured=measured), compiled.chosen(ids))
+
+
+def _checked(
+    compiled: CompiledSpec, ids: tuple[str, ...], before: Kept | None
+) -> PlannedCore | None:
+    """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
+    if before is None:
+        return None
+    found = planned_as(compiled.checked, ids, before, compiled)
+    try:
+        found.monitor(frozenset())
+    except ValueError:
+        return None
+    return found
+
+
+def planned_as(
+    spec: CheckedSpec, ids: tuple[str, ...], made: Kept, compiled: CompiledSpec | None = None
+) -> PlannedCore:
+    """A packed plan made ready.
+
+    Args:
+        spec: declares the names.
+        ids: of its requirements.
+        made: the plan.
+        compiled: the specification, if attempts are asked for.
+    """
+    plan = packed(spec, ids, made.data)
+
+    def labels(type_: Type) -> Mapping[str, int] | None:
+        if type_.kind is not Kind.LABEL:
+            return None
+        return {label: plan.labels[label] for label in type_.labels}
+
+    names = (*plan.signals, *plan.events)
+    ignoring = spec.ignoring
+    payloads = [spec.events[name].fields for name in plan.events]
+    types = [type_ for payload in payloads for type_ in payload.values()]
+    kinds = [*plan.signals.values(), *(Kind.BOOL for _ in payloads), *plan.fields.values()]
+    return PlannedCore(
+        plan,
+        CapturedValues(spec, ids, plan.labels),
+        {name: number for number, name in enumerate(names)},
+        (
+            *(labels(spec.signals[name].type) for name in plan.signals),
+            *({field: place for place, field in enumerate(payload)} for payload in payloads),
+            *map(labels, types),
+        ),
+        bytes(map(_KINDS.index, kinds)),
+        bytes(name in made.single or name in ignoring for name in names),
+        made.single,
+        made.readers,
+        compiled,
+    )
+
+
+_LEAST, _MOST = -(1 << 63), (1 << 63) - 1
+
+
+def _number(name: str, value: Scalar, kind: Kind, t: int) -> Scalar:
+    """A value as the core takes it: whole numbers within 64 bits, of a real signal doubles.
+
+    Raises:
+        TraceError: there is no such number.
+    """
+    if not isinstance(value, int) or _LEAST <= value <= _MOST:
+        return value
+    try:
+        if kind is Kind.REAL:
+            return float(value)
+    except OverflowError:
+        pass
+    limit = "a double" if kind is Kind.REAL else "64 bits"
+    raise TraceError(f"sample at {format_ticks(t)}: `{name}` is a number too large for {limit}")

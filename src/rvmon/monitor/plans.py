@@ -1,0 +1,121 @@
+"""The plans of requirements for the core."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import replace
+from functools import cache
+
+from rvmon.logic.alphabet import Alphabet, alphabet_of
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.construct import Budget, construct
+from rvmon.logic.formula import Core, Factory, Literal
+from rvmon.logic.network_plan import plan_of as network_of
+from rvmon.logic.plan import Plan, PlannedRule, plan_in_units
+from rvmon.logic.state_formula import State
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.spec.checked.selection import requirements_asked
+
+
+def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
+    """A requirement as the core judges it.
+
+    Args:
+        one: the requirement.
+        measured: whether its robustness is measured as well.
+    """
+    owed, alphabet, automaton = one.obligation.owed, one.alphabet, one.shaped
+    if measured and one.counts_alone:
+        owed, alphabet, automaton = _nothing_owed()
+    obligation = one.obligation
+    doubted = one.doubted if one.requirement.for_each is not None else None
+    captures = bool(one.requirement.captures)
+
+    def beside(other: CompiledRequirement | None) -> PlannedRule | None:
+        if other is None:
+            return None
+        return planned_rule(other, measured=measured)
+
+    figured = one.measured_owed if measured else None
+    read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
+    return PlannedRule(
+        one.requirement,
+        obligation.trigger,
+        owed,
+        alphabet,
+        automaton,
+        one.in_runs(automaton),
+        again=obligation.again,
+        unborn=obligation.unborn,
+        determined=obligation.determined,
+        hidden=beside(one.hidden),
+        noted=tuple(leaf for leaf, _ in one.leaves),
+        doubted=beside(doubted),
+        running=obligation.running if captures else None,
+        blurs=_blurs(one) if captures else None,
+        blurs_anywhere=obligation.doubt is not None,
+        asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        measured=figured,
+    )
+
+
+def _traced(one: CompiledRequirement) -> PlannedRule:
+    """A requirement that its whole automaton judges, as people know it."""
+    rule, automaton = planned_rule(one), one.automaton
+    in_runs = one.in_runs(automaton)
+    return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
+
+
+def _stepped(rule: PlannedRule) -> PlannedRule:
+    hidden, doubted = (
+        None if one is None else _stepped(one) for one in (rule.hidden, rule.doubted)
+    )
+    return replace(rule, hidden=hidden, doubted=doubted, stepped=True)
+
+
+@cache
+def _nothing_owed() -> tuple[Core, Alphabet, Automaton]:
+    """What attempts owe that only have to be counted, and what judges them."""
+    factory = Factory()
+    owed = factory.constant(True)
+    alphabet = alphabet_of(owed)
+    return owed, alphabet, construct(factory.next(owed), alphabet, Budget())
+
+
+def _blurs(one: CompiledRequirement) -> State | None:
+    """What is UNKNOWN where an attempt may have begun with other values than it captured."""
+    obligation = one.obligation
+    # What it owes by a trigger that is TRUE, it owes at one position.
+    return obligation.doubt or (None if one.beside is None else obligation.trigger)
+
+
+def plan_alone(
+    compiled: CompiledSpec,
+    only: Iterable[str] | None = None,
+    *,
+    traced: Collection[str] = (),
+    stepped: bool = False,
+    measured: bool = False,
+) -> Plan:
+    """The plan of what the core judges.
+
+    Args:
+        compiled: the specification.
+        only: ids of its requirements; default all.
+        traced: ids of those of which somebody asks where attempts go in their automata.
+        stepped: whether no chain of windows is to judge any.
+        measured: whether it is to measure them as well.
+
+    Raises:
+        UnknownNameError: there is no such requirement.
+        RvmonError: one of them is beyond the core; which one and why is in the message.
+    """
+    ids = requirements_asked(compiled.checked, only)
+    rules = [
+        _traced(one) if one.requirement.id in traced else planned_rule(one, measured=measured)
+        for one in compiled.chosen(ids)
+    ]
+    if stepped:
+        rules = [_stepped(rule) for rule in rules]
+    return plan_in_units(compiled.checked, rules)

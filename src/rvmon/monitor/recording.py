@@ -1,0 +1,220 @@
+"""Recordings that the core judges: of what comes as columns all rows at once, else each sample."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.monitor.health import Findings, Losses
+from rvmon.monitor.intake import Turn, Validator
+from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.records import report_of_run
+from rvmon.readers.batch import NO_UPDATE, YES
+from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.source import Source
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import format_ticks, whole_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch, Cells, Occurrences
+
+_LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LABEL: 1}
+"""The numbers of layouts of values in `core.h`."""
+
+
+def judge_recording(
+    checked: CheckedSpec,
+    planned: PlannedCore,
+    source: Source,
+    decided: Callable[[Sequence[Attempt]], object],
+) -> Report:
+    """Judge a recording.
+
+    Args:
+        checked: the specification.
+        planned: the plan of its requirements.
+        source: the recording, in order.
+        decided: called with what was decided before a fault of the recording.
+
+    Raises:
+        TimeOrderError: an instant is before the one above it.
+        TraceError: a name or a value that the specification does not know, or an instant with two
+            payloads of one event of which one can be judged.
+    """
+    judge = RecordingRun(checked, planned, source, finds=True)
+    try:
+        for piece in source.pieces():
+            judge.take(piece)
+    except TraceError:
+        decided(judge.core.flush())
+        raise
+    return judge.report()
+
+
+class RecordingRun:
+    """A run of the core, and what it is to be given.
+
+    Args:
+        checked: the specification.
+        planned: the plan that it judges by.
+        source: the recording that the pieces come from.
+        finds: whether somebody asks for the health of the input.
+
+    Attributes:
+        core: the run.
+    """
+
+    def __init__(
+        self, checked: CheckedSpec, planned: PlannedCore, source: Source, *, finds: bool
+    ) -> None:
+        declared = frozenset((*checked.signals, *checked.events))
+        names = source.names
+        absent = frozenset() if names is None else declared - names
+        self._planned = planned
+        self._validator = Validator(
+            checked, None if names is None else names & declared, planned.single_payloads
+        )
+        self._expected = declared - absent
+        self._findings = Findings(checked, planned, absent) if finds else None
+        self.core = planned.monitor(absent & planned.numbers.keys())
+        self._row = 0
+        self._end = source.end
+        self._losses = Losses(checked, planned, self.core, None)
+        turns = [
+            turn
+            for one in source.outages
+            for turn in self._losses.lose(one.names, one.since, one.until, one.why)
+        ]
+        self._turns = sorted(turns, key=_comes_before)
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Judge a piece of the recording, behind those before."""
+        if isinstance(piece, Sample):
+            self._take_sample(piece)
+        else:
+            self._take_batch(piece)
+
+    def _take_sample(self, sample: Sample) -> None:
+        t = whole_ticks(sample.t)
+        values = sample.values
+        if self._turns:
+            self._lose_until(t)
+        if not self.core.judge(t, values, False):
+            values = self._validator.check(t, values)
+            if not self.core.judge(t, self._planned.plain(t, values), True):
+                raise TimeOrderError(
+                    f"row {self._row} at {format_ticks(t)} is not after the one before: sort the "
+                    "recording by time"
+                )
+        if self._findings is not None:
+            self._findings.note_sample(t, values)
+        self._row += 1
+
+    def _lose_until(self, t: int) -> None:
+        """Have lost, and found, what a sample at an instant finds lost."""
+        while self._turns and _comes_before(self._turns[0]) <= t:
+            self._losses.turn(self._turns.pop(0))
+
+    def _take_batch(self, batch: Batch) -> None:
+        """Judge rows; those that take a closer look as samples."""
+        count = len(batch.times)
+        done = 0
+        while done < count:
+            rest = batch.cut(done, count) if done else batch
+            columns = self._laid(rest)
+            taken = 0 if columns is None else self.core.rows(rest.times, columns)
+            if taken and self._findings is not None:
+                self._findings.note_batch(rest.cut(0, taken) if taken < len(rest.times) else rest)
+            if taken:
+                self._row += taken
+                done += taken
+            if done < count:
+                last = batch.times[done if columns is not None else -1]
+                end = int(batch.times.searchsorted(last, "right"))
+                events = self._planned.packed.events
+                for sample in coalesce(batch.rows(done, end), events, Conflicts()):
+                    self._take_sample(sample)
+                done = end
+
+    def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
+        """Rows as `native.Monitor.rows` takes them; `None`: they take a closer look."""
+        if not self._expected >= {*batch.signals, *batch.events}:
+            return None
+        planned = self._planned
+        found: list[tuple[Any, ...]] = []
+        try:
+            for name, cells in batch.signals.items():
+                number = planned.numbers[name]
+                kind = planned.packed.signals[name]
+                found.append((number, _cells(cells, kind, planned.words[number])))
+            for name, one in batch.events.items():
+                says = np.ascontiguousarray(one.says)
+                found.append((planned.numbers[name], says, self._fields(name, one)))
+        except KeyError:
+            return None
+        return tuple(found)
+
+    def _fields(self, event: str, one: Occurrences) -> tuple[Any, ...] | None:
+        """The fields of an event as columns, if some have one."""
+        if not one.fields:
+            return None
+        found: list[tuple[Any, ...]] = []
+        for place, ((of, field), kind) in enumerate(self._planned.packed.fields.items()):
+            if of == event:
+                cells = one.fields.get(field)
+                words = self._planned.words[len(self._planned.numbers) + place]
+                if cells is None:
+                    nothing = np.full(len(one.says), NO_UPDATE, np.uint8)
+                    found.append((_LAYOUTS[kind], None, nothing))
+                else:
+                    found.append(_cells(cells, kind, words))
+        return tuple(found)
+
+    def finish(self) -> int | None:
+        """End the run where the recording ends; gives the last instant of the trace."""
+        _, last, _ = self.core.times()
+        self._lose_until(self._end if self._end is not None else last or 0)
+        return self.core.finish(self._end)
+
+    def report(self) -> Report:
+        """End the run, and say what was found."""
+        origin, _, _ = self.core.times()
+        report = report_of_run(self._planned, self.core, origin or 0, self.finish())
+        if self._findings is None:
+            return report
+        return replace(report, health=(*self._findings.found(self.core), *self._losses.health()))
+
+
+def _comes_before(turn: Turn) -> int:
+    """The first instant at which names are as a turn says: what is found is so behind its own."""
+    return turn.t + (not turn.lost)
+
+
+def _cells(
+    cells: Cells, kind: Kind, words: Mapping[str, int] | None
+) -> tuple[int, NDArray[Any], NDArray[np.uint8] | None]:
+    """Cells as `native.Monitor.rows` takes them.
+
+    Raises:
+        KeyError: there is a label that is none.
+    """
+    values = cells.values
+    if cells.labels is not None and words is not None:
+        numbers = np.array([words.get(label, -1) for label in cells.labels], np.int64)
+        values = numbers[values]
+        if (numbers < 0).any():
+            wrong = values < 0 if cells.says is None else (values < 0) & (cells.says == YES)
+            if wrong.any():
+                raise KeyError
+    says = None if cells.says is None else np.ascontiguousarray(cells.says)
+    return _LAYOUTS[kind], np.ascontiguousarray(values), says

@@ -1,0 +1,211 @@
+"""Reports of the core's runs: their records become attempts when someone looks at them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from rvmon import native
+from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore
+from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict, fold
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_OPEN = DECISIONS.index(Decision.OPEN)
+
+
+RECORD = np.dtype(
+    [
+        *((name, np.int64) for name in ("triggered", "decided", "captured", "note")),
+        *(("requirement", np.int32), ("number", np.uint32)),
+        *((name, np.uint8) for name in ("verdict", "decision", "in_doubt")),
+    ],
+    align=True,
+)
+"""`rv_record` of `core.h`."""
+
+NUMBER = np.dtype([("kind", np.int32), ("bits", np.int64)], align=True)
+"""`rv_number` of it; the bits are those of a whole number or of a double."""
+
+_WHOLE, _REAL = 1, 2
+
+
+class RecordedAttempts(LazyAttempts):
+    """Attempts made from the records of a run; what they say beside is worked out when read.
+
+    Args:
+        planned: the plan that it judged by.
+        records: array of `RECORD`, in the order of reports.
+        numbers: array of `NUMBER` [records, most], the values that they captured.
+        notes: of these records, and the letters that they refer to.
+    """
+
+    def __init__(
+        self,
+        planned: PlannedCore,
+        records: NDArray[Any],
+        numbers: NDArray[Any],
+        notes: tuple[bytes, Sequence[tuple[Any, bytes]]],
+    ) -> None:
+        self._planned = planned
+        self._notes = notes
+        self._ids = planned.packed.ids
+        self._records = records
+        self._numbers = numbers
+
+    def __len__(self) -> int:
+        return len(self._records)
+
+    @overload
+    def __getitem__(self, index: int) -> Attempt: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Attempt]: ...
+    def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
+        if isinstance(index, slice):
+            chosen = self._records[index], self._numbers[index]
+            return RecordedAttempts(self._planned, *chosen, self._notes)
+        return self._attempt(self._records[index], self._numbers[index])
+
+    def __iter__(self) -> Iterator[Attempt]:
+        return map(self._attempt, self._records, self._numbers)
+
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """See `LazyAttempts`."""
+        if requirement not in self._ids:
+            return iter(())
+        records = self._records
+        own = records["requirement"] == self._ids.index(requirement)
+        chosen = np.flatnonzero(own & (records["verdict"] == VERDICTS.index(verdict)))
+        return (self[index] for index in chosen.tolist())
+
+    def _attempt(self, record: Any, numbers: NDArray[Any]) -> Attempt:
+        triggered, decided, captured, note, requirement, number, verdict, decision, in_doubt = (
+            record.tolist()
+        )
+        values = None if captured < 0 else tuple(map(_number_of, numbers))
+        made = Attempt.__new__(Attempt)
+        made.requirement = self._ids[requirement]
+        made.number = number
+        made.triggered = triggered
+        made.decided = None if decision == _OPEN else decided
+        made.verdict = VERDICTS[verdict]
+        made.decision = DECISIONS[decision]
+        made.in_doubt = bool(in_doubt)
+        made._details = self._details
+        made._noted = values, note
+        return made
+
+    def _details(
+        self, attempt: Attempt, noted: tuple[Sequence[float | None] | None, int]
+    ) -> Mapping[str, Any]:
+        """See `PlannedCore.details`."""
+        from rvmon.monitor.notes import note_at
+
+        captured, place = noted
+        notes, spans = self._notes
+        return self._planned.details(attempt, captured, note_at(notes, place, spans))
+
+
+def _number_of(number: Any) -> float | None:
+    """A captured value; `None`: it is not known."""
+    kind = number["kind"]
+    if kind == _WHOLE:
+        return int(number["bits"])
+    return float(number["bits"].view(np.float64)) if kind == _REAL else None
+
+
+def recorded(planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any]) -> RecordedAttempts:
+    """The decided attempts among records, in their order.
+
+    Args:
+        planned: the plan that judged.
+        raw: of a run of the core: the records, what they captured, their notes, letters.
+    """
+    records, numbers, words, letters = raw
+    made = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
+    settled = made["decision"] != _OPEN
+    if not settled.all():
+        made, captured = made[settled], captured[settled]
+    return RecordedAttempts(planned, made, captured, (words, letters))
+
+
+def report_of_run(
+    planned: PlannedCore, run: native.Monitor, origin: int, end: int | None
+) -> Report:
+    """Sort and fold the records of a run, as `rvmon.verdict.report.report_of` does attempts.
+
+    Args:
+        planned: the plan that it judged by.
+        run: is finished.
+        origin: the instant from which people count seconds, ticks.
+        end: the last instant of the trace, ticks.
+
+    Source: SEMANTICS, section 3.
+    """
+    ids = planned.packed.ids
+    complete: dict[str, bool] = {}
+    counts: dict[str, dict[Verdict, int]] = {}
+    for name, own in zip(ids, run.counts(), strict=True):
+        *_, is_complete = own
+        complete[name] = bool(is_complete)
+        counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
+    records, numbers, words, letters = run.records()
+    made = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
+    order = _order(made)
+    return Report(
+        verdicts={
+            name: fold([one for one, count in own.items() if count], complete=complete[name])
+            for name, own in counts.items()
+        },
+        attempts=RecordedAttempts(planned, made, captured, (words, letters))
+        if order is None
+        else RecordedAttempts(planned, made[order], captured[order], (words, letters)),
+        counts=counts,
+        dropped=_dropped(ids, counts, made),
+        origin=origin,
+        end=end,
+    )
+
+
+def _dropped(
+    ids: Sequence[str], counts: Mapping[str, Mapping[Verdict, int]], records: NDArray[Any]
+) -> Mapping[str, Mapping[Verdict, int]]:
+    """How many attempts were counted of which there is no record."""
+    if sum(sum(own.values()) for own in counts.values()) == len(records):
+        return {}
+    there = np.bincount(
+        records["requirement"] * len(VERDICTS) + records["verdict"],
+        minlength=len(ids) * len(VERDICTS),
+    ).reshape(-1, len(VERDICTS))
+    dropped = {
+        name: {one: count - there[row, VERDICTS.index(one)].item() for one, count in own.items()}
+        for row, (name, own) in enumerate(counts.items())
+    }
+    return {
+        name: {one: count for one, count in own.items() if count}
+        for name, own in dropped.items()
+        if any(own.values())
+    }
+
+
+_COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
+
+
+def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:
+    """By decision instant, requirement, whether in doubt, and number; the undecided ones last.
+
+    `None`: they stand so already.
+    """
+    undecided = records["decision"] == _OPEN
+    decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])
+    if (decided[1:] > decided[:-1]).all():
+        return None
+    keys = (records["number"], records["in_doubt"], records["requirement"], decided)
+    return np.lexsort(keys)

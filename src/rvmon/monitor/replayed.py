@@ -1,0 +1,155 @@
+"""Networks as they were, from the letters that the core kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from struct import Struct
+
+from rvmon.logic.formula import Constant, Sense
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.network.network import Network, Noted
+from rvmon.monitor.network_reasons import NetworkRuns
+
+_IN_WORD = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Letters:
+    """Truths of propositions at positions, in pieces.
+
+    Attributes:
+        pieces: of words: a position, then its truths, and so on.
+    """
+
+    pieces: tuple[bytes, ...]
+
+    def read(self, count: int) -> Iterator[tuple[int, tuple[int, ...]]]:
+        """The positions, with the truths of so many propositions."""
+        stride = Struct(f"={1 + -(-count // _IN_WORD)}q")
+        for piece in self.pieces:
+            for position, *words in stride.iter_unpack(piece):
+                yield (
+                    position,
+                    tuple(
+                        words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3
+                        for place in range(count)
+                    ),
+                )
+
+
+def _truth(sense: Sense, value: int, *, better: bool) -> bool:
+    """Whether a leaf is true, the unknown taken for the better or for the worse."""
+    if value == UNKNOWN:
+        return better and sense is not Sense.KNOWN_FALSE
+    return value == (TRUE if sense is Sense.TRUE else FALSE)
+
+
+def _noted(
+    compiled: CompiledRequirement,
+    gap: int | None,
+    letters: Letters,
+    position: int,
+    *,
+    better: bool,
+) -> Noted:
+    """Letters for a network, from the position that is asked for on, where no others matter.
+
+    Args:
+        compiled: the requirement.
+        gap: ticks between two positions; `None` if only samples are positions.
+        letters: of the judge.
+        position: what is asked for.
+        better: whether the unknown is taken for the better.
+    """
+    plan, propositions = compiled.network_plan, compiled.alphabet.propositions
+    place = {state: number for number, state in enumerate(propositions)}
+    leaves = [core for _, core in plan.leaves]
+
+    def letter(truths: Sequence[int]) -> tuple[bool, ...]:
+        return tuple(
+            core.value
+            if isinstance(core, Constant)
+            else _truth(core.sense, truths[place[core.proposition]], better=better)
+            for core in leaves
+        )
+
+    noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions))]
+    if noted and not plan.looks_back:
+        # What came before the position does not matter; a letter that stays does till there.
+        first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
+        t, stays = noted[first]
+        noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
+    return noted
+
+
+def at_decision(
+    compiled: CompiledRequirement,
+    gap: int | None,
+    letters: Letters | None,
+    position: int,
+    triggered: int,
+    verdict: bool,
+    t: int,
+) -> Network | None:
+    """The network that decided, as it was then.
+
+    Args:
+        compiled: the requirement.
+        gap: ticks between two positions; `None` if only samples are positions.
+        letters: by which it judged; `None`: they are not known.
+        position: the instant of the position whose value was waited for, ticks.
+        triggered: the instant of the trigger; behind the position if that was the end of the trace.
+        verdict: the decision: what fails is decided by the run for the better.
+        t: its instant.
+    """
+    if letters is None:
+        return None
+    noted = _noted(compiled, gap, letters, position, better=not verdict)
+
+    def network_at(stamp: int, before: int) -> Network:
+        return Network(compiled.network_plan, gap, noted, position, stamp, before)
+
+    if triggered > position == t:
+        return network_at(2 * triggered, 2 * t + 1)
+    if t == position:
+        # It was known as the attempt began, perhaps before that: since the letter before.
+        last = max((at for at, _ in noted if at < t), default=t - 1)
+        return network_at(2 * t + 1, 2 * last + 1)
+    # What became known by then is no news at the decision.
+    network = network_at(2 * t, 2 * t - 1)
+    return network_at(2 * t + 1, 2 * t) if network.truth(position) is None else network
+
+
+def at_moment(
+    compiled: CompiledRequirement,
+    gap: int | None,
+    letters: Letters | None,
+    position: int,
+    now: int,
+    count: int,
+) -> NetworkRuns:
+    """The networks of an open attempt at a stamp.
+
+    Args:
+        compiled: as for `at_decision`.
+        gap: see there.
+        letters: see there.
+        position: see there.
+        now: the stamp.
+        count: how many attempts are open.
+    """
+    if letters is None:
+        return NetworkRuns(None, None, count, gap)
+    worse, better = (
+        Network(
+            compiled.network_plan,
+            gap,
+            _noted(compiled, gap, letters, position, better=better),
+            position,
+            now,
+        )
+        for better in (False, True)
+    )
+    return NetworkRuns(worse, better, count, gap)

@@ -1,0 +1,182 @@
+"""A run of the core as a snapshot, and back.
+
+The format is one line (kind, checksum) and JSON, in which the core's bytes stand as text. It is
+checked before anything is taken from it, and nothing in it is executed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from base64 import b64decode, b64encode
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from rvmon import native
+from rvmon.errors import SnapshotError
+from rvmon.monitor.planned import PlannedCore
+from rvmon.verdict.verdict import LAW
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compiled_spec import CompiledSpec
+    from rvmon.spec.checked.specification import CheckedSpec
+
+_KIND = b"rvmon snapshot 3"
+
+_LEFT_OUT = ("span", "source", "text", "title", "doc")
+"""Fields of a specification that do not change what is judged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a monitor was asked for; see `rvmon.monitor.monitor.build_monitor`."""
+
+    settle: str
+    sources: frozenset[str] | None
+    keep: int | None
+
+
+def written(
+    compiled: CompiledSpec,
+    options: Options,
+    planned: PlannedCore,
+    run: native.Monitor,
+    state: Mapping[str, Any],
+) -> bytes:
+    """The bytes of a run.
+
+    Args:
+        compiled: the specification.
+        options: what its monitor was asked for.
+        planned: the plan that it judges by.
+        run: of the core.
+        state: what Python holds of it, as JSON has it.
+    """
+    document = {
+        "rvmon": _version(),
+        "spec": digest_of(compiled),
+        "only": [*planned.packed.ids],
+        "settle": options.settle,
+        "sources": None if options.sources is None else sorted(options.sources),
+        "keep": options.keep,
+        "plan": _digest(planned),
+        "core": _text(run.save()),
+        "arrivals": _text(run.arrivals()),
+        "state": state,
+    }
+    body = json.dumps(document, separators=(",", ":")).encode()
+    return b"%s %s\n%s" % (_KIND, hashlib.sha256(body).hexdigest().encode(), body)
+
+
+def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
+    """What a snapshot says; `only`, `settle`, `sources` and `keep` are of its monitor.
+
+    Raises:
+        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+    """
+    document = _document(data)
+    if document.get("rvmon") != _version():
+        raise SnapshotError(
+            f"the snapshot was made by rvmon {document.get('rvmon')}, this is {_version()}: "
+            "restore it with the version that made it"
+        )
+    if document.get("spec") != digest_of(compiled):
+        raise SnapshotError(
+            f"the snapshot was made with another specification than `{compiled.checked.name}`: "
+            "load the one it was made with, with the same constants"
+        )
+    return document
+
+
+def put_back(
+    document: Mapping[str, Any], planned: PlannedCore, run: native.Monitor
+) -> Mapping[str, Any]:
+    """Give a run that was just begun the state that a snapshot holds; what Python held of it.
+
+    Raises:
+        SnapshotError: the requirements were judged by another plan, or what is there is no run.
+    """
+    if document["plan"] != _digest(planned):
+        raise SnapshotError("the snapshot was made with another plan: was rvmon changed?")
+    if not (run.load(_bytes(document["core"])) and run.take_arrivals(_bytes(document["arrivals"]))):
+        raise SnapshotError("the snapshot is damaged: what it holds is no run of its plan")
+    state: Mapping[str, Any] = document["state"]
+    return state
+
+
+def _text(data: bytes) -> str:
+    return b64encode(data).decode("ascii")
+
+
+def _bytes(text: Any) -> bytes:
+    return b64decode(text, validate=True)
+
+
+def _digest(planned: PlannedCore) -> str:
+    return hashlib.sha256(planned.packed.data).hexdigest()
+
+
+def _document(data: bytes) -> Mapping[str, Any]:
+    if not isinstance(data, bytes | bytearray | memoryview):
+        raise SnapshotError(f"expected the bytes of a snapshot, found {type(data).__name__}")
+    head, found, body = bytes(data).partition(b"\n")
+    kind, _, checksum = head.rpartition(b" ")
+    if kind != _KIND or not found:
+        raise SnapshotError("these bytes are no snapshot of a monitor")
+    if hashlib.sha256(body).hexdigest().encode() != checksum:
+        raise SnapshotError("the snapshot is damaged: its checksum is not that of what it holds")
+    try:
+        document = json.loads(body)
+    except (ValueError, RecursionError):
+        document = None
+    if not isinstance(document, dict):
+        raise SnapshotError("the snapshot is damaged: it holds no document")
+    return document
+
+
+@cache
+def _version() -> str:
+    """The version of this package and of the law; kept, as it takes longer than all else here."""
+    from importlib.metadata import version
+
+    return f"{version('rvmon')}, law {LAW}"
+
+
+def digest_of(compiled: CompiledSpec) -> str:
+    """See `digest`; worked out once for a compiled specification."""
+    found = compiled.forms.get("digest")
+    if not isinstance(found, str):
+        found = compiled.forms["digest"] = digest(compiled.checked)
+    return found
+
+
+def digest(checked: CheckedSpec) -> str:
+    """A hash of what a specification judges; its layout and its comments are no part of it."""
+    return hashlib.sha256("\n".join(_fingerprint(checked)).encode()).hexdigest()
+
+
+def _fingerprint(value: Any) -> Iterator[str]:
+    """A specification in a form that is the same in every process."""
+    if is_dataclass(value):
+        yield type(value).__name__
+        for field in fields(value):
+            if field.name not in _LEFT_OUT:
+                yield from _fingerprint(getattr(value, field.name))
+    elif isinstance(value, Enum):
+        yield f"{type(value).__name__}.{value.name}"
+    elif isinstance(value, Mapping):
+        yield f"{{{len(value)}"
+        for key, one in value.items():
+            yield repr(key)
+            yield from _fingerprint(one)
+    elif isinstance(value, tuple | list):
+        yield f"[{len(value)}"
+        for one in value:
+            yield from _fingerprint(one)
+    elif isinstance(value, frozenset):
+        yield from sorted(repr(one) for one in value)
+    else:
+        yield repr(value)

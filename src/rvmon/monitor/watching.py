@@ -1,0 +1,141 @@
+"""Where formulas are true in a recording, found by the core."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from struct import iter_unpack
+from typing import TYPE_CHECKING
+
+from rvmon.core.plan import pack
+from rvmon.logic.formula import Core
+from rvmon.logic.network_plan import plan_of_all
+from rvmon.logic.plan import plan_of_truths
+from rvmon.monitor.compiled_spec import Kept
+from rvmon.monitor.intake import Validator
+from rvmon.monitor.planned import planned_as
+from rvmon.readers.source import Source
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Sample, Scalar, Trace
+
+if TYPE_CHECKING:
+    from rvmon.monitor.recording import RecordingRun
+    from rvmon.readers.batch import Batch
+
+Positions = tuple[tuple[int, int], ...]
+"""Ranges of positions, first and last, ascending: ticks, in clocked time ticks divided by the
+period, in sampled time numbers of samples."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Where a formula is known in a recording.
+
+    Attributes:
+        true: surely.
+        false: surely.
+    """
+
+    true: Positions
+    false: Positions
+
+
+class TruthsPlan:
+    """Formulas made ready for the core, for any number of recordings.
+
+    Args:
+        spec: the specification.
+        formulas: may speak of the future; what a recording ends too early for is not known.
+        captured: the values that the formulas read as captured.
+    """
+
+    def __init__(
+        self, spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
+    ) -> None:
+        plan = plan_of_truths(spec, formulas, captured)
+        self.spec = spec
+        self.planned = planned_as(spec, (), Kept(pack(plan).data))
+        self.read = plan.graph.by_name
+        places = plan_of_all(formulas, plan.gap).places
+        self.places = [places[core] for core in formulas]
+
+
+class TruthsRun:
+    """Follows where formulas are known while a recording is read.
+
+    Args:
+        plan: of the formulas.
+        names: the signals and events that have a source; `None`: all.
+    """
+
+    def __init__(self, plan: TruthsPlan, names: frozenset[str] | None) -> None:
+        self._plan = plan
+        self._names = names
+        declared = frozenset(plan.planned.numbers)
+        self._run = plan.planned.monitor(frozenset() if names is None else declared - names)
+        known = None if names is None else names & declared
+        self._validator = Validator(plan.spec, known, frozenset())
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Take what comes next; what the specification does not declare is passed over."""
+        if not isinstance(piece, Sample):
+            self._rows.take(piece)
+            return
+        t, values = piece.t, piece.values
+        if self._run.judge(t, values, False):
+            return
+        read = {name: values[name] for name in self._plan.read if name in values}
+        if self._run.judge(t, read, False):
+            return
+        if not self._run.judge(
+            t, self._plan.planned.plain(t, self._validator.check(t, read)), True
+        ):
+            raise ValueError("the core does not take a sample that was checked")
+
+    @cached_property
+    def _rows(self) -> RecordingRun:
+        from rvmon.monitor.recording import RecordingRun  # which imports NumPy
+
+        source = Source(Trace((), self._names))
+        made = RecordingRun(self._plan.spec, self._plan.planned, source, finds=False)
+        made.core = self._run
+        return made
+
+    def known(self, end: int) -> list[Known]:
+        """Where each formula is known, at all positions; the recording ends (ticks)."""
+        self._run.finish(end)
+        return [
+            Known(*(tuple(_ranges(one)) for one in self._run.truths(place)))
+            for place in self._plan.places
+        ]
+
+
+def known_truths(
+    spec: CheckedSpec,
+    formulas: Sequence[Core],
+    samples: Iterable[Sample],
+    end: int,
+    names: frozenset[str] | None,
+    captured: Mapping[str, Scalar],
+) -> list[Known]:
+    """Where formulas are known, at all positions of a recording; see `TruthsRun`.
+
+    Args:
+        spec: the specification.
+        formulas: may speak of the future.
+        samples: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+        captured: the values that the formulas read as captured.
+
+    Cost: one pass over the samples in C.
+    """
+    run = TruthsRun(TruthsPlan(spec, formulas, captured), names)
+    for sample in samples:
+        run.take(sample)
+    return run.known(end)
+
+
+def _ranges(data: bytes) -> Iterator[tuple[int, int]]:
+    return iter_unpack("=qq", data)

@@ -1,0 +1,222 @@
+"""After Ctrl-C, wherever it comes within a step, a monitor goes on, and says what it knows."""
+
+import dis
+import sys
+from types import CodeType, FrameType
+from typing import Any
+
+import pytest
+
+import rvmon
+from rvmon.monitor.monitor import Monitor
+from rvmon.report.junit import junit_xml
+from rvmon.report.run_text import health_lines
+from rvmon.trace.health import HealthKind
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+pytestmark = pytest.mark.law
+
+_SPEC = """spec s
+signal x, y : real
+event e, p, f, q
+requirement R1
+  always x <= 3
+requirement R2
+  upon e
+  then within 1 s p
+requirement R3
+  always y <= 3
+requirement R4
+  upon f
+  then within 1 s q
+"""
+_S = 1_000_000_000
+
+Place = tuple[CodeType, int]
+
+
+class _Odd(dict[str, object]):
+    """A sample that takes a closer look."""
+
+
+class _Strike:
+    """A trace function that interrupts rvmon once, where a signal handler may run.
+
+    Python looks for signals as a function of its own begins, behind a call, and on the way back in
+    a loop; nowhere else, so that statements without these are taken whole.
+
+    Args:
+        at: the place where it does that; `None`: nowhere.
+    """
+
+    def __init__(self, at: Place | None = None) -> None:
+        self.at = at
+        self.passed: dict[Place, None] = {}
+        """Where it could have been."""
+
+    def __call__(self, frame: FrameType, _: str, __: object) -> Any:
+        code = frame.f_code
+        ours = "rvmon" in code.co_filename
+        if not ours or (self.at is not None and self.at[0] is not code):
+            return None
+        frame.f_trace_opcodes = True
+        frame.f_trace_lines = False
+        self._pass(code, -1)
+        looks = False
+
+        def trace(frame: FrameType, event: str, _: object) -> Any:
+            nonlocal looks
+            if event == "opcode":
+                if looks:
+                    self._pass(code, frame.f_lasti)
+                operation = dis.opname[code.co_code[frame.f_lasti]]
+                looks = operation.startswith(("CALL", "JUMP_BACKWARD"))
+            return trace
+
+        return trace
+
+    def _pass(self, code: CodeType, offset: int) -> None:
+        self.passed[code, offset] = None
+        if self.at == (code, offset):
+            raise KeyboardInterrupt
+
+
+def _begun(spec: rvmon.Spec) -> Monitor:
+    monitor = spec.monitor()
+    monitor.step_ns(1 * _S, {"x": 1.0, "y": 1.0, "e": False, "p": False, "f": True, "q": False})
+    monitor.step_ns(2 * _S, {"x": 1.0, "y": 4.0, "e": True, "p": False, "f": False, "q": True})
+    return monitor
+
+
+def _struck(monitor: Any, strike: _Strike, make: type[dict[str, object]] = _Odd) -> None:
+    """A step in which R1 fails, an attempt of R2 begins and one ends; it concerns no other."""
+    row = make({"x": 4.0, "e": True, "p": True})
+    before = sys.gettrace()
+    sys.settrace(strike)
+    try:
+        monitor.step_ns(3 * _S, row)
+    finally:
+        sys.settrace(before)
+
+
+def _judged_on(monitor: Monitor) -> Report:
+    """What comes of the requirements that the step did not concern, when the run goes on."""
+    monitor.step_ns(4 * _S, {"x": 1.0, "y": 1.0})
+    monitor.step_ns(5 * _S, {"y": 4.0, "f": True})
+    assert "R4" in {one.requirement for one in monitor.open}
+    assert monitor.next_due is not None
+    monitor.step_ns(5 * _S + 1, {"y": 1.0, "e": True})
+    monitor.step_ns(5 * _S + 2, {"q": True})
+    monitor.advance_ns(6 * _S)
+    monitor.step_ns(6 * _S, {"x": 4.0, "f": True, "p": True})
+    report = monitor.finish_ns(8 * _S)
+    assert report.verdicts["R3"] == report.verdicts["R4"] == "F"
+    return report
+
+
+def _untouched(report: Report) -> list[Attempt]:
+    return [one for one in report.attempts if one.requirement in ("R3", "R4")]
+
+
+def test_an_interrupt_leaves_the_monitor_open() -> None:
+    """Whatever place of the code it strikes, later calls are taken, and judged right."""
+    spec = rvmon.loads(_SPEC)
+    for _ in range(2):  # the second time what a specification keeps for its monitors is there
+        whole = _Strike()
+        monitor = _begun(spec)
+        _struck(monitor, whole)
+        expected = _untouched(_judged_on(monitor))
+    assert len(whole.passed) > 50
+    for place in [*whole.passed]:
+        monitor = _begun(spec)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        assert _untouched(_judged_on(monitor)) == expected
+
+
+def _ended(monitor: Monitor) -> Report:
+    """The report of a run that ends behind the step."""
+    verdicts = monitor.verdicts
+    report = monitor.finish_ns(3 * _S + 1)
+    assert Report.from_json(report.to_json()).verdicts == report.verdicts
+    if _is_torn(report):
+        assert {*verdicts.values(), *report.verdicts.values()} <= {"F", "I"}
+    return report
+
+
+def _is_torn(report: Report) -> bool:
+    return any(one.kind is HealthKind.INTERRUPTED for one in report.health)
+
+
+def test_after_a_torn_step_nothing_passes() -> None:
+    """A step is judged in full, or not at all, or what has not failed is inconclusive."""
+    spec = rvmon.loads(_SPEC)
+    skipped = _ended(_begun(spec))
+    for _ in range(2):
+        places = _Strike()
+        monitor = _begun(spec)
+        _struck(monitor, places)
+        whole = _ended(monitor)
+    assert skipped.verdicts["R1"] == "P"
+    assert whole.verdicts["R1"] == "F"
+    torn = 0
+    struck = [*places.passed]
+    for place in struck:
+        monitor = _begun(spec)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        report = _ended(monitor)
+        torn += _is_torn(report)
+        assert _is_torn(report) or report in (skipped, whole)
+        monitor.reset()
+        monitor.step_ns(0, {"x": 1.0})
+        assert monitor.finish_ns(1).verdicts["R1"] == "P"
+    assert torn > len(struck) / 2
+
+
+def test_a_snapshot_keeps_that_a_step_was_torn() -> None:
+    """What goes on from it says the same."""
+    spec = rvmon.loads(_SPEC)
+    for _ in range(2):
+        places = _Strike()
+        _struck(_begun(spec), places)
+    for place in [*places.passed][::9]:
+        monitor = _begun(spec)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        other = spec.restore(monitor.snapshot())
+        assert other.verdicts == monitor.verdicts
+        assert other.finish_ns(3 * _S + 1) == monitor.finish_ns(3 * _S + 1)
+
+
+def test_what_a_sample_raises_itself_tears_nothing() -> None:
+    """A mapping that cannot be read leaves the monitor as it was."""
+
+    class Broken(dict[str, object]):
+        def items(self) -> Any:
+            raise LookupError("no such field")
+
+    monitor = rvmon.loads(_SPEC).monitor()
+    monitor.step_ns(0, {"x": 1.0})
+    with pytest.raises(LookupError):
+        monitor.step_ns(1, Broken(x=4.0))
+    assert monitor.finish_ns(2).verdicts["R1"] == "P"
+
+
+def test_a_torn_run_is_told_in_every_output() -> None:
+    """The terminal names the instant; JUnit skips what is inconclusive."""
+    spec = rvmon.loads(_SPEC)
+    for _ in range(2):
+        places = _Strike()
+        _struck(_begun(spec), places)
+    lines = set()
+    for place in places.passed:
+        monitor = _begun(spec)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        report = monitor.finish_ns(4 * _S)
+        found = [line for line in health_lines(report.health) if "interrupted" in line]
+        assert bool(found) is ("was not evaluated in full" in junit_xml([report], spec.checked))
+        lines |= {line.partition(":")[0] for line in found}
+    assert "  monitor  interrupted once, first at 2 s" in lines

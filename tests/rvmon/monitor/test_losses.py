@@ -1,0 +1,252 @@
+"""What a monitor is told of a source that was lost, and of samples that came too late."""
+
+import random
+from dataclasses import replace
+
+import pytest
+from tests.tools.drive import Found, Lost, told
+
+import rvmon
+from rvmon.errors import TraceError, UnknownNameError
+from rvmon.monitor import build_monitor, compile_spec
+from rvmon.monitor.monitor import restore
+from rvmon.testing.case import Case
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.outage import Outage
+from rvmon.testing.oracle import evaluate
+from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import Sample
+
+SPEC = """spec s
+{more}
+signal x : real
+signal other : bool
+event go, done
+requirement R
+  upon go
+  then within 3 s done
+requirement Slow
+  always x < 5
+requirement Other
+  always other
+"""
+
+
+def begun(more="", **options):
+    """A monitor that has had one sample at 0 s."""
+    monitor = rvmon.loads(SPEC.format(more=more)).monitor(**options)
+    monitor.step(0, {"x": 1.0, "other": True})
+    return monitor
+
+
+def said(report):
+    """The verdicts in the order of the file."""
+    return "".join(str(verdict) for verdict in report.verdicts.values())
+
+
+def drawn(seed):
+    """A random case in which names are lost."""
+    rng = random.Random(seed)
+    while True:
+        spec = random_spec(rng, Profile(requirements=2, depth=2))
+        case = random_trace(rng, spec, TraceProfile(outages=100))
+        if case.outages:
+            return case
+
+
+def law(case, outages):
+    """What the oracle says of a case in which other stretches are lost."""
+    samples = [one for one in case.actions if isinstance(one, Sample)]
+    return told_of(evaluate(case.spec, samples, end=case.end, names=case.names, outages=outages))
+
+
+def told_of(report):
+    """What a report says of attempts, but for reasons."""
+    fields = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
+    return [[getattr(one, field) for field in fields] for one in report.attempts]
+
+
+def in_order(case):
+    """A case of which only samples are told, and when it ended."""
+    samples = tuple(one for one in case.actions if isinstance(one, Sample))
+    last = max((one.last for one in case.outages), default=0)
+    end = max([last, *(one.t for one in samples), case.end or 0])
+    return Case(case.spec, samples, end, case.names, case.outages)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_samples_that_are_held_back_are_lost_in_the_same_order(seed):
+    """With settle='next', by a snapshot now and then, each stretch is that of the oracle."""
+    case = in_order(drawn(f"next {seed}"))
+    compiled = compile_spec(case.spec)
+    monitor = build_monitor(compiled, sources=case.names, settle="next")
+    rng = random.Random(seed)
+    for action in told(case):
+        match action:
+            case Lost(names, t):
+                monitor.lose_ns(names, t)
+            case Found(names, t):
+                monitor.found_ns(names, t)
+            case Sample(t, values):
+                monitor.step_ns(t, values)
+        if rng.random() < 0.2:
+            monitor = restore(compiled, monitor.snapshot())
+    assert told_of(monitor.finish_ns(case.end)) == law(case, case.outages)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_stretch_is_wider_by_the_delay_that_samples_may_have(seed):
+    """Samples come in any order within `max delay`, and what was lost may have, too."""
+    case = in_order(drawn(f"delay {seed}"))
+    rng = random.Random(seed)
+    delay = rng.randint(1, 5)
+    case = replace(case, spec=replace(case.spec, max_delay=delay))
+    monitor = build_monitor(compile_spec(case.spec), sources=case.names)
+    arrivals = [(one.t + rng.randint(0, delay), one.t, one) for one in case.actions]
+    wider = [replace(one, first=one.first - delay, last=one.last + delay) for one in case.outages]
+    losses = [(one.first, one.first - delay - 1, one) for one in case.outages]
+    for _, _, one in sorted([*arrivals, *losses], key=lambda found: found[:2]):
+        if isinstance(one, Outage):
+            monitor.lose_ns(one.names, one.first, one.last)
+        else:
+            monitor.step_ns(one.t, one.values)
+    end = max(case.end, max(one.last for one in wider))
+    report = monitor.finish_ns(end)
+    assert told_of(report) == law(replace(case, end=end), tuple(wider))
+
+
+def test_what_is_lost_fails_nothing_and_passes_nothing():
+    """It is inconclusive, and input health says why; other requirements are as ever."""
+    monitor = begun()
+    monitor.step(1, {"go": True})
+    monitor.lose(["done", "x"], since=2, until=3, why="the radio was silent")
+    monitor.step(5, {"x": 1.0})
+    report = monitor.finish(9)
+    assert said(report) == "IIP"
+    found = {(one.kind, one.name, one.first, one.requirements) for one in report.health}
+    assert (HealthKind.DROPPED, "done", 2 * 10**9, ("R",)) in found
+    assert (HealthKind.DROPPED, "x", 2 * 10**9, ("Slow",)) in found
+
+
+def test_names_stay_lost_until_they_are_found():
+    """What samples say of them meanwhile does not count; behind it all does."""
+    monitor = begun()
+    monitor.lose(["x", "done"], since=1)
+    assert not monitor.step(2, {"x": 9.0, "go": True, "done": True})
+    assert not monitor.advance(20)
+    monitor.found(["x", "done"], at=20)
+    [failed] = monitor.step(21, {"x": 9.0})
+    assert (failed.name, failed.decided) == ("Slow#1", 21 * 10**9)
+
+
+def test_a_stretch_within_another_ends_nothing():
+    """Nor is what was missed between two samples found while its connection is down."""
+    monitor = begun()
+    monitor.lose(["x"], since=1)
+    monitor.lose(["x"], since=2, until=3)
+    monitor.miss(["x"])
+    monitor.step(5, {"other": True})
+    assert not monitor.step(6, {"x": 9.0})
+    monitor.found(None, at=7)
+    assert [one.name for one in monitor.step(8, {"x": 9.0})] == ["Slow#1"]
+
+
+@pytest.mark.parametrize(("settle", "expected"), [("now", "FPP"), ("next", "IPP")])
+def test_what_is_missed_is_lost_between_two_samples(settle, expected):
+    """It may have had the stamp of the next one where equal stamps are one sample."""
+    monitor = begun(settle=settle)
+    monitor.step(1, {"go": True})
+    monitor.miss(["done"], why="a line that cannot be read")
+    monitor.step(5, {"go": True})
+    monitor.advance(9)
+    report = monitor.finish()
+    assert said(report) == expected
+    assert next(one.triggered for one in report.attempts if one.verdict == "I") == 10**9
+
+
+def test_what_is_missed_before_the_first_sample_leaves_nothing_green():
+    """Nobody knows when it was."""
+    monitor = rvmon.loads(SPEC.format(more="")).monitor()
+    monitor.miss()
+    monitor.step(0, {"x": 1.0, "other": True})
+    assert said(monitor.finish(1)) == "III"
+
+
+def test_what_comes_too_late_leaves_nothing_green_that_reads_it():
+    """Records stay, and so does what fails."""
+    monitor = begun("max delay 1 s")
+    monitor.step(10, {"go": True, "other": False})
+    monitor.step(12, {"done": True})
+    monitor.step(20, {"x": 1.0})
+    assert monitor.verdicts == {"R": "P", "Slow": "NT", "Other": "F"}
+    assert monitor.step(11, {"done": False, "other": True, "x": 1.0}) == ()
+    assert monitor.verdicts == {"R": "I", "Slow": "NT", "Other": "F"}
+    report = restore(monitor.compiled, monitor.snapshot()).finish()
+    assert said(report) == "IIF"
+    assert {"P", "F"} <= {str(one.verdict) for one in report.attempts}
+    late = [one for one in report.health if one.kind is HealthKind.LATE]
+    assert [(one.name, one.remark) for one in late] == [
+        ("done", "left out"),
+        ("other", "left out"),
+        ("x", "left out"),
+    ]
+
+
+def test_a_sample_that_is_refused_can_be_told_to_have_come_too_late():
+    """So can one of which nothing can be read."""
+    monitor = begun()
+    monitor.step(5, {"x": 2.0})
+    with pytest.raises(TraceError):
+        monitor.step(4, {"x": 9.0})
+    monitor.late(["x"], 4)
+    assert said(monitor.finish(6)) == "NTIP"
+    monitor.reset()
+    monitor.step(0, {"x": 1.0, "other": True})
+    monitor.late(None, 0)
+    assert said(monitor.finish(6)) == "III"
+
+
+def test_what_was_judged_cannot_be_lost_any_more():
+    """It is too late then, and what comes behind it is lost."""
+    monitor = begun()
+    monitor.step(5, {"x": 1.0})
+    monitor.lose(["x"], since=2, until=3)
+    assert said(monitor.finish(6)) == "NTIP"
+
+
+def test_nothing_is_lost_that_is_not_declared():
+    """Nor once the run is over; the monitor is as it was."""
+    monitor = begun()
+    with pytest.raises(UnknownNameError, match="`y`"):
+        monitor.lose(["x", "y"], since=1)
+    with pytest.raises(UnknownNameError, match="`y`"):
+        monitor.late(["y"], 0)
+    assert said(monitor.finish(1)) == "NTPP"
+    for call in (
+        lambda: monitor.lose(None, 2),
+        lambda: monitor.miss(),
+        lambda: monitor.found(None, 2),
+    ):
+        with pytest.raises(TraceError, match="finished"):
+            call()
+
+
+def test_margins_are_intervals_where_a_source_was_lost():
+    """A figure of what nobody heard lies between all that it may have been."""
+    monitor = rvmon.loads(SPEC.format(more="")).robustness_monitor(only=["Slow"])
+    monitor.step(0, {"x": 1.0})
+    monitor.lose(["x"], since=2, until=3)
+    monitor.step(5, {"x": 2.0})
+    [figure] = monitor.finish(6)
+    assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), 3.0)
+
+
+def test_reasons_that_are_all_different_do_not_fill_the_memory():
+    """As those of a program that puts a line number into each."""
+    monitor = begun()
+    for number in range(3_000):
+        monitor.late(["x"], 0, why=f"line {number}")
+    found = [one for one in monitor.finish(1).health if one.kind is HealthKind.LATE]
+    assert len(found) < 1_100
+    assert sum(one.count for one in found) == 3_000

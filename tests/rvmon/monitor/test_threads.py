@@ -1,0 +1,235 @@
+"""A monitor takes one call at a time, from whatever thread, and refuses the others by name."""
+
+import queue
+import signal
+import sys
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from itertools import count
+
+import pytest
+
+import rvmon
+from rvmon.errors import OverlapError
+from rvmon.monitor.monitor import Monitor
+
+_SPEC = """spec s
+signal x : real
+event e
+event p
+requirement R1
+  always x <= 3
+requirement R2
+  upon e
+  then within 1 s p
+"""
+
+
+@pytest.fixture
+def quick_turns() -> Iterator[None]:
+    """Threads take turns as often as they can."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    yield
+    sys.setswitchinterval(before)
+
+
+def _monitor() -> Monitor:
+    return rvmon.loads(_SPEC).monitor()
+
+
+def _row(number: int) -> dict[str, object]:
+    return {"x": float(number % 5), "e": True, "p": number % 3 == 0}
+
+
+class _Odd(dict[str, object]):
+    """A sample that takes a closer look."""
+
+
+def _stepped_by_two(
+    monitor: Monitor, samples: int, clock: Iterator[int], *, odd: bool = False
+) -> Counter[str]:
+    """What comes of steps by two threads, of which every other sample may be odd."""
+    found: list[str] = []  # an item comes whole; a count might be interrupted
+
+    def work() -> None:
+        for _ in range(samples):
+            number = next(clock)
+            try:
+                row = _row(number)
+                monitor.step_ns(number, _Odd(row) if odd and number % 2 else row)
+            except Exception as error:  # noqa: BLE001 - whatever comes is looked at
+                found.append(type(error).__name__)
+            else:
+                found.append("taken")
+
+    workers = [threading.Thread(target=work) for _ in range(2)]
+    for one in workers:
+        one.start()
+    for one in workers:
+        one.join()
+    return Counter(found)
+
+
+@pytest.mark.usefixtures("quick_turns")
+def test_two_threads_break_nothing_but_their_own_calls() -> None:
+    """Every call is taken whole, or refused for its time or for the call under way."""
+    monitor = _monitor()
+    clock = count(1)
+    found = _stepped_by_two(monitor, 600, clock)
+    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
+    report = monitor.finish_ns(next(clock))
+    numbers = [one.number for one in report.attempts if one.requirement == "R2"]
+    assert sorted(numbers) == list(range(1, found["taken"] + 1))[: len(numbers)]
+    assert len(numbers) <= found["taken"]
+
+
+def test_a_call_within_another_is_refused() -> None:
+    """Whatever is called while a step is under way is refused; the step itself is taken."""
+    monitor = _monitor()
+    refused = []
+
+    class Values(dict[str, object]):
+        def items(self):  # type: ignore[no-untyped-def]
+            for call in (
+                lambda: monitor.step_ns(5, {"x": 1.0}),
+                lambda: monitor.step(5.0, {"x": 1.0}),
+                lambda: monitor.advance_ns(5),
+                lambda: monitor.finish_ns(5),
+                lambda: monitor.open,
+                lambda: monitor.verdicts,
+                lambda: monitor.next_due,
+                lambda: monitor.snapshot(),
+                monitor.reset,
+            ):
+                with pytest.raises(OverlapError, match="lock round the calls"):
+                    call()
+                refused.append(call)
+            return super().items()
+
+    monitor.step_ns(1, {"x": 1.0})
+    monitor.step_ns(2, Values(x=4.0))
+    assert len(refused) >= 9
+    assert monitor.finish_ns(3).verdicts["R1"] == "F"
+
+
+@pytest.mark.usefixtures("quick_turns")
+def test_two_threads_break_no_compiled_monitor() -> None:
+    """Steps in C are taken whole beside calls of which Python does a part; those are refused."""
+    monitor = _monitor()
+    clock = count(1)
+    found = _stepped_by_two(monitor, 600, clock, odd=True)
+    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
+    report = monitor.finish_ns(next(clock))
+    assert report.counts["R2"]["P"] + report.counts["R2"]["F"] <= found["taken"]
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no signal.setitimer")
+def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -> None:
+    """A handler comes in between anywhere: what it calls is refused or done, never half done."""
+    monitor = _monitor()
+    clock = count(1)
+    found: list[str] = []  # an item comes whole; a count might be interrupted
+
+    def step(*_: object) -> None:
+        number = next(clock)
+        try:
+            monitor.step_ns(number, _row(number))
+        except Exception as error:  # noqa: BLE001 - whatever comes is looked at
+            found.append(type(error).__name__)
+        else:
+            found.append("taken")
+
+    before = signal.signal(signal.SIGALRM, step)
+    signal.setitimer(signal.ITIMER_REAL, 0.0005, 0.0005)
+    try:
+        for _ in range(2000):
+            step()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
+    report = monitor.finish_ns(next(clock))
+    assert max(one.number for one in report.attempts if one.requirement == "R2") <= found.count(
+        "taken"
+    )
+
+
+def test_callbacks_may_call_their_monitor() -> None:
+    """The call that decided is over when it is told: callbacks look, and even step."""
+    monitor = _monitor()
+    looked = []
+
+    def look(attempt: rvmon.Attempt) -> None:
+        looked.append((attempt.name, monitor.verdicts["R1"], len(monitor.open), monitor.next_due))
+        monitor.snapshot()
+        if len(looked) == 1:
+            monitor.step_ns(3, {"x": 1.0})
+
+    monitor.on_failure(look)
+    monitor.step_ns(1, {"x": 1.0})
+    monitor.step_ns(2, {"x": 4.0})
+    monitor.step_ns(4, {"x": 5.0})
+    assert [name for name, *_ in looked] == ["R1#1", "R1#2"]
+    assert monitor.finish_ns(5).counts["R1"]["F"] == 2
+
+
+def test_a_call_that_fails_leaves_the_monitor_open() -> None:
+    """What is wrong with a sample, or with a callback, closes nothing."""
+    monitor = _monitor()
+    monitor.step_ns(1, {"x": 1.0})
+
+    def fail(_: object) -> None:
+        raise LookupError("mine")
+
+    stop = monitor.on_failure(fail)
+    for wrong in ({"y": 1}, {"x": "high"}, None):
+        with pytest.raises(rvmon.TraceError):
+            monitor.step_ns(2, wrong)  # type: ignore[arg-type]
+    with pytest.raises(LookupError, match="mine"):
+        monitor.step_ns(2, {"x": 4.0})
+    with pytest.raises(rvmon.errors.TimeOrderError):
+        monitor.step_ns(2, {"x": 4.0})
+    stop()
+    monitor.step_ns(3, {"x": 1.0})
+    assert monitor.finish_ns(4).counts["R1"]["F"] == 1
+
+
+def test_a_monitor_is_handed_from_thread_to_thread() -> None:
+    """One call after the other is right, whichever threads make them."""
+    monitor = _monitor()
+    turns: queue.SimpleQueue[int] = queue.SimpleQueue()
+    turns.put(1)
+    errors = []
+
+    def work() -> None:
+        for _ in range(200):
+            number = turns.get()
+            try:
+                monitor.step_ns(number, _row(number))
+            except Exception as error:  # noqa: BLE001 - whatever comes is looked at
+                errors.append(error)
+            turns.put(number + 1)
+
+    workers = [threading.Thread(target=work) for _ in range(4)]
+    for one in workers:
+        one.start()
+    for one in workers:
+        one.join()
+    assert not errors
+    alone = _monitor()
+    for number in range(1, 801):
+        alone.step_ns(number, _row(number))
+    assert monitor.finish_ns(900).attempts == alone.finish_ns(900).attempts
+
+
+def test_a_restored_monitor_is_open() -> None:
+    """A snapshot is of no call."""
+    spec = rvmon.loads(_SPEC)
+    monitor = spec.monitor()
+    monitor.step_ns(1, _row(1))
+    other = spec.restore(monitor.snapshot())
+    for one in (monitor, other):
+        one.step_ns(2, _row(4))
+    assert monitor.finish_ns(3).attempts == other.finish_ns(3).attempts
