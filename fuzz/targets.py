@@ -19,7 +19,7 @@ from tests.tools.bags import SHOP
 from tests.tools.timed_damage import survives
 
 import rvmon
-from rvmon.diagnostics.render import render_full
+from rvmon.diagnostics import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
 from rvmon.readers.source import Source
 from rvmon.spec.print.formatter import format_text

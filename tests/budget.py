@@ -31,7 +31,6 @@ BUDGETS = {
     "tests/rvmon/core": 50,
     "tests/rvmon/native": 15,
     "tests/rvmon/coverage": 25,
-    "tests/rvmon/diagnostics": 1,
     "tests/rvmon/evidence": 1,
     "tests/rvmon/execute": 20,
     "tests/rvmon/explain": 20,

@@ -105,7 +105,7 @@ def matchers():
 @pytest.mark.parametrize("name", ["rvmon", "rvmon-json", "github"])
 def test_problem_matchers_read_findings(name):
     """The patterns fit what `rvmon check --format concise` and `--format json` print."""
-    from rvmon.diagnostics.render import render_concise, render_json
+    from rvmon.diagnostics import render_concise, render_json
 
     pattern = matchers()[name]
     render = render_json if name == "rvmon-json" else render_concise

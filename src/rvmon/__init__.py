@@ -22,7 +22,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
     from rvmon.errors import RvmonError, SpecError, TraceError
     from rvmon.monitor import Monitor
     from rvmon.session import Spec, load, loads
@@ -54,7 +54,7 @@ __all__ = [
 # `import rvmon` stays light: a name is imported when it is first asked for.
 _HOMES = {
     "Attempt": "rvmon.session",
-    "Diagnostic": "rvmon.diagnostics.diagnostic",
+    "Diagnostic": "rvmon.diagnostics",
     "Monitor": "rvmon.monitor",
     "Report": "rvmon.session",
     "Requirement": "rvmon.spec.checked.specification",

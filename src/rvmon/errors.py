@@ -20,12 +20,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rvmon.diagnostics.shown import shown
+from rvmon.texts import shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
 
 
 class RvmonError(Exception):

@@ -17,12 +17,11 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
-from rvmon.diagnostics.nearest import cannot_read
-from rvmon.diagnostics.span import Source
-from rvmon.diagnostics.text_file import text_of_file
+from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError
 from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.imports import load_files
+from rvmon.texts import cannot_read, text_of_file
 from rvmon.writing import beside
 
 FORMAT = 1

@@ -8,10 +8,9 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from rvmon.diagnostics.nearest import cannot_read
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
-from rvmon.spec.checked.selection import requirements_asked, sources_asked
+from rvmon.spec.checked.names_read import requirements_asked, sources_asked
+from rvmon.texts import cannot_read, text_of_file
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -19,7 +18,7 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     from rvmon.coverage.model import Hits
     from rvmon.coverage.monitor import SpecCoverage
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
     from rvmon.explain.truths import Plans
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.robustness import Margins, RobustnessMonitor

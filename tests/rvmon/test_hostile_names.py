@@ -23,10 +23,16 @@ from tests.tools.hostile import STEERING, hostile_names
 
 import rvmon
 from rvmon.cli import main as command
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
-from rvmon.diagnostics.render import render_concise, render_full, render_json
-from rvmon.diagnostics.shown import shown, shown_json, shown_line
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import (
+    Diagnostic,
+    Label,
+    Severity,
+    Source,
+    Span,
+    render_concise,
+    render_full,
+    render_json,
+)
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.explain.graph import quoted
 from rvmon.export.uppaal import uppaal_xml
@@ -36,6 +42,7 @@ from rvmon.report.pages import component, data, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.texts import shown, shown_json, shown_line
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.report import Report, report_of

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.render import render_full
+from rvmon.diagnostics import Diagnostic, render_full
 from rvmon.errors import ModelError, SpecError
 from rvmon.explain.analysed import analyse
 from rvmon.monitor import compile_spec

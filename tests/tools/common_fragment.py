@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.reading import Formulas, read
+from rvmon.spec.checked.rewrite import Formulas, read
 from rvmon.testing.law.syntax import numerics, subformulas
 
 EVER = Interval(0, None)

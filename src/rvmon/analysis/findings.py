@@ -11,11 +11,10 @@ from rvmon.analysis.implied import implications_among
 from rvmon.analysis.product import Together
 from rvmon.analysis.requirement import Conflict, Implication, Subject
 from rvmon.analysis.vacuity import Possible, possible
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
+from rvmon.spec.checked.classify import FUTURE, subformulas
 from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
-from rvmon.spec.checked.tense import FUTURE, subformulas
 from rvmon.spec.print.printer import format_duration
 from rvmon.spec.rules.rule import Rule, finding
 

@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError
 from rvmon.readers.messages.fields import field_of
 from rvmon.spec.checked.arithmetic import NumericOp
@@ -32,6 +31,7 @@ from rvmon.spec.syntax.expressions import (
     Truth,
 )
 from rvmon.spec.syntax.parse import parse_expression
+from rvmon.texts import did_you_mean
 from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
 
 

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from rvmon.binding.expression import term_of
-from rvmon.diagnostics.nearest import cannot_read, did_you_mean
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.texts import cannot_read, did_you_mean, text_of_file
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
 from rvmon.trace.gaps import gaps_of
 from rvmon.trace.schema import Kind, Schema

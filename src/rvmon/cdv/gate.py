@@ -13,10 +13,10 @@ from rvmon.cdv.plan import Played, Results, accepted_failures, is_about
 from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summary import differences, missed
 from rvmon.coverage.record import Ending
-from rvmon.diagnostics.shown import shown
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
 from rvmon.session import load
+from rvmon.texts import shown
 from rvmon.verdict.verdict import Verdict
 
 RobotRequirement = tuple[str, str]

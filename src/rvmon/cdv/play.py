@@ -22,11 +22,11 @@ from rvmon.cdv.test import TestError, blamed
 from rvmon.cdv.unfinished import Unfinished
 from rvmon.coverage.model import Hits
 from rvmon.coverage.record import Ending
-from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
 from rvmon.session import load
+from rvmon.texts import shown_line
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

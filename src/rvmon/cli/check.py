@@ -12,12 +12,11 @@ from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.reading import add_binding
-from rvmon.diagnostics.nearest import cannot_read
-from rvmon.diagnostics.text_file import text_of_file, text_of_input
 from rvmon.report.percent import counted
+from rvmon.texts import cannot_read, text_of_file, text_of_input
 
 if TYPE_CHECKING:
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
     from rvmon.spec.checked.specification import CheckedSpec
 
 
@@ -139,7 +138,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:
-    from rvmon.diagnostics.render import (
+    from rvmon.diagnostics import (
         coloured,
         render_concise,
         render_json,

@@ -124,7 +124,7 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
 
 def _campaign(coverage: Coverage, name: str) -> Coverage:
     from rvmon.coverage.questions import only
-    from rvmon.diagnostics.nearest import did_you_mean
+    from rvmon.texts import did_you_mean
 
     known = coverage.campaigns
     if name not in known:
@@ -136,7 +136,7 @@ def _campaign(coverage: Coverage, name: str) -> Coverage:
 
 def _groups(coverage: Coverage, name: str | None) -> Sequence[Group]:
     """The groups whose items are listed."""
-    from rvmon.diagnostics.nearest import did_you_mean
+    from rvmon.texts import did_you_mean
 
     groups = coverage.model.groups
     if name is None:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.output import say, warn
-from rvmon.diagnostics.shown import shown_json
 from rvmon.errors import RvmonError
 from rvmon.report.folder import write_file
+from rvmon.texts import shown_json
 
 if TYPE_CHECKING:
     from rvmon.monitor.compile import CompiledRequirement

@@ -25,9 +25,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Lay out, and return the exit code."""
-    from rvmon.diagnostics.text_file import text_of_file, text_of_input
     from rvmon.errors import SpecError
     from rvmon.spec.print.formatter import format_text
+    from rvmon.texts import text_of_file, text_of_input
 
     changed = wrong = 0
     for name in arguments.specs:

@@ -12,7 +12,6 @@ from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import bar, shown_while_reading
 from rvmon.cli.post_analysis import Remembered, post_analysis
 from rvmon.cli.reading import allowed_names, opened, reading_spec
-from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
@@ -20,6 +19,7 @@ from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec, load
+from rvmon.texts import shown_path
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdict.covered import IllegalHit

@@ -38,7 +38,7 @@ def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | No
     Raises:
         UnknownNameError: there is no such requirement, severity or tag, or none that fits all.
     """
-    from rvmon.spec.checked.selection import labelled
+    from rvmon.spec.checked.names_read import labelled
 
     ids = ids_of(arguments.only, spec)
     severities = [] if arguments.severity is None else [_listed(arguments.severity)]
@@ -56,7 +56,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     Raises:
         UnknownNameError: the list is empty, or there is no such requirement.
     """
-    from rvmon.spec.checked.selection import requirements_asked
+    from rvmon.spec.checked.names_read import requirements_asked
 
     if listed is None:
         return None

@@ -12,13 +12,13 @@ from itertools import islice
 from shutil import get_terminal_size
 from typing import TYPE_CHECKING, TypeVar
 
-from rvmon.diagnostics.shown import shown, shown_json
+from rvmon.texts import shown, shown_json
 from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
     from rvmon.readers.recording import FileRecording
 
 _SPELLED = str.maketrans(
@@ -52,7 +52,7 @@ def spell() -> None:
 
 def rendered(findings: Sequence[Diagnostic]) -> str:
     """Findings in full, as wide as the terminal is."""
-    from rvmon.diagnostics.render import WIDEST, render_full
+    from rvmon.diagnostics import WIDEST, render_full
 
     return render_full(findings, get_terminal_size((WIDEST, 0)).columns)
 

@@ -8,8 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.diagnostics.shown import shown
+from rvmon.texts import did_you_mean, shown
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 

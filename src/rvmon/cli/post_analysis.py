@@ -11,7 +11,7 @@ from rvmon.cli.reading import opened
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
-from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict

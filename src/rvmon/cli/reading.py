@@ -219,7 +219,7 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
             "first failed"
         )
     name, mark, number = found["name"], found["mark"], found["number"]
-    from rvmon.spec.checked.selection import requirements_asked
+    from rvmon.spec.checked.names_read import requirements_asked
 
     requirements_asked(spec.checked, [name])
     return name, f"{name}{mark}{int(number)}" if number else None

@@ -13,7 +13,6 @@ import msgspec
 from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import RvmonError
 from rvmon.evidence.keep import (
     COVERAGE,
@@ -31,6 +30,7 @@ from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec
+from rvmon.texts import shown_path
 from rvmon.verdict.rows import VerdictRow, broken_rows
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ from rvmon.logic.state_formula import FALSE
 from rvmon.logic.three_valued import Reader
 from rvmon.monitor.compiled_spec import Kept
 from rvmon.monitor.planned import PlannedCore, planned_as
+from rvmon.spec.checked.classify import is_pulse
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.checked.tense import is_pulse
 from rvmon.spec.print.printer import format_formula
 
 

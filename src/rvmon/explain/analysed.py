@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.analysis.findings import Examination, examine, findings_of
 from rvmon.analysis.requirement import Conflict, Subject
-from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics import Diagnostic
 from rvmon.explain.example import Budget, Example
 from rvmon.explain.search import Goal, shortest_examples
 from rvmon.monitor.compiled_spec import CompiledSpec

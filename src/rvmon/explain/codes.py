@@ -8,23 +8,20 @@ from functools import cache
 from importlib import resources
 
 from rvmon.analysis.findings import RULES as ANALYSIS
-from rvmon.diagnostics.diagnostic import Severity
+from rvmon.diagnostics import Severity
 from rvmon.errors import UnknownNameError
 from rvmon.spec.rules import (
-    goals,
-    imports,
     names,
     properties,
+    requirements,
     syntax,
     time,
-    traps,
-    triggers,
     types,
 )
 from rvmon.spec.rules.rule import Rule
 from rvmon.timed.model.rules import RULES as MODELS
 
-_FAMILIES = (syntax, names, imports, types, time, triggers, traps, properties, goals)
+_FAMILIES = (syntax, names, types, time, requirements, properties)
 _WARNINGS = ("TA010",)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
-from rvmon.spec.checked.tense import subformulas
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.attempt import Attempt

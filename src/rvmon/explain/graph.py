@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.diagnostics.shown import shown
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.formula import Core, Literal, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
@@ -16,6 +15,7 @@ from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration, format_formula
+from rvmon.texts import shown
 
 Cube = tuple[int, ...]
 """Per proposition 1, 0, or `ANY`."""

@@ -6,9 +6,9 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.explain.truths import Question, Seen, Spans, subformulas
+from rvmon.spec.checked.classify import has_future
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import Requirement
-from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_formula
 from rvmon.verdict.attempt import Attempt
 

@@ -16,7 +16,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     SignalAtom,
 )
-from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample

@@ -11,6 +11,7 @@ from rvmon.logic.state_formula import StateOp
 from rvmon.logic.state_graph import graph_of
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.plans import planned_rule
+from rvmon.spec.checked.classify import has_future
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
@@ -34,7 +35,6 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.formula import Literal as NumericLiteral
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
-from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_duration, format_numeric
 
 _PROBED = {

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
-from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.functions import function_lines, type_text, updates_text
 from rvmon.export.names import Names, Thing
+from rvmon.texts import shown, shown_line
 from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
 from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (

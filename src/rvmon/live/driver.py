@@ -12,7 +12,7 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
 from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Timers, Told, Values, Waiting
-from rvmon.spec.checked.selection import sources_asked
+from rvmon.spec.checked.names_read import sources_asked
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.verdict import Verdict

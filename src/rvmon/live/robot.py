@@ -11,7 +11,7 @@ import msgspec
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.live.waiting import Dropped, Gap, Told, Values
-from rvmon.spec.checked.selection import requirements_asked
+from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict, fold

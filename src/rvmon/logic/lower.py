@@ -26,9 +26,9 @@ from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.normal_form import Lowering, Origin, flattened
 from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, State, Unborn, signals_of
 from rvmon.logic.three_valued import Four
+from rvmon.spec.checked.classify import has_future, subformulas
 from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode, Requirement
-from rvmon.spec.checked.tense import has_future, subformulas
 
 
 class UnmonitorableError(RvmonError):

@@ -26,6 +26,7 @@ from rvmon.logic.formula import (
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, reads_fields
 from rvmon.logic.three_valued import Reader
+from rvmon.spec.checked.classify import has_future
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -37,8 +38,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
-from rvmon.spec.checked.reading import rewritten
-from rvmon.spec.checked.tense import has_future
+from rvmon.spec.checked.rewrite import rewritten
 
 
 @dataclass(frozen=True, slots=True)

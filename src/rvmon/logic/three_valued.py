@@ -43,7 +43,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.operators import Reading, Tense
-from rvmon.spec.checked.reading import read, rewritten
+from rvmon.spec.checked.rewrite import read, rewritten
 
 
 class Four:

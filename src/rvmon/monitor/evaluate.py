@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.diagnostics.shown import shown_path
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.planned import planned_core
@@ -20,6 +19,7 @@ from rvmon.readers.joined import Joined
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.rows import Rows
 from rvmon.readers.source import Reading, Source, recording_of
+from rvmon.texts import shown_path
 from rvmon.trace.sample import Recording, Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

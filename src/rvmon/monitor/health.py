@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon import native
 from rvmon.monitor.intake import MOST_HELD, Intake, Turn
 from rvmon.monitor.planned import PlannedCore
-from rvmon.spec.checked.selection import sources_asked
+from rvmon.spec.checked.names_read import sources_asked
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value, payloads_of

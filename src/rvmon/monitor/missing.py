@@ -8,13 +8,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.diagnostics.nearest import MOST_NAMES, nearest
 from rvmon.errors import MissingNameError
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.values import shorten
-from rvmon.spec.checked.reads import names_of_coverage, names_of_requirement
-from rvmon.spec.checked.selection import sources_asked
+from rvmon.spec.checked.names_read import names_of_coverage, names_of_requirement, sources_asked
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.texts import MOST_NAMES, nearest
 
 if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording

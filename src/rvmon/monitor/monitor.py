@@ -17,7 +17,7 @@ from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
 from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.snapshot import Options, document_of, put_back, written
-from rvmon.spec.checked.selection import requirements_asked
+from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

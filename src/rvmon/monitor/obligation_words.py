@@ -20,8 +20,8 @@ from rvmon.monitor.cause import (
     Standing,
     Turned,
 )
+from rvmon.spec.checked.classify import has_future, is_pulse
 from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
-from rvmon.spec.checked.tense import has_future, is_pulse
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame

@@ -15,7 +15,7 @@ from rvmon.logic.plan import Plan, PlannedRule, plan_in_units
 from rvmon.logic.state_formula import State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.spec.checked.selection import requirements_asked
+from rvmon.spec.checked.names_read import requirements_asked
 
 
 def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
-from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import TraceError
 from rvmon.readers.values import shorten
+from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
 

@@ -12,9 +12,9 @@ from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.values import first_line
+from rvmon.texts import cannot_read
 
 PACKED = (".gz", ".zst")
 """Endings of text that is packed."""

@@ -16,7 +16,6 @@ from pathlib import Path
 from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO, TextIO
 
-from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
@@ -31,6 +30,7 @@ from rvmon.readers.messages.forms import (
 )
 from rvmon.readers.places import JOINT, endings_of, is_address, local_path, named_errors, opened
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
+from rvmon.texts import cannot_read
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Outage, Sample

@@ -7,8 +7,8 @@ from contextlib import suppress
 from math import isinf
 from typing import Any, assert_never
 
-from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import TraceError
+from rvmon.texts import shown_line
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.stamps import is_whole

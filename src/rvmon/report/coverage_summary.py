@@ -17,7 +17,7 @@ from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import counted
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.rules.goals import MOST_COMBINATIONS
+from rvmon.spec.rules.properties import MOST_COMBINATIONS
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 

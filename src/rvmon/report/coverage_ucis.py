@@ -12,9 +12,9 @@ from datetime import UTC, datetime
 from rvmon.coverage.holes import cross_parts
 from rvmon.coverage.model import Group, Item, Subject
 from rvmon.coverage.record import TestRecord
-from rvmon.diagnostics.shown import shown
 from rvmon.report.coverage_summary import Summary, not_fine
 from rvmon.spec.checked.goals import BinKind
+from rvmon.texts import shown
 
 _CODE = (Subject.STATEMENTS, Subject.BRANCHES)
 _TYPES = {BinKind.GOAL: "bins", BinKind.IGNORE: "ignore", BinKind.ILLEGAL: "illegal"}

@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.diagnostics.shown import shown
 from rvmon.report.wording import full_reason, without_attempts
+from rvmon.texts import shown
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report

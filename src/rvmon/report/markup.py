@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 
-from rvmon.diagnostics.shown import shown
+from rvmon.texts import shown
 
 Child = ET.Element | str | None
 

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from rvmon.confidence import interval_text
-from rvmon.diagnostics.shown import shown
 from rvmon.report.markup import to_html
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.style import MARKS, verdict_colours
 from rvmon.report.table import Counts, VerdictTable, checked_text
+from rvmon.texts import shown
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -197,7 +197,7 @@ def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
 def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:
     from rich.text import Text
 
-    from rvmon.diagnostics.render import snippet
+    from rvmon.diagnostics import snippet
     from rvmon.report.style import verdict_text
 
     when = f"attempt {attempt.numbered}, triggered {format_ticks(attempt.triggered)}"

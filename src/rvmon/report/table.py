@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rvmon.confidence import interval, interval_text
-from rvmon.diagnostics.shown import shown_line
 from rvmon.report.style import MARKS
+from rvmon.texts import shown_line
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

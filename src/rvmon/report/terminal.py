@@ -12,7 +12,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
-from rvmon.diagnostics.shown import shown
+from rvmon.texts import shown
 
 
 class Terminal(Console):

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from rvmon.report.changes import Changes, Course
 from rvmon.report.time_axis import View
+from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
-from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
-from rvmon.spec.checked.tense import subformulas
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind

@@ -7,18 +7,16 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
-from rvmon.diagnostics.render import render_full
-from rvmon.diagnostics.span import Source, Span
-from rvmon.diagnostics.text_file import text_of_file
+from rvmon.diagnostics import Diagnostic, Severity, Source, Span, render_full
 from rvmon.errors import SpecError
 from rvmon.spec.check.specification import check
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.names.resolve import overridden, resolve, unused_names
+from rvmon.spec.names import overridden, resolve, unused_names
 from rvmon.spec.rules.rule import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
 from rvmon.spec.syntax.imports import load_files
 from rvmon.spec.syntax.items import ParsedSpec
+from rvmon.texts import text_of_file
 
 
 @dataclass(frozen=True, slots=True)

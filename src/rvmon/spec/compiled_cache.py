@@ -13,7 +13,7 @@ from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
-    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.diagnostics import Diagnostic
 
     Compiled = tuple[CheckedSpec, tuple[Diagnostic, ...]]
 

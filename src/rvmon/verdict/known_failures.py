@@ -11,8 +11,8 @@ from pathlib import Path, PurePath
 
 import msgspec
 
-from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import RvmonError
+from rvmon.texts import did_you_mean
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 

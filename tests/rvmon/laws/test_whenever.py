@@ -11,9 +11,9 @@ from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
 
 from rvmon.logic.state_formula import signals_of
+from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode
-from rvmon.spec.checked.tense import subformulas
 from rvmon.testing.case import Case
 from rvmon.testing.generate.choices import signals
 from rvmon.testing.generate.trace import TraceProfile

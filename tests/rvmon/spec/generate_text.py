@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any
 
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.parse import grammar, parse_spec
 from rvmon.testing.generate.choices import Rng, chance, pick

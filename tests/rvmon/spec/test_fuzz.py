@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.code_pages import PAGES, page
 
-from rvmon.diagnostics.render import render_concise, render_full, render_json
+from rvmon.diagnostics import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text

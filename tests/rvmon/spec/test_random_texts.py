@@ -5,8 +5,8 @@ import random
 import pytest
 from tests.rvmon.spec.generate_text import HEAD, random_text, syntax_of
 
-from rvmon.spec.print.format_words import pieces_of
 from rvmon.spec.print.formatter import format_text
+from rvmon.spec.print.layout import pieces_of
 from rvmon.spec.syntax.parse import grammar
 
 

@@ -22,10 +22,10 @@ from rvmon.cdv.mutation.baseline import Progress, Recorded, Suite, difference, r
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.tried import Finding, How, Tried
 from rvmon.cdv.play import Bench
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
+from rvmon.texts import text_of_file
 from rvmon.verdict.verdict import Verdict
 
 

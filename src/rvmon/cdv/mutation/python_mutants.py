@@ -11,8 +11,8 @@ from types import CodeType
 from rvmon.cdv.code import Code
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.python_operators import OPERATORS, Operator, Scope, Strings
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
+from rvmon.texts import text_of_file
 
 
 def mutants(

@@ -23,6 +23,7 @@ from rvmon.cdv.system import Checker
 from rvmon.logic.formula import horizon
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.session import Spec
+from rvmon.spec.checked.classify import is_pulse
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
@@ -41,7 +42,6 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.checked.tense import is_pulse
 from rvmon.spec.print.printer import format_duration, format_formula
 from rvmon.trace.time import TICKS_PER_UNIT
 from rvmon.verdict.verdict import Verdict

@@ -14,10 +14,10 @@ from pathlib import Path
 
 from rvmon.cdv.mutation.baseline import Difference, Recorded
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
-from rvmon.spec.checked.reads import names_of_requirement
+from rvmon.spec.checked.names_read import names_of_requirement
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.texts import text_of_file
 
 
 class How(StrEnum):

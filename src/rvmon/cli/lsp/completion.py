@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import product
 
 from rvmon.cli.lsp.names import Names, about_word
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.explain.words import requirement_in_words
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
@@ -16,8 +16,7 @@ from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.fixes import word_pattern
 from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem, RequirementItem
 from rvmon.spec.syntax.parse import grammar
-from rvmon.spec.syntax.split import split_items
-from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, split_items
 from rvmon.units import unit_table
 
 _NO_CODE = re.compile(r'`[^`\n]*`|"(?:[^"\\\n]|\\.)*"')

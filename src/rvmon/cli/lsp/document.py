@@ -24,15 +24,13 @@ from pygls.uris import from_fs_path, to_fs_path
 
 from rvmon.cache import cache_folder
 from rvmon.cli.lsp.names import Names
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
-from rvmon.diagnostics.nearest import proposed
-from rvmon.diagnostics.shown import shown
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Diagnostic, Severity, Source, Span
 from rvmon.explain.codes import page_of
 from rvmon.spec.compile import Compilation, compilation
 from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
-from rvmon.spec.syntax.split import split_items
+from rvmon.spec.syntax.words import split_items
+from rvmon.texts import proposed, shown
 from rvmon.writing import write_whole
 
 _WIDTHS = {

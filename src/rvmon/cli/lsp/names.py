@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.operators import OPERATORS
 from rvmon.spec.syntax.expressions import Call, Comparison, Group, Ident, Name

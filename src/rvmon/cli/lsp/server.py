@@ -18,13 +18,13 @@ from rvmon.cli.lsp.completion import hover, proposals
 from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import meanings
 from rvmon.cli.lsp.protocol import UNREADABLE, Protocol
-from rvmon.diagnostics.span import Source, Span
-from rvmon.diagnostics.text_file import text_of_file
+from rvmon.diagnostics import Source, Span
 from rvmon.errors import SpecError
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.syntax.expressions import Name
 from rvmon.spec.syntax.parse import parse_expression
 from rvmon.starter.skeletons import name_text
+from rvmon.texts import text_of_file
 
 QUIET = 0.2
 """Seconds without an edit after which findings are looked for."""

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import (
     ColumnMessages,
@@ -21,6 +20,7 @@ from rvmon.readers.messages.columns import (
 )
 from rvmon.readers.messages.topic import Topic, errors_as_damage
 from rvmon.readers.table_batch import ticks_of_column
+from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_UNIT

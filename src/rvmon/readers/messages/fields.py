@@ -10,11 +10,11 @@ from math import inf
 from operator import attrgetter
 from typing import Any, assert_never
 
-from rvmon.diagnostics.nearest import nearest
 from rvmon.errors import TraceError
 from rvmon.readers.messages.by_names import Get, by_names
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
+from rvmon.texts import nearest
 from rvmon.trace.binding import Applied, Constant, Elements, Field, Named, Step, Term
 from rvmon.trace.sample import calculated
 from rvmon.trace.schema import Kind

@@ -17,8 +17,6 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
@@ -27,6 +25,7 @@ from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
 from rvmon.readers.places import endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
+from rvmon.texts import did_you_mean, text_of_file
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_cell
 from rvmon.trace.time import format_ticks

@@ -7,12 +7,9 @@ from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Span
-from rvmon.spec.check.choices import decided, spread
-from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.quantities import Placed, arithmetic, compare, node_of
-from rvmon.spec.check.values import (
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.spec.check.quantities import Placed, arithmetic, compare, decided, node_of, spread
+from rvmon.spec.check.scope import (
     Age,
     Ago,
     AmountOf,
@@ -20,11 +17,13 @@ from rvmon.spec.check.values import (
     Extreme,
     Moment,
     Now,
+    Operands,
     Quantity,
     Scope,
     Value,
 )
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.classify import reads_field
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
@@ -47,8 +46,7 @@ from rvmon.spec.checked.formula import (
     itself,
     passed,
 )
-from rvmon.spec.checked.reads import names_in
-from rvmon.spec.checked.tense import reads_field
+from rvmon.spec.checked.names_read import names_in
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
@@ -94,7 +92,7 @@ def closed_interval(
     Raises:
         Refusal: no tick lies in it.
 
-    >>> from rvmon.diagnostics.span import Source
+    >>> from rvmon.diagnostics import Source
     >>> closed_interval(2, 5, low_open=True, high_open=False, span=Span(Source("", ""), 0, 0))
     Interval(low=3, high=5)
     """

@@ -8,7 +8,8 @@ from math import ceil, floor, inf, prod
 
 from rvmon.spec.check.comparisons import compared
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope, Value
+from rvmon.spec.check.scope import EVERYWHERE, Quantity, Scope, Value
+from rvmon.spec.checked.classify import end_part, future_part
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -25,12 +26,11 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.spec.checked.operators import Connectives, Tense
-from rvmon.spec.checked.reading import read
-from rvmon.spec.checked.tense import end_part, future_part
+from rvmon.spec.checked.rewrite import read
 from rvmon.spec.print.printer import format_formula
-from rvmon.spec.rules import goals as rules
 from rvmon.spec.rules import names as name_rules
-from rvmon.spec.rules import triggers as trigger_rules
+from rvmon.spec.rules import properties as rules
+from rvmon.spec.rules import requirements as trigger_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import (
     Call,

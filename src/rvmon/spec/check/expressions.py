@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import assert_never
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Span
-from rvmon.spec.check.choices import spread
+from rvmon.diagnostics import Diagnostic, Span
 from rvmon.spec.check.comparisons import closed_interval, compared, moved, ticks_of
-from rvmon.spec.check.functions import applied
-from rvmon.spec.check.quantities import arithmetic
-from rvmon.spec.check.read_as import formula_of, number_of
-from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import (
+from rvmon.spec.check.functions import applied, formula_of, number_of
+from rvmon.spec.check.quantities import arithmetic, spread
+from rvmon.spec.check.scope import (
     EVERYWHERE,
     Chosen,
     Closure,
@@ -21,7 +17,10 @@ from rvmon.spec.check.values import (
     Now,
     Quantity,
     Scope,
+    Table,
     Value,
+    close_name,
+    close_unit,
 )
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
@@ -43,7 +42,6 @@ from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Findings, Refusal, Reported
-from rvmon.spec.syntax.effort import Cost, Effort
 from rvmon.spec.syntax.expressions import (
     Call,
     Choice,
@@ -64,6 +62,7 @@ from rvmon.spec.syntax.expressions import (
 )
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
+from rvmon.spec.syntax.size_limits import Cost, Effort
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 

@@ -1,23 +1,37 @@
-"""The functions of the language, applied to their arguments."""
+"""The functions of the language applied to arguments; expressions read as formula or number."""
 
 from __future__ import annotations
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.diagnostics.span import Span
-from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.read_as import number_of
-from rvmon.spec.check.values import Age, Ago, AmountOf, Chosen, Extreme, Quantity, Scope, Value
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.spec.check.comparisons import alone
+from rvmon.spec.check.quantities import either
+from rvmon.spec.check.scope import (
+    Age,
+    Ago,
+    AmountOf,
+    Beside,
+    Chosen,
+    Extreme,
+    Operands,
+    Quantity,
+    Scope,
+    Value,
+)
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.classify import fields_in, future_part, is_pulse, reads_field
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
+    Compare,
+    CompareOp,
     Formula,
     Interval,
+    Literal,
     Measured,
     Numeric,
     Probe,
     ProbeAtom,
+    SignalAtom,
     SignalValue,
     Unary,
     UnaryOp,
@@ -26,17 +40,58 @@ from rvmon.spec.checked.formula import (
     itself,
 )
 from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function, Recall
-from rvmon.spec.checked.reads import names_in
+from rvmon.spec.checked.names_read import names_in
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.checked.tense import fields_in, future_part, is_pulse, reads_field
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.fixes import NEVER
+from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, parse_unit, quotient
+
+
+def formula_of(value: Value, span: Span) -> Formula:
+    """The value as a formula.
+
+    Raises:
+        Refusal: it is a number or label.
+    """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
+    match value:
+        case Quantity(node=SignalValue(name=name), truth=True):
+            return SignalAtom(name, span)
+        case Quantity(node=node, truth=True) if node is not None:
+            return Compare(CompareOp.EQ, node, Literal(True), span)
+        case Quantity(labels=labels):
+            raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
+        case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
+            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
+        case _:
+            return value
+
+
+def number_of(value: Value, span: Span) -> Quantity:
+    """The value as a number.
+
+    Raises:
+        Refusal: it is a formula or label.
+    """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
+    match value:
+        case Quantity(truth=False, labels=()):
+            return value
+        case Quantity(truth=False):
+            raise Refusal(rules.label_use(span))
+        case Chosen():
+            raise Refusal(rules.choice_alone(span))
+        case _:
+            raise Refusal(rules.needs_number(span))
+
 
 _INSTEAD = {
     **dict.fromkeys(

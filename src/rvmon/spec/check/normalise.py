@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import reduce
 
-from rvmon.diagnostics.span import Span
-from rvmon.spec.check.table import Table
+from rvmon.diagnostics import Span
+from rvmon.spec.check.scope import Table
+from rvmon.spec.checked.classify import future_part, has_future
 from rvmon.spec.checked.ctl import PathUnary, Property, StateAtom
 from rvmon.spec.checked.formula import (
     Binary,
@@ -19,11 +20,10 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.operators import Tense
-from rvmon.spec.checked.reading import rewritten
-from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.rewrite import rewritten
 from rvmon.spec.checked.specification import Event, Mode, Role, Signal
-from rvmon.spec.checked.tense import future_part, has_future
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules.rule import Refusal
 

@@ -6,19 +6,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.check.comparisons import is_time, seconds_of
 from rvmon.spec.check.coverage import present
+from rvmon.spec.check.ctl import linear_form, property_of
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.linear import linear_form
 from rvmon.spec.check.normalise import (
     derived_response,
     normalised,
     scoped_consequent,
     scoped_trigger,
 )
-from rvmon.spec.check.properties import property_of
 from rvmon.spec.check.quantities import node_of
+from rvmon.spec.check.scope import EVERYWHERE, Closure, Moment, Now, Quantity, Scope
 from rvmon.spec.check.traps import (
     at_start_by_mistake,
     capture_traps,
@@ -27,7 +27,15 @@ from rvmon.spec.check.traps import (
     traps_at_trigger,
     ungrouped,
 )
-from rvmon.spec.check.values import EVERYWHERE, Closure, Moment, Now, Quantity, Scope
+from rvmon.spec.checked.classify import (
+    end_part,
+    future_part,
+    is_pulse,
+    is_timeless,
+    mixed_disjunction,
+    reads_field,
+    subformulas,
+)
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import (
     Amount,
@@ -52,18 +60,9 @@ from rvmon.spec.checked.specification import (
     Requirement,
     RunShare,
 )
-from rvmon.spec.checked.tense import (
-    end_part,
-    future_part,
-    is_pulse,
-    is_timeless,
-    mixed_disjunction,
-    reads_field,
-    subformulas,
-)
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
-from rvmon.spec.rules import triggers as rules
+from rvmon.spec.rules import requirements as rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import (

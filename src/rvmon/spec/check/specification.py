@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
+from rvmon.spec.check.ctl import checked_goal, checked_property
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.properties import checked_goal, checked_property
 from rvmon.spec.check.requirements import check_clauses, checked_requirement
-from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import EVERYWHERE
+from rvmon.spec.check.scope import EVERYWHERE, Table, close_name, close_unit
 from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     CheckedSpec,
@@ -19,16 +18,14 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.spec.names.resolve import find_cycles
-from rvmon.spec.names.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
+from rvmon.spec.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Findings, Refusal, Reported
-from rvmon.spec.syntax.expressions import Expression, Name
+from rvmon.spec.syntax.expressions import Expression, Name, expressions_in
 from rvmon.spec.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
-from rvmon.spec.syntax.walk import expressions_in
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
 

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.spec.checked.classify import (
+    FIRST,
+    Facts,
+    facts_of,
+    fields_in,
+    is_pulse,
+    is_timeless,
+    subformulas,
+    truth_at,
+)
 from rvmon.spec.checked.formula import (
     Atom,
     Binary,
@@ -17,11 +26,9 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.instant import FIRST, Facts, facts_of, truth_at
 from rvmon.spec.checked.specification import Capture, Mode, TimeModel
-from rvmon.spec.checked.tense import fields_in, is_pulse, is_timeless, subformulas
 from rvmon.spec.print.printer import format_duration, format_formula
-from rvmon.spec.rules import traps as rules
+from rvmon.spec.rules import requirements as rules
 from rvmon.spec.syntax.expressions import Expression, Group, Immediately
 from rvmon.spec.syntax.items import LetClause
 

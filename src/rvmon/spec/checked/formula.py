@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.operators import BinaryOp as BinaryOp
 from rvmon.spec.checked.operators import Interval as Interval

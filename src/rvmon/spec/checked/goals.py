@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import Formula
 

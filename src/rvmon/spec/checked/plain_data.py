@@ -13,8 +13,8 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from rvmon.diagnostics import diagnostic, span
-from rvmon.diagnostics.span import Source, Span
+from rvmon import diagnostics
+from rvmon.diagnostics import Source, Span
 from rvmon.spec.checked import formula, specification
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.operators import BinaryOp, Interval, UnaryOp
@@ -28,7 +28,7 @@ def _class_named(name: str) -> type | None:
 
 @cache
 def _classes() -> Mapping[str, type]:
-    modules = (formula, specification, span, diagnostic, schema)
+    modules = (formula, specification, diagnostics, schema)
     own = {one.__name__: one for one in (NumericOp, UnaryOp, BinaryOp, Interval)}
     return {**own, **dict(_own_classes(*modules))}
 

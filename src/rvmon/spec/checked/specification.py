@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.spec.checked.formula import FieldValue, Formula, Numeric
 from rvmon.trace.schema import Kind, Schema
 

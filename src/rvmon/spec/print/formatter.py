@@ -6,14 +6,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.diagnostics.render import render_full
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics import Source, render_full
 from rvmon.errors import SpecError
-from rvmon.spec.print.format_words import Piece, pieces_of
-from rvmon.spec.print.layout import WIDTH, lines_of, text_of
+from rvmon.spec.print.layout import WIDTH, Piece, lines_of, pieces_of, text_of
 from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.parse import parse_spec
-from rvmon.spec.syntax.split import split_items
+from rvmon.spec.syntax.words import split_items
 
 Row = tuple[str, str, str, str, str]
 """Word, names, type, role, what it ignores and its limit of staleness."""

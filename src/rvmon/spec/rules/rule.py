@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 
 
 @dataclass(frozen=True, slots=True)

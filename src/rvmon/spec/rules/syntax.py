@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 SYNTAX = Rule("RV001", "syntax", Severity.ERROR)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 WRONG_TYPE = Rule("RV020", "wrong-type", Severity.ERROR)

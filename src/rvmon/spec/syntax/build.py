@@ -11,7 +11,7 @@ from lark import Token
 from lark.tree import Meta
 from lark.visitors import v_args
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import Mode, Role, TimeModel
 from rvmon.spec.syntax.build_expressions import Children, ExpressionBuilder, first_of, unquoted

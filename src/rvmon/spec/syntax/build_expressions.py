@@ -13,8 +13,7 @@ from lark import Token
 from lark.tree import Meta
 from lark.visitors import Transformer_NonRecursive, v_args
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
 from rvmon.spec.rules import syntax as rules

@@ -8,8 +8,7 @@ from typing import Any
 import lark
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.rules.rule import short
 from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix

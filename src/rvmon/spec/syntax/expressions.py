@@ -1,11 +1,12 @@
-"""The syntax tree of expressions: formulas, numbers and durations as written."""
+"""The syntax tree of expressions: formulas, numbers and durations as written; and its walks."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
 
@@ -197,3 +198,39 @@ Expression = (
     | Quantified
     | LeadsTo
 )
+
+
+def expressions_in(expression: Expression) -> Iterator[Expression]:
+    """The expression and all below it, those of windows too."""
+    waiting = [expression]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting += reversed(operands(node))
+
+
+def operands(expression: Expression) -> tuple[Expression, ...]:
+    """The expressions that one is made of, from left to right."""
+    match expression:
+        case Group(inner=inner) | Immediately(operand=inner) | Quantified(path=inner):
+            return (inner,)
+        case Prefix(operand=operand, window=window) | Path(operand=operand, window=window):
+            return (*_bounds(window), operand)
+        case Infix(left=left, right=right, window=window):
+            return (left, *_bounds(window), right)
+        case LeadsTo(left=left, right=right, window=window):
+            return (left, *_bounds(window), right)
+        case Comparison(left=left, right=right):
+            return (left, right)
+        case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+            return (condition, chosen, otherwise)
+        case Call(args=args) | Operation(args=args):
+            return args
+        case _:
+            return ()
+
+
+def _bounds(window: Window | None) -> tuple[Expression, ...]:
+    if window is None:
+        return ()
+    return tuple(bound for bound in (window.low, window.high) if bound is not None)

@@ -6,9 +6,9 @@ import re
 
 import lark
 
-from rvmon.diagnostics.nearest import nearest
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
+from rvmon.texts import nearest
 from rvmon.units import SPOKEN, unit_table
 
 _FIX = {

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
-from rvmon.diagnostics.span import Source
-from rvmon.diagnostics.text_file import text_of_file
-from rvmon.spec.rules import imports as rules
+from rvmon.diagnostics import Source
+from rvmon.spec.rules import names as rules
 from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.items import ImportItem, ParsedSpec
 from rvmon.spec.syntax.parse import parse_spec
+from rvmon.texts import text_of_file
 
 _MARKS = (".git", "pyproject.toml")
 """What stands in the root of a project."""

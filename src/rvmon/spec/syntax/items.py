@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import Mode, Role, TimeModel
 from rvmon.spec.syntax.expressions import Expression, Ident, Name, Number, Window

@@ -10,19 +10,17 @@ from typing import Any
 import lark
 from lark.exceptions import UnexpectedInput, VisitError
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.nearest import nearest
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.build import Builder
-from rvmon.spec.syntax.effort import LARGEST
 from rvmon.spec.syntax.expected import explain_unexpected
 from rvmon.spec.syntax.expressions import Expression
 from rvmon.spec.syntax.grammar_cache import parser_of
 from rvmon.spec.syntax.items import Item, ParsedSpec
-from rvmon.spec.syntax.split import split_items
-from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, OPERATOR_TERMINALS, RESERVED
+from rvmon.spec.syntax.size_limits import LARGEST
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, OPERATOR_TERMINALS, RESERVED, split_items
+from rvmon.texts import nearest
 from rvmon.units import compound_pattern
 
 DEEPEST = 100

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from itertools import product
 
 from rvmon.diagnostics import Span
-from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.bodies import updates_of
 from rvmon.timed.language.declare import Findings, Parts

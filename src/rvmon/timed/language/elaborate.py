@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from rvmon.diagnostics import Severity, Source, Span
-from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare

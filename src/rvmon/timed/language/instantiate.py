@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.declare import Findings, check_range
 from rvmon.timed.language.document import Document

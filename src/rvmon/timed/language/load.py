@@ -7,8 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
-from rvmon.diagnostics.nearest import cannot_read
-from rvmon.diagnostics.text_file import text_of_file
+from rvmon.texts import cannot_read, text_of_file
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_document
 from rvmon.timed.language.uppaal import read_uppaal

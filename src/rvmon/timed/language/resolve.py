@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
-from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
+from rvmon.texts import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.diagonals import Diagonals, terms_of
 from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason

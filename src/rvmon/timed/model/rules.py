@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.diagnostics import Diagnostic, Label, Severity, Span
-from rvmon.diagnostics.render import render_full
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span, render_full
 from rvmon.errors import ModelError
 
 RULES = {

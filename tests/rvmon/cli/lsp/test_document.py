@@ -12,12 +12,11 @@ from tests.tools.code_pages import page
 from rvmon.cli.lsp.completion import hover, proposals
 from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import _LINES, meanings
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.explain.codes import every_rule, page_of
 from rvmon.spec.syntax.expected import accepted_terminals
 from rvmon.spec.syntax.parse import grammar
-from rvmon.spec.syntax.split import split_items
-from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
+from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED, split_items
 
 ROOT = Path(__file__).parents[4]
 SPEC = """spec demo "😋 all kinds of names"

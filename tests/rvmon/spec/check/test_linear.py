@@ -7,7 +7,7 @@ from tests.tools.ltl3 import Tableau
 
 from rvmon import loads
 from rvmon.errors import SpecError
-from rvmon.spec.check.linear import linear_form
+from rvmon.spec.check.ctl import linear_form
 from rvmon.spec.checked.ctl import PathBinary, PathUnary, StateAtom, StateBinary, StateNot
 from rvmon.spec.checked.formula import BinaryOp, UnaryOp
 from rvmon.spec.checked.specification import TimeModel

@@ -7,7 +7,7 @@ import pytest
 from tests.tools import build
 from tests.tools.law import judge
 
-from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.spec.check.traps import traps_at_start, traps_at_trigger
 from rvmon.spec.checked.formula import Arithmetic, Constant, Unary, UnaryOp, UpdateValue
 from rvmon.spec.checked.specification import TimeModel

@@ -5,8 +5,8 @@ import random
 import pytest
 from tests.rvmon.spec.print.writing import meaning
 
+from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Arithmetic, Compare, Literal, SignalValue
-from rvmon.spec.checked.tense import subformulas
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.testing.case import show_spec

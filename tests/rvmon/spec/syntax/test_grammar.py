@@ -9,7 +9,7 @@ from lark import logger
 
 import rvmon
 from rvmon.errors import SpecError
-from rvmon.spec.checked.reads import names_of_spec
+from rvmon.spec.checked.names_read import names_of_spec
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.print.printer import format_formula

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from rvmon.diagnostics.render import SEVERITIES, coloured, render_full, wants_colour
+from rvmon.diagnostics import SEVERITIES, coloured, render_full, wants_colour
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 

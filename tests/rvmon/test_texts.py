@@ -4,7 +4,7 @@ import json
 
 from tests.tools.hostile import STEERING, hostile_names
 
-from rvmon.diagnostics.shown import shown, shown_json, shown_line
+from rvmon.texts import shown, shown_json, shown_line
 
 
 def test_nothing_that_steers_is_left():

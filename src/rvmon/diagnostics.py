@@ -1,4 +1,8 @@
-"""Findings as text: in full and in colour for people, a line each for tools, JSON for programs."""
+"""Findings about a text that a person wrote: where, what, why, what fixes it; and how to show them.
+
+A finding is data with places in the source. It is rendered in full and in colour for people, a line
+each for tools, and as JSON for programs.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,94 @@ import os
 import re
 import unicodedata
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Any, TextIO
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Label
-from rvmon.diagnostics.shown import shown_line
-from rvmon.diagnostics.span import Source, Span
+from rvmon.texts import shown_line
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One text with the name people know it by (a path, or `<string>`)."""
+
+    name: str
+    text: str = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """The half-open range of characters `[start, end)` of a source.
+
+    Attributes:
+        source: the text that the offsets index.
+        start: offset of the first character, from 0.
+        end: offset behind the last character.
+    """
+
+    source: Source
+    start: int
+    end: int
+
+    @property
+    def line(self) -> int:
+        """Line of the first character, from 1."""
+        return self.source.text.count("\n", 0, self.start) + 1
+
+    @property
+    def column(self) -> int:
+        """Column of the first character, from 1."""
+        return self.start - (self.source.text.rfind("\n", 0, self.start) + 1) + 1
+
+    @property
+    def text(self) -> str:
+        """The characters themselves.
+
+        >>> Span(Source("a.rv", "upon sensed"), 5, 11).text
+        'sensed'
+        """
+        return self.source.text[self.start : self.end]
+
+    def to(self, other: Span) -> Span:
+        """The range from the start of this span to the end of `other`."""
+        return Span(self.source, min(self.start, other.start), max(self.end, other.end))
+
+
+class Severity(StrEnum):
+    """How much a finding weighs: an error stops the compilation, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place with an optional remark that stands beside its underline."""
+
+    span: Span
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding.
+
+    Attributes:
+        code: stable identifier with its page in the documentation, such as `RV012`.
+        name: the code in words, such as `unknown-signal`.
+        severity: error or warning.
+        message: one sentence: what is wrong.
+        spans: the places, the offending one first; empty if the whole file is meant.
+        help: what fixes it; empty if nothing is known to.
+    """
+
+    code: str
+    name: str
+    severity: Severity
+    message: str
+    spans: tuple[Label, ...] = ()
+    help: str = ""
+
 
 WIDEST = 107
 """A snippet is so many columns wide at most: longer lines are cut around the place."""
@@ -31,7 +118,7 @@ def snippet(
         mark: the character to underline with.
         width: columns that there are, so that underlines stay below what they mean.
 
-    >>> from rvmon.diagnostics.span import Source
+    >>> from rvmon.diagnostics import Source
     >>> print(snippet(Span(Source("a.rv", "upon sensd"), 5, 10)))
       --> a.rv:1:6
        |

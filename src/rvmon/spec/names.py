@@ -1,24 +1,25 @@
-"""From items to names: declared once, constants replaced, none circular; what nobody uses."""
+"""From items to names: declared once, constants replaced, none circular; what nobody uses.
+
+The result is a specification whose names are known: what each is declared as, once.
+"""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar, assert_never
 
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.functions import FUNCTIONS
-from rvmon.spec.checked.reads import names_of_spec
-from rvmon.spec.checked.specification import CheckedSpec, Event, Signal
-from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
+from rvmon.spec.checked.names_read import names_of_spec
+from rvmon.spec.checked.specification import CheckedSpec, Event, Role, Signal
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
-from rvmon.spec.rules import triggers as trigger_rules
+from rvmon.spec.rules import requirements as trigger_rules
 from rvmon.spec.rules.rule import Findings
-from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name
+from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name, expressions_in
 from rvmon.spec.syntax.items import (
     ConstItem,
     CoverItem,
@@ -27,6 +28,7 @@ from rvmon.spec.syntax.items import (
     DefineItem,
     DelayItem,
     EventItem,
+    EventSyntax,
     Header,
     ImportItem,
     Item,
@@ -36,9 +38,64 @@ from rvmon.spec.syntax.items import (
     RequirementItem,
     SignalItem,
     TimeItem,
+    TypeSyntax,
 )
 from rvmon.spec.syntax.parse import parse_expression
-from rvmon.spec.syntax.walk import expressions_in
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredSignal:
+    """One signal of an item."""
+
+    name: Ident
+    type: TypeSyntax
+    role: Role | None
+    ignored: Span | None
+    stale_after: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredEvent:
+    """One event of an item."""
+
+    name: Ident
+    event: EventSyntax
+    role: Role | None
+
+
+Declared = DeclaredSignal | DeclaredEvent | DefineItem | ConstItem
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedSpec:
+    """All items of a specification, each under its name.
+
+    Attributes:
+        sources: the main file, then those it imports.
+        header: its `spec` line, if it has one.
+        time: its `time` line, if it has one.
+        delay: its `max delay` line, if it has one.
+        declared: signals, events, macros and constants by name, in order.
+        requirements: by id, in order.
+        properties: that stand alone, by id, in order.
+        covers: by id, in order.
+        coverpoints: by name, in order.
+        crosses: by name, in order.
+        doubtful: words of items that could not be read.
+    """
+
+    sources: tuple[Source, ...]
+    header: Header | None
+    time: TimeItem | None
+    delay: DelayItem | None
+    declared: Mapping[str, Declared]
+    requirements: Mapping[str, RequirementItem]
+    properties: Mapping[str, PropertyItem]
+    covers: Mapping[str, CoverItem]
+    coverpoints: Mapping[str, CoverpointItem]
+    crosses: Mapping[str, CrossItem]
+    doubtful: frozenset[str]
+
 
 _K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 

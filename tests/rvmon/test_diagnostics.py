@@ -2,8 +2,17 @@
 
 import json
 
-from rvmon.diagnostics import Diagnostic, Label, Severity, Source, Span
-from rvmon.diagnostics.render import render_concise, render_full, render_json, snippet
+from rvmon.diagnostics import (
+    Diagnostic,
+    Label,
+    Severity,
+    Source,
+    Span,
+    render_concise,
+    render_full,
+    render_json,
+    snippet,
+)
 
 SOURCE = Source("specs/demo.rv", "spec demo\nevent released\n  then\twithin 3 s relased\n")
 PLACE = SOURCE.text.index("relased")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from rvmon.diagnostics.span import Span
+from rvmon.diagnostics import Span
 from rvmon.spec.checked.formula import Binary, Constant, Formula, Unary
 from rvmon.spec.checked.operators import BinaryOp, Connectives, Interval, UnaryOp
 

@@ -1,0 +1,178 @@
+"""Texts of others: read within bounds, shown safely, and compared with the name that was meant.
+
+Files are regular and of a bounded size; nothing that is shown steers a terminal or hides.
+"""
+
+from __future__ import annotations
+
+import difflib
+import errno
+import os
+import re
+import stat
+import sys
+import unicodedata
+from collections.abc import Iterable
+from contextlib import suppress
+from itertools import islice
+from pathlib import Path
+
+MOST_NAMES = 1_000
+"""Names that a misspelt one is compared with."""
+
+
+def nearest(name: str, known: Iterable[str], likeness: float = 0.6) -> str:
+    """The known name that is most alike; empty if none is.
+
+    Args:
+        name: as written.
+        known: those that exist; the first thousand are looked at.
+        likeness: from 0 to 1, how much alike it has to be (`difflib.SequenceMatcher.ratio`).
+
+    >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"])
+    'gaze_ok'
+    """
+    found = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 1, likeness)
+    return found[0] if found else ""
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """A question after the known name that is most alike, else `otherwise`.
+
+    >>> did_you_mean("relased", ["released"])
+    'did you mean `released`?'
+    """
+    close = nearest(name, known)
+    return f"did you mean `{close}`?" if close else otherwise
+
+
+def cannot_read(path: str | Path, error: OSError) -> str:
+    """Why a file cannot be read, and if there is none, the one in its folder most alike.
+
+    >>> cannot_read("nowhere/base.csv", FileNotFoundError(2, "No such file or directory"))
+    'nowhere/base.csv: No such file or directory'
+    """
+    why = f"{path}: {error.strerror or error}"
+    if isinstance(error, FileNotFoundError):
+        with suppress(OSError), os.scandir(Path(path).parent) as entries:
+            others = (entry.name for entry in entries if entry.name != Path(path).name)
+            if close := nearest(Path(path).name, others):
+                return f"{why}: did you mean `{Path(path).with_name(close)}`?"
+    return why
+
+
+_PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
+
+
+def proposed(help_: str) -> str:
+    """What a help proposes to write in place of what is wrong; empty if that is not all of it.
+
+    >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
+    ('released', '')
+    """
+    found = _PROPOSED.match(help_)
+    return found[1] or found[2] if found else ""
+
+
+_STEERS_JSON = re.compile(
+    "[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]"  # what JSON itself leaves as it is
+)
+
+
+def shown(text: str) -> str:
+    r"""The text with its control and formatting characters written out.
+
+    Names, cells, labels, texts and files' names may hold escapes of a terminal, and signs that turn
+    the direction of writing: everything that leaves for people goes through here. Ends of lines
+    stay, and every kind of space.
+
+    >>> print(shown("\x1b[31mred\x9b0m \u202eor not"))
+    \x1b[31mred\x9b0m \u202eor not
+    """
+    if text.replace("\n", "").isprintable():
+        return text
+    return "".join(map(_shown, text))
+
+
+def shown_line(text: str) -> str:
+    r"""The same on one line: ends of lines, too, are written out.
+
+    >>> print(shown_line("one\ntwo"))
+    one\ntwo
+    """
+    return shown(text).replace("\n", r"\n")
+
+
+def shown_json(text: str) -> str:
+    r"""JSON text that reads back the same, with what would steer a terminal escaped as JSON does.
+
+    >>> print(shown_json('"\x9b0m"'))
+    "\u009b0m"
+    """
+    if text.isascii() and "\x7f" not in text:
+        return text
+    return _STEERS_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def _shown(char: str) -> str:
+    if char == "\n" or char.isprintable() or unicodedata.category(char) == "Zs":
+        return char
+    return ascii(char)[1:-1]
+
+
+def shown_path(path: str | os.PathLike[str]) -> str:
+    """A path as text; names of files need not be.
+
+    >>> shown_path("monday.csv")
+    'monday.csv'
+    """
+    return os.fsencode(path).decode("utf-8", "replace")
+
+
+MEGABYTE = 1 << 20
+
+MOST = 10
+"""Megabytes of a text, unless `RVMON_MAX_TEXT` says otherwise."""
+
+
+def text_of_file(path: str | Path, encoding: str = "utf-8") -> str:
+    """Read a specification or a model.
+
+    Args:
+        path: of a regular file.
+        encoding: how its characters are written.
+
+    Raises:
+        OSError: it cannot be read, is a device or a pipe, or is too large; `strerror` says which.
+        UnicodeDecodeError: it is not text.
+    """
+    with open(path, "rb", opener=_open_at_once) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "a device or a pipe: a regular file is expected")
+        data = file.read(_most() + 1)
+    _refuse_large(len(data))
+    return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+
+
+def text_of_input() -> str:
+    """Read a specification from standard input; see `text_of_file`."""
+    text = sys.stdin.read(_most() + 1)
+    _refuse_large(len(text))
+    return text
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open without waiting for the other end of a pipe."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _most() -> int:
+    given = os.environ.get("RVMON_MAX_TEXT", "")
+    return (int(given) if given.isascii() and given.isdigit() else MOST) * MEGABYTE
+
+
+def _refuse_large(size: int) -> None:
+    most = _most()
+    if size > most:
+        reason = f"larger than {most // MEGABYTE} MB: if that is meant, set RVMON_MAX_TEXT (in MB)"
+        raise OSError(errno.EFBIG, reason)
