@@ -137,7 +137,7 @@ def write_ros1(
     writer = Writer(path)
     if compression:
         writer.set_compression(Writer.CompressionFormat[compression.upper()])
-    return _write_ros(path, sent, writer, store, store.serialize_ros1, types)
+    return _write_ros(path, sent, writer, store, store.serialize_ros1, types, own)
 
 
 def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) -> Path:
@@ -166,16 +166,29 @@ def _write_ros(
     store: Any,
     pack: Callable[[Any, str], bytes],
     types: Types = TYPES,
+    own: Types = NONE,
 ) -> Path:
     with writer:
         connections = {
-            topic: writer.add_connection(topic, types[topic], typestore=store)
+            topic: writer.add_connection(
+                topic, types[topic], **_definition(store, types[topic], own)
+            )
             for topic in dict.fromkeys(topic for topic, _, _ in sent)
         }
         for topic, t, content in sent:
             message = _message(store, types[topic], content)
             writer.write(connections[topic], t, pack(message, types[topic]))
     return path
+
+
+def _definition(store: Any, name: str, own: Types) -> Mapping[str, Any]:
+    """The definition of a type: one of its own as it was written, with its comments."""
+    if name not in own:
+        return {"typestore": store}
+    made, digest = store.generate_msgdef(name)
+    parts = {part.split()[1]: part for part in made.split("=" * 80 + "\n")[1:]}
+    lacking = [part for named, part in parts.items() if f"MSG: {named}\n" not in own[name]]
+    return {"msgdef": ("=" * 80 + "\n").join([own[name], *lacking]), "md5sum": digest}
 
 
 def _message(store: Any, name: str, content: Content) -> Any:
@@ -203,7 +216,7 @@ def _array(store: Any, element: Any, size: int, given: Sequence[Any]) -> Any:
 
     node, inner = element
     if node is Nodetype.NAME:
-        return [_message(store, inner, one) for one in given]
+        return [_message(store, inner, one) for one in given or [{}] * size]
     if inner[0] == "string":
         return [*given]
     return np.array(given or [0] * size, inner[0])

@@ -27,9 +27,9 @@ _AXES = ("x", "y", "z")
 
 _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "m/s": {
-        "x": ("forward", "longitudinal"),
-        "y": ("lateral", "sideways"),
-        "z": ("vertical", "climb", "rate"),
+        "x": ("forward", "longitudinal", "surge"),
+        "y": ("lateral", "sideways", "sway"),
+        "z": ("vertical", "climb", "rate", "heave"),
     },
     "m/s^2": {
         "x": ("forward", "longitudinal"),
@@ -160,7 +160,9 @@ def _places(
 
 
 def _along(meaning: Meaning, axis: str) -> tuple[str, ...]:
-    return _ALONG.get(meaning.units[0].symbol if meaning.units else "", {}).get(axis, ())
+    dimensions = [unit.dimension for unit in meaning.units[:1]]
+    found = (own for unit, own in _ALONG.items() if parse_unit(unit).dimension in dimensions)
+    return next(found, {}).get(axis, ())
 
 
 def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:

@@ -118,15 +118,16 @@ def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
         dimension = parse_unit(type_.unit).dimension
         units = [unit for unit in one.meaning.units if unit.dimension == dimension]
         own = units[0].symbol if units else one.unit.symbol if one.unit is not None else ""
-        symbol = own or _plain_unit(dimension) or "1"
+        high = ranges.get((one.topic.name, one.value), Range()).high
+        is_whole = not dimension and high is not None and high > _WHOLE
+        symbol = own or _plain_unit(dimension) or ("%" if is_whole and not told else "1")
         remark = ""
         if not told:
             remark = (
                 "  # by the name of the field" if own else "  # a guess: the messages do not say"
             )
         yield f"unit = {_text(symbol)}{remark}"
-        high = ranges.get((one.topic.name, one.value), Range()).high
-        if told and not dimension and symbol == "1" and high is not None and high > _WHOLE:
+        if told and symbol == "1" and is_whole:
             yield f'# It looks like per cent: then value = "1 * {one.value}", unit = "%"'
     if _has_codes(type_, one):
         values = ranges.get((one.topic.name, one.value), Range()).first

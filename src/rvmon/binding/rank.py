@@ -15,6 +15,8 @@ from rvmon.binding.words import (
     WEAK,
     dimensions_of,
     is_found,
+    is_measured_in,
+    parts_of,
     words_of,
 )
 from rvmon.readers.messages.meaning import Sort
@@ -61,8 +63,10 @@ class Wanted:
 
 def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
     """What a name asks for; a leader is the first of topics that are numbered."""
-    words = words_of(name)
-    there = {word for topic in topics for word in words_of(topic.name)}
+    listed = [*topics]
+    there = {word for topic in listed for word in words_of(topic.name)}
+    fields = {word for topic in listed for leaf in topic.leaves for word in words_of(leaf)}
+    words = [part for word in words_of(name) for part in parts_of(word, there | fields)]
     guess = ""
     for place, word in enumerate(words):
         if word in ORDINALS and word not in there and {"1", "2"} <= there:
@@ -189,4 +193,5 @@ def _weight(word: str, candidate: Candidate) -> float:
         return float(candidate.is_command)
     if is_found(word, candidate.own) or (word == "minimum" and candidate.value[:4] == "min("):
         return 1.0
-    return 0.9 * is_found(word, candidate.around)
+    is_its_unit = candidate.unit is not None and is_measured_in(word, candidate.unit)
+    return 0.9 * (is_its_unit or is_found(word, candidate.around))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 
-from rvmon.units import parse_unit
+from rvmon.units import Unit, parse_unit
 
 Dimension = tuple[tuple[str, int], ...]
 
@@ -21,7 +21,7 @@ _SAME = {
     "latitude": "lat",
     "longitude": "lon lng long",
     "altitude": "alt",
-    "battery": "batt bat",
+    "battery": "batt bat bms",
     "yaw": "heading hdg theta",
     "position": "pos positions",
     "relative": "rel",
@@ -160,6 +160,9 @@ _QUANTITIES = {
 }
 """Units of the quantities that words stand for."""
 
+_TELLING = frozenset({"degC K", "V", "A", "W", "J", "Pa", "N"})
+"""Units of which each is of one quantity."""
+
 _TURNING = frozenset({"angular", "yaw", "turn", "turning", "roll", "pitch", "gyro", "steering"})
 
 _ENDINGS = (
@@ -202,7 +205,11 @@ def words_of(text: str) -> list[str]:
     plain = re.sub(r"(?i)\b(e|emergency)[_ ]?stop(ped)?(?![a-z])", "estop", text.replace("_", " "))
     found = [word.casefold() for word in _APART.findall(plain)]
     split = [part for word in found for part in _JOINED.get(word, (word,))]
-    return [_CANONICAL.get(word, word) for word in split]
+    words = [_CANONICAL.get(word, word) for word in split]
+    return [
+        "rate" if word == "speed" and before in ("yaw", "roll", "pitch") else word
+        for before, word in zip(["", *words], words, strict=False)
+    ]
 
 
 def is_found(word: str, there: Iterable[str]) -> bool:
@@ -211,6 +218,27 @@ def is_found(word: str, there: Iterable[str]) -> bool:
         word == one or (min(len(word), len(one)) > 3 and one.rstrip("s") == word.rstrip("s"))
         for one in there
     )
+
+
+def parts_of(word: str, known: Set[str]) -> list[str]:
+    """A word, or two that others write apart.
+
+    >>> parts_of("handbrake", {"hand", "brake"}), parts_of("brake", {"hand", "brake"})
+    (['hand', 'brake'], ['brake'])
+    """
+    cuts = range(3, len(word) - 2) if word not in known else ()
+    both = ([word[:cut], word[cut:]] for cut in cuts)
+    return next((two for two in both if known >= {*two}), [word])
+
+
+def is_measured_in(word: str, unit: Unit) -> bool:
+    """Whether what a word says is the only quantity that has such a unit.
+
+    >>> is_measured_in("voltage", parse_unit("mV")), is_measured_in("speed", parse_unit("m/s"))
+    (True, False)
+    """
+    plain = _QUANTITIES.get(word, "")
+    return plain in _TELLING and parse_unit(plain.split()[0]).dimension == unit.dimension
 
 
 def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
@@ -237,8 +265,8 @@ def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
 def unit_in_name(field: str) -> str:
     """The unit that the end of a field's name says, such as `speed_m_s`; empty if there is none.
 
-    >>> unit_in_name("true_airspeed_m_s"), unit_in_name("voltage_v"), unit_in_name("pose.x")
-    ('m/s', 'V', '')
+    >>> unit_in_name("true_airspeed_m_s"), unit_in_name("batteryPercent"), unit_in_name("pose.x")
+    ('m/s', '%', '')
     """
-    last = field.rpartition(".")[2].casefold()
+    last = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", field.rpartition(".")[2]).casefold()
     return next((unit for end, unit in _ENDINGS if last.endswith(f"_{end}")), "")

@@ -74,7 +74,7 @@ STRANGERS = {
             "body_height": ("/sportmodestate body_height [m]",),
             "yaw_rate": ("/sportmodestate yaw_speed [rad/s]",),
             "battery_soc": ("/lowstate bms_state.soc [%]",),
-            "bus_voltage": ("/lowstate power_v [V]",),
+            "bus_voltage": ("/lowstate power_v [V]", ""),
             "gait": ("/sportmodestate gait_type",),
         },
         {
@@ -135,7 +135,7 @@ STRANGERS = {
             "tire_pressure_rear_left": ("/vehicle/tire_pressure_report rear_left [kPa]",),
             "fuel_level": ("/vehicle/fuel_level_report fuel_level [%]",),
             "outside_temperature": ("/vehicle/misc_1_report outside_temperature [degC]",),
-            "driver_door_open": ("/vehicle/misc_1_report door_driver",),
+            "driver_door_open": ("/vehicle/misc_1_report door_driver", ""),
             "abs_active": ("/vehicle/brake_info_report abs_active",),
         },
         {
@@ -207,7 +207,7 @@ STRANGERS = {
         "signal altitude_above_seabed : real [m]\nsignal velocity_valid : bool\n"
         "signal surge_speed : real [m/s]",
         {
-            "altitude_above_seabed": ("/dvl/data altitude [m]",),
+            "altitude_above_seabed": ("/dvl/data altitude [m]", ""),
             "velocity_valid": ("/dvl/data velocity_valid",),
             "surge_speed": ("/dvl/data velocity.x [m/s]",),
         },
@@ -236,7 +236,7 @@ STRANGERS = {
         "signal forward_velocity : real [m/s]\nevent takeoff",
         {
             "battery_percent": ("/ardrone/navdata batteryPercent [%]",),
-            "altitude": ("/ardrone/navdata altd [cm]",),
+            "altitude": ("/ardrone/navdata altd [cm]", ""),
             "forward_velocity": ("/ardrone/navdata vx [mm/s]",),
             "takeoff": ("/ardrone/takeoff",),
         },

@@ -5,6 +5,7 @@ import tomllib
 import pytest
 from tests.rvmon.binding.more_robots import LAST, LATER
 from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
+from tests.rvmon.binding.strangers import STRANGERS
 from tests.rvmon.binding.traps import FRESH, TRAPS
 from tests.tools.bags import START, write_ros1
 
@@ -13,7 +14,7 @@ from rvmon.cli import main
 
 pytest.importorskip("rosbags")
 
-ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS, **FRESH}
+ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS, **FRESH, **STRANGERS}
 
 
 def write(robot, folder):
@@ -34,7 +35,8 @@ def flat(tables, prefix=""):
     """The place of each name."""
     for key, table in tables.items():
         if "topic" in table:
-            yield prefix + key, f"{table['topic']} {table.get('value', '')}".strip()
+            place = f"{table['topic']} {table.get('value', '')}".strip()
+            yield prefix + key, place + (f" [{table['unit']}]" if "unit" in table else "")
         else:
             yield from flat(table, f"{prefix}{key}.")
 
@@ -50,7 +52,7 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     wrong = {
         one: found.get(one, "")
         for one, places in robot.expected.items()
-        if found.get(one, "") not in (places or ("",))
+        if not {found.get(one, ""), found.get(one, "").partition(" [")[0]} & {*(places or ("",))}
     }
     assert not wrong
     open_ones = [one for one in robot.expected if one not in found]
@@ -74,6 +76,18 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
     binding = tmp_path / "a.toml"
     binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
     assert main(["check", spec, "--binding", str(binding)]) == 0
+
+
+def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
+    """Milliamps that are declared amps are an error, unless the binding says what they are."""
+    spec, bag = write(STRANGERS["create3"], tmp_path)
+    binding = tmp_path / "a.toml"
+    place = '[bind.left_wheel_current]\ntopic = "/wheel_status"\nvalue = "current_ma_left"\n'
+    binding.write_text(place)
+    assert main(["run", spec, bag, "--binding", str(binding), "--allow-missing"]) == 2
+    assert 'write `unit = "mA"` in a binding' in capsys.readouterr().err
+    binding.write_text(f'{place}unit = "mA"\n')
+    assert main(["run", spec, bag, "--binding", str(binding), "--allow-missing"]) == 0
 
 
 def test_a_leader_is_a_guess(tmp_path, capsys):

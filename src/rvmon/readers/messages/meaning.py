@@ -25,8 +25,9 @@ from enum import Enum
 from functools import cache
 from importlib import resources
 
+from rvmon.readers.messages.comments import spoken_unit
 from rvmon.readers.messages.topic import Topic
-from rvmon.units import Unit, UnknownUnitError, parse_unit
+from rvmon.units import Unit, parse_unit
 
 
 class Sort(Enum):
@@ -73,8 +74,6 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
     """
     # Names of elements may have dots.
     plain = re.sub(r"\[[^\[\]]*\]", "[]", path)
-    if plain in topic.units:
-        return _told(topic.units[plain])
     steps = plain.split(".")
     type_name = plain_type(topic.type)
     found = UNKNOWN
@@ -85,6 +84,8 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
             # What is said of a vector is said of all that is inside it.
             found = inner if found.sort is Sort.OPEN else found
         way = ".".join(steps[:place])
+        if way in topic.units and found.sort is Sort.OPEN:
+            found = _told(topic.units[way])
         told = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
         type_name = plain_type(told)
     return found
@@ -107,10 +108,8 @@ def plain_type(type_name: str) -> str:
 @cache
 def _told(unit: str) -> Meaning:
     """What is measured in a unit that a recording writes, if that is one."""
-    try:
-        return Meaning(Sort.MEASURED, (parse_unit(unit),))
-    except UnknownUnitError:
-        return UNKNOWN
+    plain = "1" if unit == "1" else spoken_unit(unit)
+    return _read(plain) if plain else UNKNOWN
 
 
 @cache

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, not_installed
+from rvmon.readers.messages.comments import units_of
+from rvmon.readers.messages.meaning import plain_type
 from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Kind
@@ -155,8 +157,10 @@ def ros_topic(
         return Topic(name, type_name, {}, fault), bytes
     messages: dict[str, str] = {}
     leaves = dict(_leaves(store, type_name, messages))
+    told = units_of(definition[1] or others.get(type_name, "")) if definition[0] != "idl" else {}
+    units = {} if not told else dict(_units(leaves, messages, told))
     unpack = store.deserialize_ros1 if is_ros1 else store.deserialize_cdr
-    topic = Topic(name, type_name, leaves, messages=messages)
+    topic = Topic(name, type_name, leaves, messages=messages, units=units)
     return topic, lambda raw: unpack(raw, type_name)
 
 
@@ -217,6 +221,17 @@ def ros_types(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
 def _bare_idl(part: str) -> str:
     """A definition without the line that names it among others."""
     return part.partition("\n")[2] if part.startswith("IDL: ") else part
+
+
+def _units(
+    leaves: Iterable[str], messages: Mapping[str, str], told: Mapping[str, Mapping[str, str]]
+) -> Iterator[tuple[str, str]]:
+    """The units that a definition says, by path; what stands in tables is said there."""
+    for path in (*messages, *leaves):
+        above, _, field = path.rpartition(".")
+        own = told.get(plain_type(messages[above]) if above else "", {})
+        if unit := own.get(field.removesuffix("[]")):
+            yield path, unit
 
 
 _FILLER = "structure_needs_at_least_one_member"

@@ -1,0 +1,145 @@
+"""The units that comments in definitions of messages say, beside a field or above it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from rvmon.units import UnknownUnitError, parse_unit
+
+_SPOKEN = {
+    "m": "meter metre",
+    "km": "kilometer kilometre",
+    "cm": "centimeter centimetre",
+    "mm": "millimeter millimetre",
+    "s": "second sec",
+    "ms": "millisecond msec",
+    "us": "microsecond usec",
+    "ns": "nanosecond nsec",
+    "min": "minute",
+    "h": "hour hr",
+    "rad": "radian",
+    "deg": "degree °",
+    "degC": "celsius centigrade",
+    "K": "kelvin",
+    "V": "volt",
+    "mV": "millivolt",
+    "A": "amp ampere",
+    "mA": "milliamp milliampere",
+    "W": "watt",
+    "N": "newton",
+    "N*m": "newton-meter nm",
+    "Pa": "pascal",
+    "kPa": "kpa",
+    "hPa": "hpa",
+    "Hz": "hertz hz",
+    "kg": "kilogram",
+    "%": "percent percentage",
+    "km/h": "kph kmh",
+    "m/s": "mps",
+    "T": "tesla",
+    "J": "joule",
+    "L": "litre liter",
+}
+"""Words that people write for units."""
+
+_UNITS = {word: unit for unit, words in _SPOKEN.items() for word in words.split()}
+
+_WRITTEN = {
+    r"^(units?|in|si)\b[:\s]*": "",
+    r"^(deg\w*\s*|°)?c(elsius)?$": "degC",
+    r"\s+per\s+|\s*/\s*": "/",
+    r"(?<=/s|ec)2$": "^2",
+    r"/s(ec\w*)?/s(ec\w*)?$": "/s^2",
+}
+"""How units are written otherwise."""
+
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
+
+_BEHIND_IN = re.compile(
+    r"\bin (?:units of )?(\S+(?: (?:celsius|c\b|per \w+|meters?))?)", re.IGNORECASE
+)
+
+_SCALE = re.compile(r"(?<![\d.])(?:0?\.0*1|10+|1e-?\d|10\^-?\d)\s*\*?\s*(?=[a-zA-Z])")
+"""What makes tenths, or hundreds, of a unit of it."""
+
+_FIELD = re.compile(r"(?P<type>[\w/]+)(?:<=\d+)?(?:\[[^\]]*\])?\s+(?P<name>\w+)[^=]*")
+
+_VECTORS = re.compile(r"(?:^|/)(?:Vector3|Point)\w*$")
+
+_NUMBERS = re.compile(r"float|double|u?int")
+
+
+def spoken_unit(text: str) -> str:
+    """The unit that a person wrote, as the language has it, `~` before one of another scale.
+
+    >>> spoken_unit("rad/sec"), spoken_unit("Degrees Celsius"), spoken_unit("10mA")
+    ('rad/s', 'degC', '~mA')
+    """
+    plain = text.strip(" .:").replace("**", "^").replace("²", "^2")
+    scale = _SCALE.match(plain)
+    plain = plain if scale is None else plain[scale.end() :]
+    for pattern, written in _WRITTEN.items():
+        plain = re.sub(pattern, written, plain, flags=re.IGNORECASE)
+    parts = [_part(part) for part in plain.split("/")]
+    try:
+        found = parse_unit("/".join(parts))
+    except UnknownUnitError:
+        return ""
+    # Is it a gram, or how things fall?
+    return "" if found.symbol in ("", "g") else f"{'~' * (scale is not None)}{found.symbol}"
+
+
+def _part(text: str) -> str:
+    base, caret, power = text.strip().partition("^")
+    word = base.casefold().replace(" ", "-")
+    known = _UNITS.get(word) or _UNITS.get(word.removesuffix("s"), "")
+    return f"{known or base}{caret}{power}"
+
+
+def unit_in_comment(comment: str) -> str:
+    """The unit that a comment says; empty if it says none.
+
+    >>> unit_in_comment("Tire pressures (kPa)"), unit_in_comment("left wheel in rad/sec.")
+    ('kPa', 'rad/s')
+    >>> unit_in_comment("voltage in 0.1V (16.1V -> 161)"), unit_in_comment("Figure of merit")
+    ('~V', '')
+    """
+    said = [*_BRACKETS.findall(comment), *_BEHIND_IN.findall(comment), comment]
+    units = (spoken_unit(re.split(r"[,;]|\s-\s", one)[0]) for one in said)
+    return next(filter(None, units), "")
+
+
+def units_of(definition: str) -> Mapping[str, Mapping[str, str]]:
+    r"""The units that the text of a definition says: by type (the first is ""), by field.
+
+    A comment above a field is of the next field; one that speaks of several, `# speeds (m/s)`, of
+    all of a type that follow it.
+
+    >>> units_of("# Speeds (rad/s)\nfloat32 left\nfloat32 right\nbool ok  # in m")
+    {'': {'left': 'rad/s', 'right': 'rad/s'}}
+    """
+    found: dict[str, dict[str, str]] = {}
+    for part in re.split(r"^=+$", definition, flags=re.MULTILINE):
+        named = re.match(r"\s*MSG: (\S+)", part)
+        own = dict(_units_in(part))
+        if own:
+            found["" if named is None else named[1].replace("/msg/", "/")] = own
+    return found
+
+
+def _units_in(part: str) -> Iterator[tuple[str, str]]:
+    above, kind = "", ""
+    for line in part.splitlines():
+        code, _, comment = line.partition("#")
+        field = _FIELD.fullmatch(code.strip())
+        if field is None:
+            above, kind = comment if not code.strip() else "", ""
+            continue
+        is_first = not kind
+        kind = kind or field["type"]
+        unit = unit_in_comment(comment)
+        if not unit and kind == field["type"] and (is_first or re.search(r"\w\ws\b", above)):
+            unit = unit_in_comment(above)
+        if unit and (_NUMBERS.match(field["type"]) or _VECTORS.search(field["type"])):
+            yield field["name"], unit
