@@ -23,9 +23,9 @@ from tests.tools.generate_ltl import random_mtl
 from tests.tools.progression import Progression, TooManyObligationsError
 from tests.tools.stepped import settle
 
-from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import PASSED, Token
 from rvmon.logic.formula import Factory
+from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom

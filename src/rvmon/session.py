@@ -16,10 +16,10 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
+    from rvmon.analysis.truths import Plans
     from rvmon.coverage.model import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
-    from rvmon.explain.truths import Plans
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
@@ -96,7 +96,7 @@ class Spec:
 
     @cached_property
     def plans_of_truths(self) -> Plans:
-        """What was made to look recordings through; see `rvmon.explain.truths.look_through`."""
+        """What was made to look recordings through; see `rvmon.analysis.truths.look_through`."""
         return {}
 
     def monitor(

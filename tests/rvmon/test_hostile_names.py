@@ -22,6 +22,7 @@ import pytest
 from tests.tools.hostile import STEERING, hostile_names
 
 import rvmon
+from rvmon.analysis.graph import quoted
 from rvmon.cli import main as command
 from rvmon.diagnostics import (
     Diagnostic,
@@ -34,7 +35,6 @@ from rvmon.diagnostics import (
     render_json,
 )
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.explain.graph import quoted
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
 from rvmon.report.markup import e

@@ -5,18 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
+from rvmon.analysis.codes import every_page
+from rvmon.analysis.examples import analyse
 from rvmon.diagnostics import Diagnostic, render_full
 from rvmon.errors import ModelError, SpecError
-from rvmon.explain.analysed import analyse
 from rvmon.monitor import compile_spec
 from rvmon.spec.compile import compile_text
 from rvmon.timed.conformance.conform import conform
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.search.verify import verify
 
-PAGES = Path(__file__).parents[2] / "src" / "rvmon" / "explain" / "pages"
 _FORM = re.compile(
     r"# (?P<code>\w+) (?P<name>[\w-]+)\n\n\*(?P<severity>\w+)\* · (?P<what>[^\n]+(?:\n[^\n]+)*)\n\n"
     r"(?P<why>[^\n]+(?:\n[^\n]+)*)\n\n## Example\n\n```(?:rv|ta)\n(?P<example>.*?)```\n\n"
@@ -44,7 +43,7 @@ class Page:
 
 def page(code: str) -> Page:
     """The page of a code; an assertion says that it has another form."""
-    text = (PAGES / f"{code}.md").read_text("utf-8")
+    text = every_page()[code]
     found = _FORM.fullmatch(text)
     assert found, code
     parts = found.groupdict()

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Generic, TypeVar, assert_never
 
-from rvmon.analysis.choices import Silence, values_of
-from rvmon.analysis.solve import is_solved, truths_tried
+from rvmon.analysis.choices import Silence, is_solved, truths_tried, values_of
 from rvmon.logic.state_formula import TRUE, Lapsed, Leaf, State, StateOp
 from rvmon.logic.state_graph import captured_names, names_of
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom

@@ -6,8 +6,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.analysis.conflicts import ConflictSearch
-from rvmon.analysis.implied import implications_among
+from rvmon.analysis.conflicts import ConflictSearch, implications_among
 from rvmon.analysis.product import Together
 from rvmon.analysis.requirement import Conflict, Implication, Subject
 from rvmon.analysis.vacuity import Possible, possible

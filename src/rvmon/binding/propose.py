@@ -8,8 +8,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rvmon.binding.candidates import Candidate, candidates_of, events_of
-from rvmon.binding.ranges import Range, ranges_of
+from rvmon.binding.candidates import Candidate, Range, candidates_of, events_of, ranges_of
 from rvmon.binding.rank import fitting, is_clear, wanted_of
 from rvmon.readers.messages.file import MessageFile
 from rvmon.readers.messages.look import Looked, names_in

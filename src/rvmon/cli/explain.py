@@ -43,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
-        from rvmon.explain.codes import code_list, page_of
+        from rvmon.analysis.codes import code_list, page_of
 
         code = arguments.subject
         say(code_list() if code == "codes" else page_of(code), end="")
@@ -70,7 +70,7 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
 
 
 def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: int) -> None:
-    from rvmon.explain.example import Budget
+    from rvmon.analysis.example import Budget
     from rvmon.report.explain_text import difference_explained, explained
     from rvmon.report.terminal import Terminal
 

@@ -124,7 +124,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
 
         found = [automaton_json(one, spec.checked) for one in chosen]
         return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
-    from rvmon.explain.graph import graph_dot, graph_of
+    from rvmon.analysis.graph import graph_dot, graph_of
 
     texts = []
     for one in chosen:

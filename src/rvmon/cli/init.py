@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.spec is not None:
         return _print_binding(arguments)
     from rvmon.starter.profile import profile_of
-    from rvmon.starter.write import starter_text
+    from rvmon.starter.skeletons import starter_text
 
     output = arguments.output or Path(arguments.data).with_suffix(".rv").name
     if output != "-" and Path(output).exists() and not arguments.force:

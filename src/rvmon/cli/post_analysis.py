@@ -17,7 +17,7 @@ from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.explain.truths import Question
+    from rvmon.analysis.truths import Question
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
     from rvmon.verdict.attempt import Attempt
@@ -87,9 +87,9 @@ def post_analysis(
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent:
         return report
-    from rvmon.explain.late_arrival import late_in
-    from rvmon.explain.near_miss import miss_in, parts_asked
-    from rvmon.explain.truths import look_through
+    from rvmon.analysis.near_miss import miss_in, parts_asked
+    from rvmon.analysis.subformulas import late_in
+    from rvmon.analysis.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
@@ -124,7 +124,7 @@ def _missed(
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
         return {}
-    from rvmon.explain.late_arrival import waits_of
+    from rvmon.analysis.subformulas import waits_of
 
     most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
     found = {}

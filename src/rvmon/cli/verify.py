@@ -299,7 +299,7 @@ def _print_observation(one: Observation, spec: Spec) -> None:
 
 def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     """What the requirement reads along a run, judged by the monitor that judges recordings."""
-    from rvmon.explain.example import Example
+    from rvmon.analysis.example import Example
     from rvmon.report.explain_text import picture_of
     from rvmon.report.tracks import concerned_names
     from rvmon.timed.conformance.recordings import recording_of

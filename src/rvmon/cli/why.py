@@ -62,8 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
-    from rvmon.explain.near_miss import why_not_triggered
-    from rvmon.explain.subformulas import dissect
+    from rvmon.analysis.near_miss import why_not_triggered
+    from rvmon.analysis.subformulas import dissect
     from rvmon.monitor.missing import expect_names
     from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds

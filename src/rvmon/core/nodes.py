@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum, auto
 
-from rvmon.core.atoms import Atoms
+from rvmon.core.atoms import Atoms, Names
 from rvmon.core.measures import is_followed
-from rvmon.core.programs import Names
 from rvmon.logic.formula import Literal, literals
 from rvmon.logic.network_plan import plan_of
 from rvmon.logic.plan import Plan, PlannedRule

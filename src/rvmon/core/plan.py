@@ -1,12 +1,286 @@
-"""From the plan of requirements to the bytes that the core judges by; see native/plan/plan.md."""
+"""From the plan of requirements to the bytes that the core judges by; see native/plan/plan.md.
+
+A part of a plan is requirements that are judged together.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import prod
+
+from rvmon.core.atoms import Atom, Atoms, Names, Programs
 from rvmon.core.automata import Automata
-from rvmon.core.packed import Numbering, Packed, packed
-from rvmon.core.part import Part
-from rvmon.core.sections import Section, Sections
-from rvmon.logic.plan import Plan
+from rvmon.core.forms import add_form
+from rvmon.core.judges import Judges
+from rvmon.core.nodes import Nodes
+from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed
+from rvmon.core.unit import SHARED, Unit
+from rvmon.errors import RvmonError
+from rvmon.logic.network_plan import plan_of_all
+from rvmon.logic.plan import Plan, Uses
+from rvmon.logic.state_formula import events_of, inputs_of
+from rvmon.logic.state_graph import keys_of
+from rvmon.spec.checked.formula import Compare, Numeric
+
+_IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
+_EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4
+
+_WATCH = 8
+"""The kind of a link that tells a watch, in place of a judge."""
+
+_ITEMS_MOST = 1 << 22
+"""So many bins and combinations are counted at most."""
+
+_UNUSED = Uses()
+
+
+class Part:
+    """Packs a part.
+
+    Args:
+        sections: of the plan.
+        automata: of the plan.
+        plan: of the part.
+        numbering: of the monitor.
+        numbers: of its requirements, among all.
+
+    Attributes:
+        names: that it reads.
+    """
+
+    def __init__(
+        self,
+        sections: Sections,
+        automata: Automata,
+        plan: Plan,
+        numbering: Numbering,
+        numbers: Sequence[int],
+    ) -> None:
+        self._sections = sections
+        self._plan = plan
+        self.names = Names(plan, numbering)
+        self._programs = Programs(sections, self.names)
+        self._atoms = Atoms(plan, self.names, self._programs)
+        self._nodes = Nodes(plan, self.names, self._atoms)
+        self._live = [bool(leaves) for leaves in self._nodes.leaves(live=True)]
+        self._births: list[int] = [0] * len(self.names.signals)
+        self._add(automata, numbers)
+
+    def _add(self, automata: Automata, numbers: Sequence[int]) -> None:
+        sections, plan, nodes = self._sections, self._plan, self._nodes
+        firsts = {section: sections.count(section) for section in Section}
+
+        def added(section: Section) -> Listed:
+            return firsts[section], sections.count(section) - firsts[section]
+
+        judges = Judges(sections, automata, plan, numbers)
+        watched = self._add_groups()
+        truths = -1
+        if plan.truths:
+            truths = added(Section.FORMS)[1]
+            network = plan_of_all(plan.truths, plan.gap)
+            add_form(sections, network, None, plan.graph.index)
+        self._add_nodes(judges, watched)
+        self._add_atoms()
+        perishable = self._add_signals()
+        fields = self._add_events()
+        own: Iterable[int] = SHARED
+        if any(rule.is_apart for rule in plan.rules):
+            unit = Unit(plan, numbers[0])
+            own = unit.fields(sections, self.names, self._programs, nodes, self._atoms)
+        dead = [
+            place
+            for place, node in enumerate(nodes.all)
+            if node.timer >= 0 and place not in nodes.needed
+        ]
+        sections.add(
+            Section.PARTS,
+            *added(Section.SIGNALS),
+            *added(Section.EVENTS),
+            *added(Section.ATOMS),
+            *added(Section.NODES),
+            *added(Section.JUDGES),
+            *added(Section.FORMS),
+            len(plan.rules),
+            fields,
+            nodes.timers,
+            nodes.seen,
+            nodes.edges,
+            nodes.stretches,
+            perishable,
+            judges.clocks,
+            judges.undetermined,
+            sum(map(bool, self._births)),
+            *sections.listed(nodes.stateful()),
+            *sections.listed(judges.networked),
+            *own,
+            *sections.listed(dead),
+            truths,
+            *added(Section.WATCHES),
+            *added(Section.GROUPS),
+            nodes.sums,
+        )
+
+    def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
+        """Lists for the time until all is born and determined, and from then on."""
+        return *self._sections.listed(first), *self._sections.listed(then)
+
+    def _add_groups(self) -> dict[int, list[int]]:
+        """Add what is counted; returns by node the watches that hear of it."""
+        watched: dict[int, list[int]] = {}
+        groups: list[list[int]] = [[] for _ in self._plan.watches]
+        first = 0
+        for number, group in enumerate(self._plan.groups):
+            axes = [number for axis in group.axes for number in (axis.start, len(axis))]
+            occasion = -1 if group.occasion is None else group.occasion
+            self._sections.add(Section.GROUPS, occasion, first, *self._sections.listed(axes))
+            first += prod(map(len, group.axes))
+            if first > _ITEMS_MOST:
+                raise RvmonError(
+                    f"there are more than {_ITEMS_MOST:,} bins and combinations to count: "
+                    "split the largest cross up"
+                )
+            for watch in group.looks_where:
+                groups[watch].append(number)
+        for number, (state, is_pulse) in enumerate(self._plan.watches):
+            place = self._plan.graph.index[state]
+            watched.setdefault(place, []).append(number)
+            listed = self._sections.listed(groups[number])
+            self._sections.add(Section.WATCHES, place, is_pulse, *listed)
+        return watched
+
+    def _add_nodes(self, judges: Judges, watched: Mapping[int, Sequence[int]]) -> None:
+        sections = self._sections
+        for place, node in enumerate(self._nodes.all):
+            links = [sections.add(Section.LINKS, *link) for link in judges.links(place)]
+            links += (
+                sections.add(Section.LINKS, number, _WATCH, *([0] * 6))
+                for number in watched.get(place, ())
+            )
+            sections.add(
+                Section.NODES,
+                *(node.low, node.high, node.op, node.a, node.b, node.slot, node.timer),
+                *sections.listed(node.operands),
+                *self._phased(*self._nodes.parents(place)),
+                *((links[0], len(links)) if links else (0, 0)),
+                node.sum,
+            )
+
+    def _add_atoms(self) -> None:
+        sections = self._sections
+        shown, live = self._nodes.leaves(live=False), self._nodes.leaves(live=True)
+        as_numbers = self._nodes.read_as_numbers
+        for number, atom in enumerate(self._atoms.all):
+            sections.add(
+                Section.ATOMS,
+                *(atom.constant, atom.op, atom.compare, atom.input, atom.left, atom.right),
+                atom.momentary,
+                *sections.listed(atom.events),
+                *self._phased(shown[number], live[number]),
+                number in as_numbers,
+            )
+
+    def _readers(self, count: int, read: Callable[[Atom], Iterable[int]]) -> list[list[int]]:
+        """By number of a name, the atoms that read it.
+
+        Args:
+            count: so many names there are.
+            read: what an atom reads of them.
+        """
+        found: list[list[int]] = [[] for _ in range(count)]
+        for number, atom in enumerate(self._atoms.all):
+            for name in read(atom):
+                found[name].append(number)
+        return found
+
+    def _alive(self, atoms: Sequence[int]) -> list[int]:
+        """Those that matter once all is born and determined."""
+        return [number for number in atoms if self._live[number]]
+
+    def _add_signals(self) -> int:
+        """Add the signals; returns how many of them go stale."""
+        plan, sections, count = self._plan, self._sections, len(self.names.signals)
+        on_change = self._readers(count, lambda atom: atom.values)
+        on_update = self._readers(count, lambda atom: atom.updates)
+        needs = self._readers(count, lambda atom: atom.lone_signals)
+        on_birth: list[list[int]] = [[] for _ in range(count)]
+        for place, number, moved in self._nodes.born_with():
+            on_birth[number].append(place)
+            self._births[number] = max(self._births[number], 1 + moved)
+        captured = inputs_of(*self._captured)
+        perishable = 0
+        for name, number in self.names.signals.items():
+            signal = plan.spec.signals[name]
+            uses = plan.uses.get(name, _UNUSED)
+            flags = _IGNORES_NAN if signal.ignores_nan else 0
+            flags |= _MARKS if uses.marked else 0
+            flags |= _HISTORY if uses.history else 0
+            flags |= _CAPTURED if name in captured else 0
+            perishes = signal.stale_after is not None
+            sections.add(
+                Section.SIGNALS,
+                signal.stale_after or 0,
+                self.names.numbering.names[name],
+                flags,
+                self._births[number],
+                perishable if perishes else -1,
+                *self._phased(on_change[number], self._alive(on_change[number])),
+                *self._phased(on_update[number], self._alive(on_update[number])),
+                *sections.listed(on_birth[number]),
+                *sections.listed(needs[number]),
+                0,
+            )
+            perishable += perishes
+        return perishable
+
+    @property
+    def _captured(self) -> list[Numeric]:
+        """What is captured."""
+        return [one.value for rule in self._plan.rules for one in rule.requirement.captures]
+
+    def _add_events(self) -> int:
+        """Add the events; returns how many fields they have."""
+        plan, sections = self._plan, self._sections
+        readers = self._readers(len(self.names.events), lambda atom: atom.occurrences)
+        compared = [one.leaf for one in plan.graph.nodes if isinstance(one.leaf, Compare)]
+        sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
+        with_fields = events_of(*sides, *self._captured)
+        key = self.names.key
+        keyed = self._keyed()
+        first = 0
+        for name, number in self.names.events.items():
+            flags = _EVENT_MARKS if plan.uses.get(name, _UNUSED).marked else 0
+            flags |= _EVENT_FIELDS if name in with_fields else 0
+            flags |= _EVENT_KEY if key is not None and name == key.event else 0
+            fields = len(plan.spec.events[name].fields)
+            sections.add(
+                Section.EVENTS,
+                self.names.numbering.names[name],
+                flags,
+                first,
+                fields,
+                keyed.get(name, -1),
+                *self._phased(readers[number], self._alive(readers[number])),
+                *sections.listed(readers[number]),
+                0,
+            )
+            first += fields
+        return first
+
+    def _keyed(self) -> dict[str, int]:
+        """By event, the field whose value says which instance it concerns; others concern all."""
+        each = next((rule.requirement.for_each for rule in self._plan.rules), None)
+        if each is None:
+            return {}
+        asked = (state for rule in self._plan.judged for state in rule.states)
+        fields = keys_of(self._plan.graph, each, asked)
+        for event in events_of(*self._captured):
+            if event != each.value.event:
+                fields.pop(event, None)
+        return {
+            event: list(self._plan.spec.events[event].fields).index(one.field)
+            for event, one in fields.items()
+        }
 
 
 def pack(plan: Plan) -> Packed:

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from rvmon.core.atoms import Atoms
+from rvmon.core.atoms import Atoms, Names, Programs
 from rvmon.core.nodes import NodeOp, Nodes
-from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Sections
-from rvmon.logic.instances import Reach, reach_of, varying
 from rvmon.logic.network_plan import plan_of
 from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State, StateOp
-from rvmon.logic.state_graph import graph_of
+from rvmon.logic.state_graph import Reach, graph_of, reach_of, varying
 from rvmon.spec.checked.specification import Mode
 
 _REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST = 1, 2, 4, 8

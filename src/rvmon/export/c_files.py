@@ -12,8 +12,8 @@ from textwrap import wrap
 
 from rvmon import __version__
 from rvmon.core import amalgamate
-from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
+from rvmon.core.sections import Packed
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan
 from rvmon.native import memory_of

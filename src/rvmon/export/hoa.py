@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon import __version__
+from rvmon.analysis.graph import graph_of, proposition_texts, quoted
 from rvmon.errors import RvmonError
-from rvmon.explain.graph import graph_of, proposition_texts, quoted
 from rvmon.logic.automaton import FAILED, PASSED, Automaton
 from rvmon.logic.forecast import ltl3_monitor
 from rvmon.logic.state_formula import FALSE, TRUE

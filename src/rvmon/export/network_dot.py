@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.explain.graph import quoted
+from rvmon.analysis.graph import quoted
 from rvmon.export.functions import updates_text
 from rvmon.export.names import Names
 from rvmon.export.uppaal import condition_text, sync_text

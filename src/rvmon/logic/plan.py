@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import NamedTuple
 
-from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.formula import Core, literals
+from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import State, Unborn, inputs_of, operands
 from rvmon.logic.state_graph import Graph, graph_of
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
-from rvmon.logic.decision_diagram import LetterClasses, LetterDiagram
+from rvmon.logic.letters import LetterClasses, LetterDiagram
 from rvmon.logic.residual import NO_CLOCK, Residual
 
 Label = Callable[[Residual], Hashable]

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
 from rvmon.errors import RvmonError
-from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton, moves_in_runs
 from rvmon.logic.chain import reach_of
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.forecast import Forecaster
 from rvmon.logic.formula import Core, Factory
+from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.lower import Obligation, UnmonitorableError, lower
 from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.normal_form import expanded

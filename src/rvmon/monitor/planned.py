@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rvmon import native
-from rvmon.core.packed import packed
+from rvmon.core.sections import packed
 from rvmon.errors import TraceError
 from rvmon.monitor.compiled_spec import Kept, Place
 from rvmon.spec.checked.formula import (
@@ -27,7 +27,7 @@ from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.core.packed import Packed
+    from rvmon.core.sections import Packed
     from rvmon.logic.plan import Plan
     from rvmon.monitor.compile import CompiledRequirement
     from rvmon.monitor.compiled_spec import CompiledSpec

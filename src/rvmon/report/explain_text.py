@@ -6,12 +6,11 @@ import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from rvmon.analysis.example import Budget, Example, Found
+from rvmon.analysis.examples import Analysis, difference_of, shortest_examples, verdict_of
+from rvmon.analysis.graph import graph_lines, graph_of
 from rvmon.analysis.vacuity import Possible, possible
-from rvmon.explain.analysed import Analysis
-from rvmon.explain.example import Budget, Example, Found
-from rvmon.explain.graph import graph_lines, graph_of
-from rvmon.explain.search import difference_of, shortest_examples, verdict_of
-from rvmon.explain.words import facts_of, requirement_in_words
+from rvmon.analysis.words import facts_of, requirement_in_words
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.spec.checked.formula import BoundAtom, Constant

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from rvmon.explain.subformulas import PartTruth
+from rvmon.analysis.subformulas import PartTruth
 from rvmon.report.changes import Course
 from rvmon.report.markup import Child, e
 from rvmon.report.panels import Panel

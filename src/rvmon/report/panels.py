@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TypeGuard
 
+from rvmon.analysis.near_miss import miss_in, parts_asked
+from rvmon.analysis.subformulas import PartTruth, late_in, part_truths_of, waits_of
+from rvmon.analysis.truths import Question, Seen, look_through, parts_of
 from rvmon.errors import RvmonError
-from rvmon.explain.late_arrival import late_in, waits_of
-from rvmon.explain.near_miss import miss_in, parts_asked
-from rvmon.explain.subformulas import PartTruth, part_truths_of
-from rvmon.explain.truths import Question, Seen, look_through, parts_of
 from rvmon.report.changes import Changes, changes_of, shifted
 from rvmon.report.markup import Child
 from rvmon.report.scene import Scene

@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rvmon.explain.subformulas import Breakdown, PartTruth
-from rvmon.explain.truths import Spans
+from rvmon.analysis.subformulas import Breakdown, PartTruth
+from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import forecast_sentence, with_lateness

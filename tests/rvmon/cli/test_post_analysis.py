@@ -6,9 +6,9 @@ import random
 import pytest
 
 import rvmon
+from rvmon.analysis.near_miss import why_not_triggered
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
-from rvmon.explain.near_miss import why_not_triggered
 from rvmon.readers import recording
 
 HEAD = """

@@ -26,14 +26,12 @@ from tests.rvmon.core.plan_reader import (
 
 import rvmon
 from rvmon.core import amalgamate, sections
-from rvmon.core.atoms import MOST_EVENTS, AtomOp
+from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, AtomOp, Code
 from rvmon.core.forms import Operator
 from rvmon.core.measures import Measure
 from rvmon.core.nodes import NodeOp
-from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
-from rvmon.core.programs import DEPTH, NOW, OPERATIONS, Code
-from rvmon.core.sections import RECORDS, Section, hash_of
+from rvmon.core.sections import RECORDS, Packed, Section, hash_of
 from rvmon.errors import RvmonError
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.plan import Plan as Planned

@@ -13,7 +13,7 @@ import rvmon
 from rvmon.core import sections
 from rvmon.core.plan import pack
 from rvmon.core.sections import Section, hash_of
-from rvmon.coverage.bins import Bins
+from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.formula import Factory
 from rvmon.logic.network_plan import plan_of_all

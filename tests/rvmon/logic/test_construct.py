@@ -7,11 +7,10 @@ from tests.tools.build import always, eventually, no, p, q, r, requirement, two
 from tests.tools.progression import Progression
 from tests.tools.stepped import TableMachine
 
-from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.automaton import PASSED
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
-from rvmon.logic.decision_diagram import LetterDiagram
 from rvmon.logic.formula import Factory
+from rvmon.logic.letters import LetterDiagram, alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.spec.checked.formula import SignalAtom

@@ -6,11 +6,10 @@ from random import Random
 import pytest
 from tests.tools.build import scaled
 
-from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton, end_clauses
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
-from rvmon.logic.decision_diagram import LetterDiagram
 from rvmon.logic.formula import Factory, Next
+from rvmon.logic.letters import Alphabet, LetterDiagram, alphabet_of
 from rvmon.logic.lower import Obligation, lower
 from rvmon.logic.reduce import reduce
 from rvmon.logic.shapes import Shapes

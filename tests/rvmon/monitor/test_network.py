@@ -7,7 +7,7 @@ from tests.tools.differential import case_of
 from tests.tools.drive import drive
 
 import rvmon
-from rvmon.explain.words import facts_of
+from rvmon.analysis.words import facts_of
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel

@@ -7,15 +7,16 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.tools.code_pages import PAGES, page
+from tests.tools.code_pages import page
 
+from rvmon.analysis.codes import every_page
 from rvmon.diagnostics import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
 
 ROOT = Path(__file__).parents[3]
-RULES = [page(path.stem) for path in sorted(PAGES.glob("RV*.md"))]
+RULES = [page(code) for code in sorted(every_page()) if code.startswith("RV")]
 SEEDS = [
     *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("specs/*.rv"))),
     *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("src/rvmon/spec/*/*.rv"))),

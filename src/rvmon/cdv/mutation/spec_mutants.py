@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rvmon.analysis.implied import starts_with
+from rvmon.analysis.conflicts import starts_with
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.requirement import Subject
 from rvmon.cdv.mutation.baseline import Recorded

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 from itertools import product
 
+from rvmon.analysis.words import requirement_in_words
 from rvmon.cli.lsp.names import Names, about_word
 from rvmon.diagnostics import Span
-from rvmon.explain.words import requirement_in_words
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals

@@ -22,10 +22,10 @@ from lsprotocol.types import (
 )
 from pygls.uris import from_fs_path, to_fs_path
 
+from rvmon.analysis.codes import page_of
 from rvmon.cache import cache_folder
 from rvmon.cli.lsp.names import Names
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span
-from rvmon.explain.codes import page_of
 from rvmon.spec.compile import Compilation, compilation
 from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem

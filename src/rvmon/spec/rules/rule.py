@@ -11,7 +11,7 @@ from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule; `rvmon/explain/pages` says why it matters, with an example.
+    """A rule; `rvmon/analysis/pages` says why it matters, with an example.
 
     Attributes:
         code: stable, never used again for another rule.

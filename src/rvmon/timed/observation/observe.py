@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.automaton import NOW
 from rvmon.logic.construct import Budget as TableBudget
 from rvmon.logic.construct import DoesNotCloseError, construct
 from rvmon.logic.formula import Factory, horizon, looks_back
+from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import Obligation, lower
 from rvmon.logic.state_formula import StateOp
 from rvmon.spec.checked.formula import BoundAtom

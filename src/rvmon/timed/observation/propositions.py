@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from rvmon.logic.alphabet import Alphabet
+from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
 from rvmon.logic.state_formula import State as Proposition
 from rvmon.spec.checked.formula import (

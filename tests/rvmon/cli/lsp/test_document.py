@@ -9,11 +9,11 @@ from lsprotocol.types import Position, Range
 from pygls.uris import to_fs_path
 from tests.tools.code_pages import page
 
+from rvmon.analysis.codes import every_rule, page_of
 from rvmon.cli.lsp.completion import hover, proposals
 from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import _LINES, meanings
 from rvmon.diagnostics import Source, Span
-from rvmon.explain.codes import every_rule, page_of
 from rvmon.spec.syntax.expected import accepted_terminals
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED, split_items

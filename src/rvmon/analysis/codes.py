@@ -1,0 +1,81 @@
+"""All diagnostic codes, of specifications, their analysis and models, with their pages."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+
+from rvmon.analysis.findings import RULES as ANALYSIS
+from rvmon.diagnostics import Severity
+from rvmon.errors import UnknownNameError
+from rvmon.spec.rules import names, properties, requirements, syntax, time, types
+from rvmon.spec.rules.rule import Rule
+from rvmon.timed.model.rules import RULES as MODELS
+
+_FAMILIES = (syntax, names, types, time, requirements, properties)
+_WARNINGS = ("TA010",)
+
+
+@cache
+def every_rule() -> Mapping[str, Rule]:
+    """Every rule by its code, in order of codes."""
+    rules = [*(rule for family in _FAMILIES for rule in family.RULES), *ANALYSIS]
+    rules += [
+        Rule(code, name, Severity.WARNING if code in _WARNINGS else Severity.ERROR)
+        for code, name in MODELS.items()
+    ]
+    return {rule.code: rule for rule in sorted(rules, key=lambda rule: rule.code)}
+
+
+def page_of(code: str) -> str:
+    """The page of a code as Markdown.
+
+    Args:
+        code: such as `RV012`; also the code in words, such as `unknown-signal`, of specifications
+            where models have the same.
+
+    Raises:
+        UnknownNameError: there is no such code; those most alike are named.
+    """
+    rules = every_rule()
+    named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
+    rule = rules.get(code.upper()) or named.get(code.lower())
+    if rule is None:
+        raise UnknownNameError(_unknown(code, rules))
+    return every_page()[rule.code]
+
+
+@cache
+def every_page() -> Mapping[str, str]:
+    """The page of every code as Markdown: `pages` has a file per family, a section per code."""
+    folder = resources.files("rvmon.analysis") / "pages"
+    text = "\n".join(file.read_text("utf-8") for file in folder.iterdir())
+    pages = re.split(r"^(?=# (?:RV|TA)\d{3} )", text, flags=re.MULTILINE)[1:]
+    return {page[2:7]: page.rstrip("\n") + "\n" for page in pages}
+
+
+def code_list() -> str:
+    """All codes with their names, a line each."""
+    return "".join(f"{rule.code}  {rule.name}\n" for rule in every_rule().values())
+
+
+def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
+    shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
+    return "\n".join(
+        (f"error: no diagnostic `{code}`; alike are", *shown, "`rvmon explain codes` lists all")
+    )
+
+
+def _alike(code: str, rules: Mapping[str, Rule]) -> list[Rule]:
+    """The three rules with the nearest numbers, or with names most alike."""
+    family, digits = code[:2].upper(), code[2:]
+    if family in ("RV", "TA") and digits.isdecimal():
+        number = int(digits[:9])
+        family_rules = [known for known in rules if known.startswith(family)]
+        near = sorted(family_rules, key=lambda known: abs(int(known[2:]) - number))
+        return [rules[known] for known in sorted(near[:3])]
+    named = {rule.name: rule for rule in rules.values()}
+    return [named[name] for name in difflib.get_close_matches(code.lower(), named, 3, 0.0)]

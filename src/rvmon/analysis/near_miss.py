@@ -1,0 +1,168 @@
+"""Why a requirement was never triggered: how near its trigger came."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from rvmon.analysis.truths import Question, Seen, Truth, holds, look_through
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    EventAtom,
+    Formula,
+    SignalAtom,
+)
+from rvmon.spec.checked.names_read import names_read
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.print.printer import format_formula
+from rvmon.trace.sample import Sample
+from rvmon.trace.time import format_ticks
+
+
+@dataclass(frozen=True, slots=True)
+class _Miss:
+    """The moment at which most parts of a conjunction were true.
+
+    Attributes:
+        parts: of the conjunction.
+        there: those that were true.
+        at: the first such instant; `None` if no part was ever true.
+    """
+
+    parts: tuple[Formula, ...]
+    there: tuple[Formula, ...]
+    at: int | None
+
+    @property
+    def missing(self) -> tuple[Formula, ...]:
+        """The parts that were not true."""
+        return tuple(part for part in self.parts if part not in self.there)
+
+
+def why_not_triggered(
+    spec: CheckedSpec,
+    requirement: Requirement,
+    samples: Iterable[Sample],
+    end: int,
+    names: frozenset[str] | None = None,
+) -> str:
+    """One sentence: what its trigger lacked when it was nearest; empty if there is none to say.
+
+    Args:
+        spec: the specification.
+        requirement: one that was not triggered.
+        samples: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+    """
+    question = parts_asked(requirement)
+    return miss_in(spec, requirement, look_through(spec, [question], samples, end, names))
+
+
+def parts_asked(requirement: Requirement) -> Question:
+    """The parts of a trigger."""
+    if requirement.for_each is not None:
+        return Question(())
+    return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
+
+
+def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
+    """As `why_not_triggered`, where a recording was looked through for its `parts_asked`."""
+    if seen.begin is None:
+        return "the recording has no sample"
+    if requirement.for_each is not None or requirement.trigger == BoundAtom(Bound.END):
+        return ""
+    question = parts_asked(requirement)
+    truths = dict(zip(question.formulas, seen.truths(question), strict=True))
+    misses = [_miss(parts, truths) for parts in _options(requirement)]
+    best = min(misses, key=lambda miss: len(miss.missing))
+    if best.missing and best.at is None:
+        valueless = _without_values(spec, best.parts, seen)
+        return "; ".join(_apart(best.parts, truths, valueless, seen.begin, seen.end))
+    return _sentence(best, truths)
+
+
+def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
+    """The ways in which a trigger comes true, and the parts of each."""
+    return [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
+
+
+def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
+    match formula:
+        case Binary(op=found, left=left, right=right) if found is op:
+            return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
+        case _:
+            return (formula,)
+
+
+def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
+    """The moment at which most parts were true; of equals one with more events, then the first."""
+    best: tuple[tuple[int, int, int], tuple[Formula, ...]] = ((0, 0, 0), ())
+    for at in sorted({low for part in parts for low, _ in seen[part].sure}):
+        there = tuple(part for part in parts if holds(seen[part].sure, at))
+        events = sum(isinstance(part, EventAtom) for part in there)
+        best = max(best, ((len(there), events, -at), there), key=lambda found: found[0])
+    (_, _, at), there = best
+    return _Miss(parts, there, -at if there else None)
+
+
+def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
+    """What is to be reported if some part was true, or there is none."""
+    at = miss.at
+    if at is None or not miss.missing:
+        when = "" if at is None else f" at {format_ticks(at)}"
+        return f"its trigger was true{when}, but not known to be false before: no edge was seen"
+    rest = miss.there[0]
+    for part in miss.there[1:]:
+        rest = Binary(BinaryOp.AND, rest, part)
+    unknown = any(holds(seen[part].may, at) for part in miss.missing)
+    lacking = "was never known to be true" if unknown else "was never true"
+    while_ = f"while `{format_formula(rest)}` was (first at {format_ticks(at)})"
+    return f"{_listed(miss.missing)} {lacking} {while_}"
+
+
+def _apart(
+    parts: tuple[Formula, ...],
+    seen: Mapping[Formula, Truth],
+    valueless: Mapping[str, str],
+    start: int,
+    end: int,
+) -> Iterator[str]:
+    """What is reported of parts of which none was ever true, and of signals without a value."""
+    groups: dict[str, list[Formula]] = {}
+    for part in parts:
+        word = "was never true"
+        low, high = seen[part].may[0]
+        if isinstance(part, SignalAtom) and part.name in valueless:
+            word = valueless[part.name]
+        elif low <= start and high >= end:
+            word = "was never known"
+        elif low <= end:
+            word = "was never known to be true"
+        elif isinstance(part, EventAtom):
+            word = "never occurred"
+        groups.setdefault(word, []).append(part)
+    for word, own in groups.items():
+        yield f"{_listed(own)} {word}"
+    signals = {part.name for part in parts if isinstance(part, SignalAtom)}
+    for name in sorted(valueless.keys() - signals):
+        yield f"`{name}` {valueless[name]}"
+
+
+def _without_values(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
+    """Of the signals that parts read, those without any value, and what is reported of them."""
+    read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
+    lacking = read & seen.valueless
+    absent = set() if seen.names is None else lacking - seen.names
+    return dict.fromkeys(absent, "has no source") | dict.fromkeys(
+        lacking - absent, "never had a value"
+    )
+
+
+def _listed(parts: Sequence[Formula]) -> str:
+    texts = [f"`{format_formula(part)}`" for part in parts]
+    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} or {texts[-1]}"

@@ -1,0 +1,198 @@
+"""An attempt taken apart: the truth of each subformula over its window, and what came too late."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.analysis.example import small_step
+from rvmon.analysis.truths import (
+    Question,
+    Seen,
+    Spans,
+    both,
+    look_through,
+    outside,
+    parts_of,
+    subformulas,
+    truths_of_parts,
+)
+from rvmon.spec.checked.classify import has_future
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    BoundAtom,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.print.printer import format_formula
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt
+
+
+def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
+    """What a failed attempt had awaited when its window closed.
+
+    Returns:
+        `None` if that is not why it failed, or if what was awaited spoke of the future itself.
+    """
+    blame = attempt.blame
+    if blame is None or blame.window[1] is None or attempt.decided is None:
+        return None
+    if attempt.decided <= blame.window[1]:
+        return None
+    for _, formula in subformulas(requirement.consequent, 0):
+        match formula:
+            case Unary(op=UnaryOp.EVENTUALLY, operand=part):
+                pass
+            case Binary(op=BinaryOp.UNTIL, right=part):
+                pass
+            case _:
+                continue
+        if format_formula(formula) == blame.subformula:
+            return None if has_future(part) else part
+    return None
+
+
+def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
+    """By number of the attempt, what it had awaited in vain; see `awaited`."""
+    return {
+        attempt.number: Question((formula,), requirement.for_each, attempt.captured)
+        for attempt in attempts
+        if (formula := awaited(requirement, attempt)) is not None
+    }
+
+
+def late_in(
+    attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: Seen
+) -> dict[int, int]:
+    """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
+
+    Args:
+        attempts: of a requirement; those that missed no deadline, and those whose wait was never
+            over, are left out.
+        waits: of these; see `waits_of`.
+        seen: of the recording, which was looked through for the waits.
+    """
+    found = {}
+    for attempt in attempts:
+        if attempt.number not in waits or attempt.blame is None or seen.begin is None:
+            continue
+        (truth,) = seen.truths(waits[attempt.number])
+        deadline = attempt.blame.window[1] or 0
+        came = _first_after(deadline, truth.sure, seen.positions)
+        if came is not None:
+            found[attempt.number] = came
+    return found
+
+
+def _first_after(deadline: int, spans: Spans, positions: Sequence[int] | None) -> int | None:
+    """The first position (`None`: every tick is one) after an instant that lies in a span."""
+    place = bisect_right(spans, deadline, key=lambda span: span[1])
+    for low, high in spans[place:]:
+        first = max(low, deadline + 1)
+        if positions is None:
+            return first
+        index = bisect_left(positions, first)
+        if index < len(positions) and positions[index] <= high:
+            return positions[index]
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class PartTruth:
+    """One subformula over the window.
+
+    Attributes:
+        depth: how deep it lies; 0 for what is required.
+        text: as in the spec.
+        part: `trigger` or `required`.
+        true: the ticks of the window at which it is true.
+        false: those at which it is false; at the others it is not known.
+    """
+
+    depth: int
+    text: str
+    part: str
+    true: Spans
+    false: Spans
+
+
+@dataclass(frozen=True, slots=True)
+class Breakdown:
+    """An attempt taken apart.
+
+    Attributes:
+        attempt: its record.
+        start: first tick of the window that is shown.
+        end: its last tick.
+        origin: from which people count seconds, ticks.
+        late: when what it had awaited came after its deadline, ticks; `None` if it did not.
+        part_truths: the trigger, then what is owed, each before its parts.
+    """
+
+    attempt: Attempt
+    start: int
+    end: int
+    origin: int
+    late: int | None
+    part_truths: tuple[PartTruth, ...]
+
+
+AROUND = 0.15
+"""What is shown before the trigger and after the decision, as a share of what lies between."""
+
+
+def dissect(
+    spec: CheckedSpec,
+    samples: Sequence[Sample],
+    end: int,
+    attempt: Attempt,
+    names: frozenset[str] | None = None,
+) -> Breakdown:
+    """Take an attempt apart.
+
+    Args:
+        spec: the specification.
+        samples: the recording, in order.
+        end: the last instant of the recording, ticks.
+        attempt: of one of its requirements on this recording.
+        names: the signals and events that have a source; `None`: all.
+
+    Source: SEMANTICS 2; Kleene's value by a pessimistic and an optimistic reading (SEMANTICS 1).
+    """
+    requirement = spec.requirements[attempt.requirement]
+    last = end if attempt.decided is None else attempt.decided
+    length = last - attempt.triggered
+    margin = max(int(length * AROUND), 2) if length else small_step(spec, [requirement])
+    begin = samples[0].t
+    start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
+    waits = waits_of(requirement, [attempt])
+    questions = [parts_of(requirement, attempt), *waits.values()]
+    seen = look_through(spec, questions, samples, end, names)
+    late = late_in([attempt], waits, seen).get(attempt.number)
+    part_truths = part_truths_of(requirement, attempt, seen, start, stop)
+    return Breakdown(attempt, start, stop, begin, late, part_truths)
+
+
+def part_truths_of(
+    requirement: Requirement, attempt: Attempt, seen: Seen, start: int, stop: int
+) -> tuple[PartTruth, ...]:
+    """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
+    truths = truths_of_parts(requirement, attempt, seen)
+    part_truths = []
+    parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]
+    if not isinstance(requirement.trigger, BoundAtom) and requirement.trigger != Constant(True):
+        parts.insert(0, ("trigger", requirement.trigger))
+    for part, whole in parts:
+        for depth, formula in subformulas(whole, 0):
+            truth = truths[id(formula)]
+            shown = ((start, stop),)
+            true = both(truth.sure, shown)
+            false = outside(both(truth.may, shown), start, stop)
+            part_truths.append(PartTruth(depth, format_formula(formula), part, true, false))
+    return tuple(part_truths)

@@ -1,0 +1,384 @@
+"""Where formulas are true over a whole recording, in sorted and disjoint intervals of ticks."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, assert_never
+
+from rvmon.logic.formula import Core, Factory
+from rvmon.logic.normal_form import Lowering
+from rvmon.monitor.watching import TruthsPlan, TruthsRun
+from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.held import HeldRecording
+from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
+from rvmon.spec.print.printer import format_formula
+from rvmon.trace.gaps import is_unknown
+from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
+from rvmon.verdict.attempt import Attempt
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
+
+Spans = tuple[tuple[int, int], ...]
+"""Closed intervals of ticks, ascending, none touching the next."""
+
+FOREVER = 1 << 63
+"""Later than any tick."""
+
+
+def union(intervals: Iterable[tuple[int, int]]) -> Spans:
+    """The ticks of some intervals; empty ones are dropped.
+
+    >>> union([(5, 7), (1, 2), (3, 4)])
+    ((1, 7),)
+    """
+    merged: list[tuple[int, int]] = []
+    for low, high in sorted(intervals):
+        if low > high:
+            continue
+        if merged and low <= merged[-1][1] + 1:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
+        else:
+            merged.append((low, high))
+    return tuple(merged)
+
+
+def holds(spans: Spans, t: int) -> bool:
+    """Whether a tick lies in one of the spans."""
+    place = bisect_right(spans, t, key=lambda span: span[0])
+    return place > 0 and t <= spans[place - 1][1]
+
+
+def both(left: Spans, right: Spans) -> Spans:
+    """The ticks that lie in both."""
+    return union((max(a, c), min(b, d)) for a, b in left for c, d in right)
+
+
+def outside(spans: Spans, low: int, high: int) -> Spans:
+    """The ticks from `low` to `high` that lie in none.
+
+    >>> outside(((2, 3),), 0, 5)
+    ((0, 1), (4, 5))
+    """
+    edges = [(low - 1, low - 1), *spans, (high + 1, high + 1)]
+    return union((a + 1, b - 1) for (_, a), (b, _) in pairwise(edges))
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Where a formula is surely true, and where it may be (unknown or true), on all ticks."""
+
+    sure: Spans
+    may: Spans
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Formulas of which somebody asks where they are true.
+
+    Attributes:
+        formulas: may speak of the future.
+        for_each: of the instance that the formulas belong to, if they do to one.
+        captured: the values of `let` and `for each`.
+    """
+
+    formulas: tuple[Formula, ...]
+    for_each: ForEach | None = None
+    captured: Mapping[str, Scalar] = field(default_factory=dict)
+
+    @property
+    def whose(self) -> tuple[object, ...]:
+        """Equal where formulas are looked at in the same way."""
+        return self.for_each, *self.captured.items()
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Where formulas are true in a recording; behind its end they may be anything.
+
+    In held time all ticks are positions; else a truth lasts from its position to the next.
+
+    Attributes:
+        names: the signals and events that had a source; `None`: all.
+        begin: the instant of the first sample, ticks; `None`: there is none.
+        end: the last instant.
+        positions: of the recording; `None` where every tick is one.
+        valueless: the signals that never had a value.
+    """
+
+    names: frozenset[str] | None
+    begin: int | None
+    end: int
+    positions: Sequence[int] | None
+    valueless: frozenset[str]
+    _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
+
+    def truths(self, question: Question) -> list[Truth]:
+        """Of the formulas of a question that was asked."""
+        own = self._truths[question.whose]
+        return [own[format_formula(one)] for one in question.formulas]
+
+
+def look_through(
+    spec: CheckedSpec,
+    questions: Iterable[Question],
+    pieces: Iterable[Batch | Sample],
+    end: int,
+    names: frozenset[str] | None = None,
+    plans: Plans | None = None,
+) -> Seen:
+    """Find where formulas are true in a recording, which is read once.
+
+    Args:
+        spec: the specification.
+        questions: the formulas.
+        pieces: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+        plans: what was made for the same questions about other recordings; what is made now is
+            added.
+
+    Cost: one pass in C for each `Question.whose`. Memory grows with how often the truths change,
+    in sampled time with the number of samples.
+    """
+    groups: dict[tuple[object, ...], _Group] = {}
+    for question in questions:
+        if question.whose not in groups:
+            groups[question.whose] = _Group(spec, question)
+        groups[question.whose].add(question.formulas)
+    runs = [one for one in groups.values() if one.begin(names, plans)]
+    begin: int | None = None
+    instants = array("q")
+    valueless = set(spec.signals)
+    for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
+        times = (piece.t,) if isinstance(piece, Sample) else piece.times
+        if begin is None and len(times):
+            begin = int(times[0])
+        if spec.time is TimeModel.SAMPLED:
+            instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
+        if valueless:
+            valueless -= _born(piece, valueless)
+        for run in runs:
+            run.take(piece)
+    positions = None if begin is None else _positions(spec, begin, end, instants)
+    ticks = _Ticks(positions, begin or 0, end)
+    truths = {whose: one.truths(ticks) for whose, one in groups.items()}
+    return Seen(names, begin, end, positions, frozenset(valueless), truths)
+
+
+class _Plan:
+    """Formulas that are looked at in the same way, made ready.
+
+    Attributes:
+        cores: by their texts; `None`: it is not known while a trace lasts, as where that ends.
+        order: those that there are.
+        plan: for the core; `None`: there is nothing to look for.
+    """
+
+    def __init__(
+        self, spec: CheckedSpec, question: Question, formulas: Mapping[str, Formula]
+    ) -> None:
+        lowering = Lowering(Factory(), spec.period, False)
+        self.cores = {
+            text: None if formula == BoundAtom(Bound.END) else lowering.core(formula, True)
+            for text, formula in formulas.items()
+        }
+        self.order = list(dict.fromkeys(core for core in self.cores.values() if core is not None))
+        self.plan = TruthsPlan(spec, self.order, question.captured) if self.order else None
+
+
+Plans = dict[tuple[str, ...], _Plan]
+"""By the texts of formulas that belong to no instance and read no captured value."""
+
+
+class _Group:
+    """Formulas that are looked at in the same way, in one recording."""
+
+    def __init__(self, spec: CheckedSpec, question: Question) -> None:
+        self._spec = spec
+        self._question = question
+        self._formulas: dict[str, Formula] = {}
+        self._made: _Plan | None = None
+        self._run: TruthsRun | None = None
+
+    def add(self, formulas: Iterable[Formula]) -> None:
+        """Look for these, too."""
+        self._formulas |= {format_formula(formula): formula for formula in formulas}
+
+    def begin(self, names: frozenset[str] | None, plans: Plans | None) -> bool:
+        """Be ready to look; false: there is nothing to look for."""
+        if plans is None or self._question.for_each is not None or self._question.captured:
+            plans = {}
+        key = tuple(self._formulas)
+        if key not in plans:
+            plans[key] = _Plan(self._spec, self._question, self._formulas)
+        self._made = plans[key]
+        if self._made.plan is not None:
+            self._run = TruthsRun(self._made.plan, names)
+        return self._run is not None
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Look at what comes next."""
+        if self._run is None:
+            return
+        each = self._question.for_each
+        if each is None:
+            self._run.take(piece)
+            return
+        samples: Iterable[Sample] = (piece,) if isinstance(piece, Sample) else self._samples(piece)
+        for sample in _of_instance(each, self._question.captured, samples):
+            self._run.take(sample)
+
+    def _samples(self, batch: Batch) -> Iterator[Sample]:
+        return coalesce(batch.rows(0, len(batch.times)), self._spec.events, Conflicts())
+
+    def truths(self, ticks: _Ticks) -> dict[str, Truth]:
+        """By text of the formula; the recording is over."""
+        assert self._made is not None  # noqa: S101 - it began
+        known = [] if self._run is None else self._run.known(ticks.end)
+        found: dict[Core | None, Truth] = {
+            core: Truth(ticks.spans(one.true), ticks.others(one.false))
+            for core, one in zip(self._made.order, known, strict=True)
+        }
+        found[None] = Truth((), ticks.others(()))
+        return {text: found[core] for text, core in self._made.cores.items()}
+
+
+def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
+    """The signals that have a value in a piece and had none before."""
+    if isinstance(piece, Sample):
+        values = piece.values
+        return {name for name in valueless & values.keys() if not is_unknown(values[name])}
+    return {name for name in valueless & piece.signals.keys() if piece.signals[name].holds_value}
+
+
+def _unlike(instants: Iterable[int]) -> Iterator[int]:
+    """Each instant once."""
+    last = None
+    for t in instants:
+        if t != last:
+            yield t
+        last = t
+
+
+def _positions(
+    spec: CheckedSpec, begin: int, end: int, instants: Sequence[int]
+) -> Sequence[int] | None:
+    """The positions; `None` where every tick is one."""
+    match spec.time:
+        case TimeModel.HELD:
+            return None
+        case TimeModel.SAMPLED:
+            return instants
+        case TimeModel.CLOCKED:
+            period = spec.period or 1
+            return range(-(-begin // period) * period, end + 1, period)
+        case _:
+            assert_never(spec.time)
+
+
+class _Ticks:
+    """The ticks at which something is said of positions."""
+
+    def __init__(self, positions: Sequence[int] | None, begin: int, end: int) -> None:
+        self._positions = positions
+        self._first = 0
+        self._begin = begin
+        if isinstance(positions, range):
+            self._first = positions.start // positions.step
+        self.end = end
+
+    def spans(self, ranges: Iterable[tuple[int, int]]) -> Spans:
+        """Those of ranges of positions."""
+        whole = ((self._begin, self.end),)
+        if self._positions is None:
+            return both(union(ranges), whole)
+        return both(union(self._lasting(ranges, self._positions)), whole)
+
+    def others(self, ranges: Iterable[tuple[int, int]]) -> Spans:
+        """All others, and those behind the end."""
+        return outside(self.spans(ranges), self._begin, FOREVER)
+
+    def _lasting(
+        self, ranges: Iterable[tuple[int, int]], positions: Sequence[int]
+    ) -> Iterator[tuple[int, int]]:
+        last = len(positions) - 1
+        for low, high in ranges:
+            first, stop = max(low - self._first, 0), min(high - self._first, last)
+            if first <= stop:
+                yield positions[first], positions[stop + 1] - 1 if stop < last else self.end
+
+
+def _of_instance(
+    each: ForEach, captured: Mapping[str, Scalar], samples: Iterable[Sample]
+) -> Iterator[Sample]:
+    """A recording as the instance of a value sees it: other occurrences of its event are none.
+
+    One whose value is not known is an unknown occurrence in every instance.
+    """
+    event, own = each.value.event, captured[each.name]
+    for sample in samples:
+        if event not in sample.values:
+            yield sample
+            continue
+        values: dict[str, Value] = {**sample.values}
+        seen: list[Payload | None] = []
+        for payload in payloads_of(values.pop(event)):
+            key = None if payload is None else payload.get(each.value.field)
+            if key is None or key != key:
+                seen.append(None)
+            elif key == own:
+                seen.append(payload)
+        if seen:
+            values[event] = _reported(seen)
+        yield Sample(sample.t, values)
+
+
+def _reported(seen: Sequence[Payload | None]) -> Value:
+    """Occurrences as a sample reports them: an unknown one beside others has unknown fields."""
+    if all(one is None for one in seen):
+        return None
+    return tuple({} if one is None else one for one in seen)
+
+
+def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
+    """The formula, then what it is made of; a negation of an atom is not taken apart."""
+    yield depth, formula
+    match formula:
+        case (
+            Amount(value=None, operand=operand)
+            | Unary(operand=Unary() | Binary() | Amount() as operand)
+        ):
+            yield from subformulas(operand, depth + 1)
+        case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
+            yield from subformulas(operand, depth + 1)
+        case Binary(left=left, right=right):
+            yield from subformulas(left, depth + 1)
+            yield from subformulas(right, depth + 1)
+        case _:
+            pass
+
+
+def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
+    """The trigger, what is owed, and all that they are made of."""
+    wholes = (requirement.trigger, requirement.consequent)
+    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
+    return Question(formulas, requirement.for_each, attempt.captured)
+
+
+def truths_of_parts(requirement: Requirement, attempt: Attempt, seen: Seen) -> dict[int, Truth]:
+    """Where the trigger, what is owed and their parts are true, by `id` of the formula.
+
+    Args:
+        requirement: that is taken apart.
+        attempt: of it.
+        seen: of the recording, which was looked through for `parts_of` both.
+    """
+    question = parts_of(requirement, attempt)
+    found = zip(question.formulas, seen.truths(question), strict=True)
+    return {id(formula): truth for formula, truth in found}

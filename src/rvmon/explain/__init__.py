@@ -1,1 +1,0 @@
-"""What a requirement means and why a verdict came out: words, pictures, example timelines."""

@@ -1,0 +1,303 @@
+"""Letters: what a formula can tell apart of its propositions' values; and which lead alike.
+
+Classes of letters are reduced ordered multi-valued decision diagrams.
+
+Source: Bryant, Graph-based algorithms for Boolean function manipulation, 1986.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+from rvmon.logic.formula import Core, Literal, Sense, literals
+from rvmon.logic.residual import FAILS, HOLDS, Atom, Residual, substitute
+from rvmon.logic.state_formula import State
+
+
+class TruthValue(Enum):
+    """The value of a proposition as one run takes it: an unknown one in the worse or better way."""
+
+    FALSE = 0
+    TRUE = 1
+    UNKNOWN_PESSIMISTIC = 2
+    UNKNOWN_OPTIMISTIC = 3
+
+
+_TRUE_IN = {
+    Sense.TRUE: frozenset({TruthValue.TRUE, TruthValue.UNKNOWN_OPTIMISTIC}),
+    Sense.FALSE: frozenset({TruthValue.FALSE, TruthValue.UNKNOWN_OPTIMISTIC}),
+    Sense.KNOWN_FALSE: frozenset({TruthValue.FALSE}),
+}
+
+
+def holds(sense: Sense, truth: TruthValue) -> bool:
+    """Whether a literal of this sense is true where its proposition has this truth in a run."""
+    return truth in _TRUE_IN[sense]
+
+
+@dataclass(frozen=True, slots=True)
+class Alphabet:
+    """How the values of propositions make up a letter, a number below `size`.
+
+    A letter is the sum of one entry per proposition of `pessimistic` (or `optimistic`), taken at
+    the proposition's value.
+
+    Attributes:
+        propositions: in the order of their digits.
+        truths: per proposition and digit, one of the truths that the formula cannot tell apart.
+        strides: per proposition, the weight of its digit.
+        pessimistic: per proposition, what FALSE, UNKNOWN and TRUE contribute.
+        optimistic: the same with unknown taken the better way.
+        size: the number of letters.
+    """
+
+    propositions: tuple[State, ...]
+    truths: tuple[tuple[TruthValue, ...], ...]
+    strides: tuple[int, ...]
+    pessimistic: tuple[tuple[int, int, int], ...]
+    optimistic: tuple[tuple[int, int, int], ...]
+    size: int
+
+    def valuation(self, letter: int) -> dict[State, TruthValue]:
+        """The truth of each proposition in a letter."""
+        return {
+            proposition: truths[letter // stride % len(truths)]
+            for proposition, truths, stride in zip(
+                self.propositions, self.truths, self.strides, strict=True
+            )
+        }
+
+
+def alphabet_of(formula: Core) -> Alphabet:
+    """The least alphabet for a formula.
+
+    A proposition read in one sense only needs two digits, unknown or not.
+    """
+    senses: dict[State, set[Sense]] = {}
+    for literal in literals(formula):
+        senses.setdefault(literal.proposition, set()).add(literal.sense)
+    propositions = tuple(sorted(senses, key=lambda state: state.id))
+    stride = 1
+    strides, all_truths, pessimistic, optimistic = [], [], [], []
+    for proposition in propositions:
+        truths, digit = _digits(senses[proposition])
+        strides.append(stride)
+        all_truths.append(truths)
+        low, high = digit[TruthValue.FALSE] * stride, digit[TruthValue.TRUE] * stride
+        pessimistic.append((low, digit[TruthValue.UNKNOWN_PESSIMISTIC] * stride, high))
+        optimistic.append((low, digit[TruthValue.UNKNOWN_OPTIMISTIC] * stride, high))
+        stride *= len(truths)
+    return Alphabet(
+        propositions,
+        tuple(all_truths),
+        tuple(strides),
+        tuple(pessimistic),
+        tuple(optimistic),
+        stride,
+    )
+
+
+def _digits(senses: set[Sense]) -> tuple[tuple[TruthValue, ...], dict[TruthValue, int]]:
+    """One digit per set of truths that the senses cannot tell apart."""
+    seen: dict[tuple[bool, ...], int] = {}
+    truths: list[TruthValue] = []
+    digit: dict[TruthValue, int] = {}
+    ordered = sorted(senses, key=lambda sense: sense.value)
+    for truth in TruthValue:
+        look = tuple(holds(sense, truth) for sense in ordered)
+        if look not in seen:
+            seen[look] = len(truths)
+            truths.append(truth)
+        digit[truth] = seen[look]
+    return tuple(truths), digit
+
+
+Tree = int | tuple[int, tuple["Tree", ...]]
+"""A class; or the stride of a digit, and a tree for each value of it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LetterDiagram:
+    """Looks up the class of a letter by its digits, those only that matter.
+
+    Attributes:
+        root: of the diagram; equal parts are the same object.
+    """
+
+    root: Tree
+
+    def __getitem__(self, letter: int) -> int:
+        """The class of a letter."""
+        node = self.root
+        while not isinstance(node, int):
+            stride, children = node
+            node = children[letter // stride % len(children)]
+        return node
+
+    def renamed(self, classes: Sequence[int]) -> LetterDiagram:
+        """The same with other numbers for the classes."""
+        made: dict[int, Tree] = {}
+
+        def rename(node: Tree) -> Tree:
+            if isinstance(node, int):
+                return classes[node]
+            found = made.get(id(node))
+            if found is None:
+                found = made[id(node)] = joined(node[0], tuple(map(rename, node[1])))
+            return found
+
+        return LetterDiagram(rename(self.root))
+
+
+LetterClasses: TypeAlias = "array[int] | LetterDiagram"
+"""The class of each letter."""
+
+
+def joined(stride: int, children: tuple[Tree, ...]) -> Tree:
+    """A decision, or its only outcome."""
+    first = children[0]
+    return first if all(child == first for child in children[1:]) else (stride, children)
+
+
+Edge = tuple[int, tuple[int, ...]]
+"""Target location and the sources of its clocks."""
+
+
+MOST_TABLED = 1 << 16
+"""Letters of which the classes stand in a table; of more, in a diagram."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """A decision; equal ones are the same object.
+
+    Attributes:
+        level: the proposition decided on, by its place in the alphabet; −1 for a leaf.
+        children: per digit of that proposition.
+        edge: of a leaf.
+    """
+
+    level: int
+    children: tuple[Node, ...] = ()
+    edge: Edge | None = None
+
+
+class Diagrams:
+    """All diagrams of one construction; the last proposition of the alphabet is decided first."""
+
+    def __init__(self, alphabet: Alphabet) -> None:
+        self.alphabet = alphabet
+        self._known: dict[tuple[int, tuple[Node, ...], Edge | None], Node] = {}
+
+    def of(self, opened: Residual, leaf: Callable[[Residual], Edge]) -> Node:
+        """The diagram of a residual in which literals are still open.
+
+        Args:
+            opened: a residual with literals as atoms.
+            leaf: the edge that belongs to a residual without literals.
+        """
+        return self._of(opened, leaf, len(self.alphabet.propositions) - 1, {})
+
+    def _of(
+        self,
+        opened: Residual,
+        leaf: Callable[[Residual], Edge],
+        level: int,
+        made: dict[tuple[Residual, int], Node],
+    ) -> Node:
+        if level < 0:
+            return self._node(-1, (), leaf(opened))
+        key = (opened, level)
+        found = made.get(key)
+        if found is not None:
+            return found
+        proposition = self.alphabet.propositions[level]
+        read: dict[Atom, Sense] = {
+            (node, clock): node.sense
+            for clause in opened
+            for node, clock in clause
+            if isinstance(node, Literal) and node.proposition is proposition
+        }
+        if not read:
+            result = self._of(opened, leaf, level - 1, made)
+        else:
+            children = []
+            for truth in self.alphabet.truths[level]:
+                values = {
+                    atom: HOLDS if holds(sense, truth) else FAILS for atom, sense in read.items()
+                }
+                children.append(self._of(substitute(opened, values), leaf, level - 1, made))
+            first = children[0]
+            same = all(child is first for child in children)
+            result = first if same else self._node(level, tuple(children), None)
+        made[key] = result
+        return result
+
+    def _node(self, level: int, children: tuple[Node, ...], edge: Edge | None) -> Node:
+        key = (level, children, edge)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = Node(level, children, edge)
+        return found
+
+    def classes(
+        self, roots: Sequence[Node], limit: int
+    ) -> tuple[LetterClasses, int, list[tuple[Edge, ...]]]:
+        """Letters that no root tells apart form a class.
+
+        Args:
+            roots: diagrams.
+            limit: of the number of roots times classes.
+
+        Returns:
+            The class of each letter, the number of classes, and per class the edge of each root.
+
+        Raises:
+            TooManyClassesError: the limit was exceeded.
+        """
+        product = _Product(self.alphabet, limit)
+        diagram = LetterDiagram(product.tree(tuple(roots), len(self.alphabet.propositions) - 1))
+        found: LetterClasses = diagram
+        if self.alphabet.size <= MOST_TABLED:
+            found = array("H", map(diagram.__getitem__, range(self.alphabet.size)))
+        return found, len(product.leaves), [_edges(nodes) for nodes in product.leaves]
+
+
+class TooManyClassesError(Exception):
+    """The table of an automaton outgrew its limit."""
+
+
+class _Product:
+    def __init__(self, alphabet: Alphabet, limit: int) -> None:
+        self.alphabet = alphabet
+        self.limit = limit
+        self.leaves: dict[tuple[Node, ...], int] = {}
+        self.made: dict[tuple[tuple[Node, ...], int], Tree] = {}
+
+    def tree(self, nodes: tuple[Node, ...], level: int) -> Tree:
+        """The classes of all letters over the propositions up to `level`."""
+        while level >= 0 and all(node.level != level for node in nodes):
+            level -= 1
+        if level < 0:
+            found = self.leaves.setdefault(nodes, len(self.leaves))
+            if len(self.leaves) * len(nodes) > self.limit:
+                raise TooManyClassesError
+            return found
+        key = (nodes, level)
+        known = self.made.get(key)
+        if known is None:
+            lower = (
+                tuple(node.children[digit] if node.level == level else node for node in nodes)
+                for digit in range(len(self.alphabet.truths[level]))
+            )
+            children = tuple([self.tree(own, level - 1) for own in lower])
+            known = self.made[key] = joined(self.alphabet.strides[level], children)
+        return known
+
+
+def _edges(leaves: tuple[Node, ...]) -> tuple[Edge, ...]:
+    return tuple(node.edge for node in leaves if node.edge is not None)

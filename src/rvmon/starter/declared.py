@@ -1,0 +1,249 @@
+"""What was seen under the names and topics of a recording, and what these can be declared as."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import arrays_with_names
+from rvmon.readers.messages.fields import field_of, getter
+from rvmon.readers.messages.file import MessageFile
+from rvmon.readers.messages.look import Looked, names_in
+from rvmon.readers.messages.match import dotted
+from rvmon.readers.messages.meaning import Sort, meaning_of
+from rvmon.readers.messages.topic import Topic
+from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
+from rvmon.starter.column import Shape, Shapes
+from rvmon.trace.schema import Kind
+
+MOST_LABELS = 16
+"""A text column with more values than this is left out."""
+
+_NUMBER = re.compile(
+    r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE
+)
+_WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+
+
+class Seen:
+    """What was seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
+
+    def __init__(self) -> None:
+        self.kinds: set[Kind] = set()
+        self.bits = False
+        self.labels: dict[str, None] = {}
+        self.fields: dict[str, Seen] = {}
+        self.payloads = 0
+        self.count = 0
+        self.other = False
+
+    def add(self, value: object) -> None:
+        """Take a JSON value that is neither null nor an object."""
+        self.count += 1
+        match value:
+            case bool():
+                self.kinds.add(Kind.BOOL)
+            case int():
+                self.kinds.add(Kind.INT)
+            case float():
+                self.kinds.add(Kind.REAL)
+            case str():
+                self.kinds.add(Kind.LABEL)
+                self._label(value)
+            case _:
+                self.other = True
+
+    def add_text(self, cell: str) -> None:
+        """Take a CSV cell that is not empty."""
+        self.count += 1
+        if cell in TRUE_WORDS or cell in FALSE_WORDS:
+            if cell in "01":
+                self.bits = True
+            else:
+                self.kinds.add(Kind.BOOL)
+        elif _WHOLE.fullmatch(cell):
+            self.kinds.add(Kind.INT)
+        elif _NUMBER.fullmatch(cell):
+            self.kinds.add(Kind.REAL)
+        else:
+            self.kinds.add(Kind.LABEL)
+        self._label(cell)
+
+    def _label(self, text: str) -> None:
+        if len(self.labels) <= MOST_LABELS:
+            self.labels[text] = None
+
+    def add_payload(self, payload: Mapping[str, object]) -> None:
+        """Take an object."""
+        self.count += 1
+        self.payloads += 1
+        for key, value in payload.items():
+            if value is not None:
+                self.fields.setdefault(key, Seen()).add(value)
+
+
+def shapes_seen(seen: Mapping[str, Seen]) -> Shapes:
+    """What names can be declared as."""
+    declared: dict[str, Shape] = {}
+    left_out: dict[str, str] = {}
+    for name, entry in seen.items():
+        shape = _shape(entry)
+        if "`" in name or not name.strip() or not name.isprintable():
+            left_out[name] = "its name cannot be written"
+        elif isinstance(shape, str):
+            left_out[name] = shape
+        else:
+            declared[name] = shape
+    return Shapes(declared, left_out)
+
+
+def _shape(seen: Seen) -> Shape | str:
+    """The shape, or why there is none.
+
+    What would compile and mislead is left out with a reason: a signal has one kind in the language,
+    so values of two kinds would make each sample of the rarer one an error.
+    """
+    if seen.payloads:
+        if seen.kinds - {Kind.BOOL} or seen.other:
+            return "objects and other values"
+        kinds = {name: _shape(entry) for name, entry in seen.fields.items()}
+        return Shape(
+            None,
+            fields={
+                name: shape.kind
+                for name, shape in kinds.items()
+                if isinstance(shape, Shape) and shape.kind not in (None, Kind.LABEL)
+                if name.isidentifier()
+            },
+        )
+    if seen.other:
+        return "lists"
+    if not seen.kinds:
+        return Shape(Kind.BOOL) if seen.bits else "no value in the recording"
+    if seen.kinds == {Kind.BOOL}:
+        return Shape(Kind.BOOL)
+    if seen.kinds <= {Kind.INT, Kind.REAL}:
+        return Shape(Kind.REAL if Kind.REAL in seen.kinds else Kind.INT)
+    if seen.kinds != {Kind.LABEL} or seen.bits:  # 0 and 1 among text may be labels, or truths
+        return "numbers and text"
+    if len(seen.labels) > MOST_LABELS:
+        return f"text with more than {MOST_LABELS} values"
+    if any("`" in label or not label.strip() or not label.isprintable() for label in seen.labels):
+        return "text that cannot be written as labels"
+    return Shape(Kind.LABEL, labels=tuple(seen.labels))
+
+
+_ARRAY = "an array: bind an element, or `min` of all"
+_QUATERNION = "a part of a quaternion: bind `yaw` of it"
+_ODD = "a covariance, or the like"
+
+
+def message_shapes(source: MessageFile) -> Shapes:
+    """What topics, their fields and the named elements of their arrays can be declared as.
+
+    Raises:
+        TraceError: a message with a text cannot be read.
+    """
+    looked = names_in(source)
+    declared: dict[str, Shape] = {}
+    texts: dict[str, tuple[str, str]] = {}
+    left_out: dict[str, str] = {}
+    faults = {topic.name: _fault(topic, source) for topic in source.topics.values()}
+    for topic in source.topics.values():
+        name = dotted(topic.name)
+        leaves = {leaf: kind for leaf, kind in topic.leaves.items() if leaf[:7] != "header."}
+        if faults[topic.name]:
+            left_out[name] = faults[topic.name]
+            continue
+        if not leaves:
+            declared[name] = Shape(None, source=topic.name)
+        plain = [leaf for leaf in leaves if "[" not in leaf]
+        for leaf, kind in leaves.items():
+            full = name if len(plain) == 1 and plain[0] == leaf else f"{name}.{leaf}"
+            why = _reason(leaf, topic)
+            if leaf.startswith("stamp."):
+                continue
+            if why:
+                left_out[full] = why
+            elif kind is Kind.LABEL:
+                texts[full] = topic.name, leaf
+            else:
+                declared[full] = Shape(kind, unit=_unit(leaf, topic), source=topic.name)
+        for full, shape in _elements(name, topic, looked[topic.name]):
+            declared[full] = shape
+            left_out.pop(full.rpartition(".")[0] + "[]", None)
+    seen = _texts_seen(source, texts)
+    found = shapes_seen(seen)
+    for full, shape in found.declared.items():
+        declared[full] = replace(shape, source=texts[full][0])
+    for topic in source.topics.values():  # of texts, and the like, each message is an event
+        sources = {shape.source for shape in declared.values()}
+        if not faults[topic.name] and topic.name not in sources:
+            declared[dotted(topic.name)] = Shape(None, source=topic.name)
+    left_out.update(found.left_out)
+    return Shapes(declared, {one: why for one, why in left_out.items() if one not in declared})
+
+
+def _fault(topic: Topic, source: MessageFile) -> str:
+    """Why the first message of a topic cannot be read; empty if it can."""
+    if topic.fault:
+        return topic.fault
+    try:
+        next(source.read({topic.name}), None)
+    except TraceError as error:
+        return str(error)
+    return ""
+
+
+def _reason(leaf: str, topic: Topic) -> str:
+    sort = meaning_of(leaf, topic).sort
+    if sort is Sort.ODD or "covariance" in leaf:
+        return _ODD
+    if "[" in leaf:
+        return _ARRAY
+    return _QUATERNION if sort is Sort.QUATERNION else ""
+
+
+def _unit(leaf: str, topic: Topic) -> str:
+    meaning = meaning_of(leaf, topic)
+    is_clear = len(meaning.units) == 1 and not meaning.is_scaled
+    return meaning.units[0].symbol if is_clear and topic.leaves[leaf] is Kind.REAL else ""
+
+
+def _elements(name: str, topic: Topic, looked: Looked) -> Iterator[tuple[str, Shape]]:
+    """The named elements of arrays, such as the positions of joints."""
+    for array, names in arrays_with_names(topic).items():
+        kind = topic.leaves[f"{array}[]"]
+        for element in (looked.joints or {}).get(names, ()):
+            if re.fullmatch(r"\w+", element) and not element.isdigit():
+                full = f"{name}.{array}.{element}"
+                yield full, Shape(kind, unit=_unit(f"{array}[]", topic), source=topic.name)
+
+
+def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, Seen]:
+    """The texts of a recording; a topic on which nothing was said has none."""
+    seen = {name: Seen() for name in texts}
+    reading: dict[str, list[tuple[Seen, str]]] = {}
+    for name, (topic, leaf) in texts.items():
+        reading.setdefault(topic, []).append((seen[name], leaf))
+    getters = {
+        (leaf, mappings): getter(field, mappings=mappings)
+        for own in reading.values()
+        for _, leaf in own
+        for mappings in (False, True)
+        if (field := field_of(leaf)) is not None
+    }
+    for topic, _, content in source.read(reading) if reading else ():
+        for entry, leaf in reading[topic]:
+            try:
+                value = getters[leaf, isinstance(content, Mapping)](content)
+            except KeyError:
+                continue
+            except TraceError:
+                entry.other = True
+                continue
+            if isinstance(value, str):
+                entry.add(value)
+    return seen

@@ -1,0 +1,87 @@
+"""Every rule finds its own example, in the words of its page, and nothing in the fixed one."""
+
+import os
+from pathlib import Path
+
+import pytest
+from tests.tools.code_pages import findings_about, message_about, page
+
+from rvmon.analysis.codes import code_list, every_page, every_rule, page_of
+from rvmon.cli import main
+from rvmon.errors import UnknownNameError
+
+RULES = every_rule()
+PAGES = Path(__file__).parents[3] / "src" / "rvmon" / "analysis" / "pages"
+
+
+def found_in_example(code):
+    """What is found in the example of a code."""
+    return findings_about(code, page(code).example)
+
+
+@pytest.mark.parametrize("code", RULES)
+def test_example_breaks_its_rule(code):
+    """The example is found by its own rule, first of all."""
+    found = found_in_example(code)
+    assert code in [finding.code for finding in found]
+    if code != "RV006":  # so many of another rule that this one speaks
+        assert {finding.code for finding in found} == {code}
+    assert {finding.severity for finding in found if finding.code == code} == {RULES[code].severity}
+
+
+@pytest.mark.parametrize("code", RULES)
+def test_fixed_example_is_in_order(code):
+    """The fixed example has no findings at all."""
+    assert findings_about(code, page(code).instead) == ()
+
+
+@pytest.mark.parametrize("code", RULES)
+def test_page_is_as_the_rule(code):
+    """It has the name and severity of the rule, and the message about its example."""
+    shown, message = page(code), message_about(found_in_example(code))
+    if os.environ.get("RVMON_UPDATE_GOLDEN"):
+        file = PAGES / f"{code[:4]}.md"
+        file.write_text(file.read_text("utf-8").replace(shown.message, message), "utf-8")
+    assert shown.message == message
+    rule = RULES[code]
+    assert (shown.code, shown.name, shown.severity) == (code, rule.name, str(rule.severity))
+
+
+def test_every_page_has_a_rule():
+    """No page is left of a rule that is gone."""
+    assert set(every_page()) == set(RULES)
+
+
+@pytest.mark.parametrize("code", [code for code in RULES if code.startswith("RV")])
+def test_message_says_how_to_fix(code):
+    """Each first finding in a specification has a place and a fix."""
+    first = next(finding for finding in found_in_example(code) if finding.code == code)
+    assert first.spans or code == "RV006"
+    assert first.help
+
+
+def test_codes_in_words_and_all():
+    """A page is found by its code in words too, in any case; all codes are listed."""
+    assert page_of("Unknown-Signal") == page_of("rv012") == page_of("RV012")
+    assert page_of("double-name") == page_of("RV011")
+    codes = [line.split()[0] for line in code_list().splitlines()]
+    assert codes == list(RULES)
+
+
+def test_codes_of_models_have_a_page(capsys):
+    """Each by its code and in words, also from the command line; of others the nearest is named."""
+    for wanted in ("ta008", "diagonal-constraint"):
+        assert main(["explain", wanted]) == 0
+        assert capsys.readouterr().out == page_of("TA008")
+    assert main(["explain", "TA099"]) == 2
+    assert "TA023  no-unit" in capsys.readouterr().err
+
+
+def test_unknown_code():
+    """Of a code that does not exist those most alike are named, and where all are."""
+    with pytest.raises(UnknownNameError) as caught:
+        page_of("RV999")
+    assert "`rvmon explain codes` lists all" in str(caught.value)
+    assert "  RV074  implied\n" in str(caught.value)
+    with pytest.raises(UnknownNameError, match="RV046  never-read"):
+        page_of("never-raed")

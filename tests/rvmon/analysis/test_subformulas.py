@@ -1,0 +1,130 @@
+"""The truth shown of each subformula is that of the definitions."""
+
+import random
+
+import pytest
+from tests.tools import build
+
+from rvmon.analysis.subformulas import dissect
+from rvmon.analysis.truths import (
+    both,
+    look_through,
+    outside,
+    parts_of,
+    subformulas,
+    truths_of_parts,
+    union,
+)
+from rvmon.monitor import build_monitor, compile_spec
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import show_case
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.truths import Truths
+from rvmon.testing.law.word import Truth
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+PROFILE = Profile(requirements=1, depth=3, captures=False, for_each=False)
+
+
+def ticks(spans):
+    """All ticks of a set."""
+    return {t for low, high in spans for t in range(low, high + 1)}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", list(TimeModel))
+@pytest.mark.parametrize("seed", range(4))
+def test_subformulas_have_the_truth_of_the_oracle(time, seed):
+    """At every position of a random recording, for every subformula of a random requirement."""
+    rng = random.Random(seed)
+    compared = set()
+    for _ in range(25):
+        spec = random_spec(rng, Profile(**{**_fields(PROFILE), "time": time}))
+        case = random_trace(rng, spec, TraceProfile(samples=6, span=14, advances=False))
+        samples = [action for action in case.actions if isinstance(action, Sample)]
+        if not samples:
+            continue
+        requirement = spec.requirements["R1"]
+        end = max(samples[-1].t, samples[-1].t if case.end is None else case.end)
+        word = word_of(spec, samples, end=end, names=case.names)
+        attempt = Attempt("R1", 1, samples[0].t, None, Verdict.INCONCLUSIVE)
+        seen = look_through(spec, [parts_of(requirement, attempt)], samples, end, case.names)
+        parts = truths_of_parts(requirement, attempt, seen)
+        truths = Truths(word, {})
+        for _, formula in subformulas(requirement.consequent, 0):
+            found = parts[id(formula)]
+            sure, may = found.sure, found.may
+            for i, letter in enumerate(word.letters):
+                shown = _shown(sure, may, letter.instant)
+                assert shown is truths.truth(formula, i), (show_case(case), formula, letter.instant)
+                compared.add(shown)
+    assert compared == {Truth.TRUE, Truth.UNKNOWN, Truth.FALSE}
+
+
+def _fields(profile):
+    from dataclasses import fields
+
+    return {field.name: getattr(profile, field.name) for field in fields(profile)}
+
+
+def _shown(sure, may, t):
+    if any(low <= t <= high for low, high in sure):
+        return Truth.TRUE
+    return Truth.UNKNOWN if any(low <= t <= high for low, high in may) else Truth.FALSE
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_spans_are_sets(seed):
+    """Union, intersection and complement as of sets of ticks."""
+    rng = random.Random(seed)
+
+    def some():
+        pairs = [(rng.randint(0, 12), rng.randint(0, 4)) for _ in range(rng.randint(0, 4))]
+        return union((low, low + size) for low, size in pairs)
+
+    for _ in range(200):
+        left, right = some(), some()
+        assert ticks(union([*left, *right])) == ticks(left) | ticks(right)
+        assert ticks(both(left, right)) == ticks(left) & ticks(right)
+        assert ticks(outside(left, 0, 20)) == set(range(21)) - ticks(left)
+
+
+def test_an_attempt_of_an_instance_and_with_captures():
+    """An instance sees its own occurrences; captured values are those of the attempt."""
+    import rvmon
+
+    spec = rvmon.loads(
+        "signal x : real\nevent pick(id: int)\nrequirement Q\n upon pick\n"
+        " then within 10 ns (x > v and n == 2)\n for each n in pick.id\n let v = x\n"
+    ).checked
+    samples = [
+        Sample(0, {"x": 1.0, "pick": {"id": 1}}),
+        Sample(2, {"pick": {"id": 2}}),
+        Sample(5, {"x": 3.0}),
+    ]
+    monitor = build_monitor(compile_spec(spec))
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
+    second = next(a for a in monitor.finish_ns(20).attempts if a.number == 2)
+    found = {s.text: s for s in dissect(spec, samples, 20, second).part_truths}
+    assert ticks(found["pick"].true) == {2}
+    assert min(ticks(found["x > v"].true)) == 5
+    assert second.decided == 5
+
+
+def test_the_window_reaches_around_the_attempt():
+    """The trigger and the decision are inside the window that is shown."""
+    spec = build.spec_of(build.requirement(build.eventually(build.f, 0, 7), upon=build.e))
+    samples = list(build.timeline(e=".....1"))
+    monitor = build_monitor(compile_spec(spec))
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
+    attempt = monitor.finish_ns(30).attempts[0]
+    breakdown = dissect(spec, samples, 30, attempt)
+    assert breakdown.start <= attempt.triggered < attempt.decided <= breakdown.end
+    owed = next(s for s in breakdown.part_truths if s.part == "required" and s.depth == 0)
+    assert attempt.triggered in ticks(owed.false)

@@ -1,0 +1,74 @@
+"""Short runs that stand alike go on alike."""
+
+import random
+
+import pytest
+
+from rvmon.analysis.choices import SILENT
+from rvmon.analysis.examples import Player, _choices
+from rvmon.monitor import compile_spec
+from rvmon.testing.case import show_spec
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.trace.sample import Sample
+
+pytestmark = pytest.mark.law
+
+
+def drawn(rng, valuations, start, count):
+    """Samples that say of every name what it is, from an instant on."""
+    t, made = start, []
+    for _ in range(count):
+        made.append(Sample(t, dict(rng.choice(valuations))))
+        t += rng.randint(1, 5)
+    return made, t - 1
+
+
+def behind(example, end):
+    """What becomes of attempts behind an instant, as it is seen from there."""
+    began = [
+        (one.triggered - end, one.decided and one.decided - end, one.verdict)
+        for one in example.attempts
+        if one.triggered > end
+    ]
+    decided = {
+        (one.decided - end, one.verdict)
+        for one in example.attempts
+        if one.decided is not None and one.decided > end and not one.in_doubt
+    }
+    return began, decided
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_equal_situations_go_on_alike(seed):
+    """Whatever comes behind them; time models, captured values and instances among it."""
+    rng = random.Random(seed)
+    pairs = 0
+    for _ in range(4):
+        spec = random_spec(rng, Profile(requirements=1, depth=2))
+        compiled = compile_spec(spec)
+        own = [*compiled.requirements.values()]
+        valuations = [one for one in _choices(spec, own).valuations if SILENT not in one.values()]
+        if not valuations:
+            continue
+        player = Player(compiled, own)
+        gap = spec.period or 1
+        known = {}
+        for _ in range(60):
+            samples, last = drawn(rng, valuations, gap * rng.randint(0, 3), rng.randint(1, 3))
+            end = last + rng.randint(0, 3)
+            found = player.play(samples, end)
+            known.setdefault(found.situation, []).append((samples, end, found.cut))
+        for same in known.values():
+            (first, first_end, cut), *others = same
+            for second, second_end, other_cut in others[:3]:
+                assert (cut - first_end) == (other_cut - second_end) or cut == other_cut
+                further, _ = drawn(rng, valuations, rng.randint(1, 4), rng.randint(1, 3))
+                wait = rng.randint(0, 6)
+                ends = []
+                for samples, end in ((first, first_end), (second, second_end)):
+                    rest = [Sample(end + one.t, one.values) for one in further]
+                    played = player.play([*samples, *rest], rest[-1].t + wait)
+                    ends.append(behind(played.example, end))
+                assert ends[0] == ends[1], (show_spec(spec), first, second, further, wait)
+                pairs += 1
+    assert pairs
