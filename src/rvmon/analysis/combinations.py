@@ -15,7 +15,7 @@ from itertools import product
 from typing import Generic, TypeVar, assert_never
 
 from rvmon.analysis.choices import Silence, is_solved, truths_tried, values_of
-from rvmon.logic.state_formula import TRUE, Lapsed, Leaf, State, StateOp
+from rvmon.logic.state_formula import TRUE, Elapsed, Lapsed, Leaf, State, StateOp
 from rvmon.logic.state_graph import captured_names, names_of
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
@@ -76,7 +76,9 @@ class Letters:
             return None
         read = [leaf for own in leaves.values() for leaf in own]
         steady = {n: n.leaf.value for n in nodes if isinstance(n.leaf, Constant)}
-        steady |= {n: False for n in nodes if isinstance(n.leaf, Lapsed)}  # nothing is unknown
+        # Nothing is unknown, and there is a position.
+        steady |= {n: False for n in nodes if isinstance(n.leaf, Lapsed)}
+        steady |= {n: True for n in nodes if n.leaf == Elapsed(0)}
         derived = [node for node in nodes if not _is_free(node)]
         rows = {}
         for chosen in product(*shown):
@@ -229,7 +231,7 @@ def _is_free(node: State) -> bool:
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
     """Whether all truths of a leaf are seen by trying values."""
     match leaf:
-        case Constant() | SignalAtom() | EventAtom() | Lapsed():
+        case Constant() | SignalAtom() | EventAtom() | Lapsed() | Elapsed(duration=0):
             return True
         case Compare():
             solved = is_solved(leaf) and not captured_names(leaf)

@@ -10,6 +10,7 @@ from itertools import product
 from rvmon.analysis.combinations import combinations_of
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.formula import Core, Literal, Sense
+from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
@@ -179,20 +180,8 @@ class _Reader:
         self.automaton = automaton
         self.texts = proposition_texts(compiled)
         self.propositions = automaton.alphabet.propositions
-        self.letters = _two_valued(automaton)
-        trigger = compiled.obligation.trigger
-        states = [*self.propositions, *([] if trigger is None else [trigger])]
-        vectors = combinations_of(spec, states)
-        width = len(self.propositions)
-        self.later = self._feasible(vectors, width)
-        self.first = self._feasible(
-            vectors and {v for v in vectors if len(v) == width or v[-1]}, width
-        )
-
-    def _feasible(self, vectors: Set[tuple[bool, ...]] | None, width: int) -> Set[Cube]:
-        if vectors is None:
-            return self.letters.keys()
-        return {tuple(map(int, v[:width])) for v in vectors} & self.letters.keys()
+        self.letters = letters_of(automaton.alphabet, MOST_PROPOSITIONS)
+        self.first, self.later = inputs_of(compiled, spec, self.letters)
 
     def edges(self, index: int) -> Iterator[tuple[int, str, str, str]]:
         """Target, condition on the input, condition on the clocks, clocks that are set."""
@@ -230,16 +219,29 @@ class _Reader:
         return " and ".join(parts if len(parts) == 1 else map(_bracketed, parts))
 
 
-def _two_valued(automaton: Automaton) -> Mapping[Cube, int]:
-    """The letters without unknowns, by the truths of their propositions."""
-    weights = automaton.alphabet.pessimistic
-    if len(weights) > MOST_PROPOSITIONS:
+def letters_of(alphabet: Alphabet, most: int) -> Mapping[Cube, int]:
+    """The letters without unknowns, by the truths of their propositions; none if these are more."""
+    if len(alphabet.propositions) > most:
         return {}
-    digits = [(own[FALSE], own[TRUE]) for own in weights]
+    digits = [(own[FALSE], own[TRUE]) for own in alphabet.pessimistic]
     return {
         truths: sum(own[truth] for own, truth in zip(digits, truths, strict=True))
-        for truths in product((1, 0), repeat=len(weights))
+        for truths in product((1, 0), repeat=len(digits))
     }
+
+
+def inputs_of(
+    compiled: CompiledRequirement, spec: CheckedSpec, letters: Mapping[Cube, int]
+) -> tuple[Set[Cube], Set[Cube]]:
+    """Those of some letters that inputs can bring about: at the trigger, and at any position."""
+    trigger, width = compiled.obligation.trigger, len(compiled.alphabet.propositions)
+    states = [*compiled.alphabet.propositions, *([] if trigger is None else [trigger])]
+    vectors = combinations_of(spec, states)
+    if vectors is None:
+        return letters.keys(), letters.keys()
+    starting = {vector for vector in vectors if len(vector) == width or vector[-1]}
+    first, later = ({tuple(map(int, v[:width])) for v in own} for own in (starting, vectors))
+    return first & letters.keys(), later & letters.keys()
 
 
 def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:

@@ -16,6 +16,7 @@ from rvmon.texts import shown_json
 if TYPE_CHECKING:
     from rvmon.monitor.compile import CompiledRequirement
     from rvmon.session import Spec
+    from rvmon.spec.checked.specification import CheckedSpec
 
 _OF_MODELS = ("dot", "uppaal")
 
@@ -116,7 +117,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
 
     chosen = compile_spec(spec.checked).chosen(ids)
     if form == "hoa":
-        return _hoa_texts(chosen)
+        return _hoa_texts(chosen, spec.checked)
     if form == "json":
         import msgspec
 
@@ -135,7 +136,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     return "".join(texts)
 
 
-def _hoa_texts(chosen: Sequence[CompiledRequirement]) -> str:
+def _hoa_texts(chosen: Sequence[CompiledRequirement], spec: CheckedSpec) -> str:
     """The automata that can be written; of the others it is said why they are left out.
 
     Raises:
@@ -146,7 +147,7 @@ def _hoa_texts(chosen: Sequence[CompiledRequirement]) -> str:
     texts, faults = [], []
     for one in chosen:
         try:
-            texts.append(hoa(one))
+            texts.append(hoa(one, spec))
         except RvmonError as error:
             faults.append(error)
     if not texts:

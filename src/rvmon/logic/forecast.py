@@ -5,16 +5,11 @@ Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, AC
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Sequence
-from dataclasses import replace
 
-from rvmon.logic.automaton import FAILED, PASSED, Automaton, Location
 from rvmon.logic.emptiness import Start, TooLargeError, is_satisfiable, start_of
 from rvmon.logic.progress import Duals
-from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import FAILS, HOLDS, Residual, TooManyClausesError
-from rvmon.logic.state_formula import FALSE, TRUE
 
 MOST_CLAUSES = 60
 """Of a residual, and of its negation."""
@@ -84,52 +79,3 @@ class Forecaster:
             except TooLargeError:
                 self._known[key] = True
         return self._known[key]
-
-
-def ltl3_monitor(automaton: Automaton, forecaster: Forecaster) -> Automaton:
-    """The least automaton that decides as soon as every continuation agrees.
-
-    It knows nothing of what is owed, nor of the rule for the end of a trace, nor what to do where
-    a proposition is unknown. Locations that no letters lead to may remain.
-
-    Args:
-        automaton: without clocks.
-        forecaster: knows what is still possible.
-
-    Raises:
-        ValueError: it has clocks.
-
-    Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4),
-    2011, section 3.
-    """
-    if automaton.clocks:
-        raise ValueError("an automaton with clocks has no least LTL3 monitor of this kind")
-    ends = [forecaster.of(location.residual, (), None) for location in automaton.locations]
-
-    def ahead(index: int) -> int:
-        end = ends[index]
-        return index if end is None else PASSED if end else FAILED
-
-    count = len(automaton.locations)
-    forgetful = replace(
-        automaton,
-        locations=(Location(FAILS, ()),) * count,
-        initial=ahead(automaton.initial),
-        edges=_where_all_is_known(automaton),
-        targets=tuple(map(ahead, automaton.targets)),
-        end_values=bytes(index == PASSED for index in range(count)),
-    )
-    return reduce(forgetful)
-
-
-def _where_all_is_known(automaton: Automaton) -> array[int]:
-    """The edges, those under other letters like those under one of which all is known."""
-    letters = {0}
-    for weights in automaton.alphabet.pessimistic:
-        letters = {letter + weights[truth] for letter in letters for truth in (FALSE, TRUE)}
-    known = {automaton.class_of[letter] for letter in letters}
-    chosen = [one if one in known else min(known) for one in range(automaton.classes)]
-    rows = range(0, len(automaton.edges), automaton.classes)
-    return array(
-        automaton.edges.typecode, (automaton.edges[row + one] for row in rows for one in chosen)
-    )

@@ -1,5 +1,6 @@
 """Automata in the HOA format: valid, complete, deterministic, least, and right."""
 
+import re
 from itertools import product
 
 import pytest
@@ -15,6 +16,7 @@ from rvmon.errors import RvmonError
 from rvmon.export.hoa import hoa
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.print.printer import format_formula
 
 pytestmark = pytest.mark.law
 
@@ -105,22 +107,33 @@ class Read:
             state = self.after(state, indices)
         return self.names[state]
 
-    def classes(self):
-        block = dict(self.names)
+    def classes(self, letters):
+        """How many states no word of such letters makes one: every other pair is marked apart."""
+        pairs = [(one, other) for one in self.names for other in self.names if one < other]
+        apart = {pair for pair in pairs if self.names[pair[0]] != self.names[pair[1]]}
         while True:
-            finer = {
-                state: (block[state], *(block[self.after(state, x)] for x in self.letters))
-                for state in self.names
+            more = {
+                (one, other)
+                for one, other in pairs
+                for x in letters
+                if tuple(sorted((self.after(one, x), self.after(other, x)))) in apart
             }
-            if len(set(finer.values())) == len(set(block.values())):
-                return len(set(block.values()))
-            number = {look: n for n, look in enumerate(dict.fromkeys(finer.values()))}
-            block = {state: number[look] for state, look in finer.items()}
+            if more <= apart:
+                break
+            apart |= more
+        return sum(all((one, it) in apart for one in range(it)) for it in self.names)
+
+    def reached(self, letters):
+        """The states that words of such letters come to."""
+        found = [self.start]
+        for state in found:
+            found += [to for x in letters if (to := self.after(state, x)) not in found]
+        return set(found)
 
 
-def compiled(formula):
-    spec = spec_of(requirement(formula, upon=start), time=TimeModel.SAMPLED)
-    return compile_spec(spec).requirements["R"]
+def written(spec, name="R"):
+    """A requirement in the HOA format."""
+    return hoa(compile_spec(spec).requirements[name], spec)
 
 
 @settings(max_examples=40, deadline=None)
@@ -133,14 +146,14 @@ def test_random_formulas(data):
             return data.draw(st.integers(a, b))
 
     formula = random_ltl(Drawn(), data.draw(st.integers(1, 3)))
-    one = compiled(formula)
-    if one.automaton is None:
+    spec = spec_of(requirement(formula, upon=start), time=TimeModel.SAMPLED)
+    if compile_spec(spec).requirements["R"].automaton is None:
         return
-    read = Read(hoa(one))
+    read = Read(written(spec))
     for state in read.names:
         for letter in read.letters:
             read.after(state, letter)  # exactly one
-    assert read.classes() == len(read.names)
+    assert read.classes(read.letters) == len(read.reached(read.letters)) == len(read.names)
     if not set(read.propositions) <= set("pqr"):
         return  # a combination of signals is one proposition there
     tableau = Tableau(formula)
@@ -156,7 +169,7 @@ def test_text_of_propositions_is_quoted():
         'spec s\nsignal mode : {idle, busy}\nrequirement R1 "a \\"b\\""\n'
         "  upon start\n  then eventually mode == busy\n"
     )
-    text = hoa(compile_spec(spec.checked).requirements["R1"])
+    text = written(spec.checked, "R1")
     assert Read(text).propositions == ["mode == busy"]
     assert text.startswith("HOA: v1\n")
 
@@ -165,7 +178,7 @@ def test_windows_of_time_are_refused():
     """HOA has no clocks; the message says what to do."""
     spec = loads('spec s\nevent e\nrequirement R1 "x"\n  upon start\n  then within 3 s e\n')
     with pytest.raises(RvmonError, match="windows of time, which HOA cannot express"):
-        hoa(compile_spec(spec.checked).requirements["R1"])
+        written(spec.checked, "R1")
 
 
 def test_states_that_differ_only_where_something_is_unknown_are_one():
@@ -173,4 +186,62 @@ def test_states_that_differ_only_where_something_is_unknown_are_one():
     spec = loads(
         "spec s\nsignal p : bool\nrequirement R\n  upon start\n  then p iff eventually always p\n"
     )
-    assert "States: 1\n" in hoa(compile_spec(spec.checked).requirements["R"])
+    assert "States: 1\n" in written(spec.checked)
+
+
+LIMITS = ("x > 1", "x > 2", "x > 3")
+VALUES = (0.5, 1.5, 2.5, 3.5)
+OWED = dict(zip("pqr", LIMITS, strict=True))
+
+
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_letters_that_cannot_be(data):
+    """Of values that exclude each other the monitor is least, and says what the monitor says."""
+
+    class Drawn:
+        def randint(self, a, b, /):
+            return data.draw(st.integers(a, b))
+
+    owed = format_formula(random_ltl(Drawn(), data.draw(st.integers(1, 3))))
+    text = re.sub(r"\b[pqr]\b", lambda found: f"({OWED[found[0]]})", owed)
+    when = data.draw(st.sampled_from(("start", *LIMITS)))
+    spec = loads(
+        f"spec s\ntime sampled\nsignal x : real\nrequirement R\n  upon {when} then {text}\n"
+    )
+    try:
+        read = Read(written(spec.checked))
+    except RvmonError:
+        return
+    if not all(re.fullmatch(r"x > \d", name) for name in read.propositions):
+        return  # a combination of comparisons is one proposition there
+    holding = {
+        value: frozenset(
+            place for place, name in enumerate(read.propositions) if value > float(name[-1])
+        )
+        for value in VALUES
+    }
+    letters = [*holding.values()]
+    assert read.classes(letters) == len(read.names)
+    values = data.draw(st.lists(st.sampled_from(VALUES), min_size=1, max_size=6))
+    monitor, state, decided = spec.monitor(), None, None
+    for t, value in enumerate(values):
+        if state is None and (when == "start" or value > float(when[-1])):
+            state = read.start
+        state = state if state is None else read.after(state, holding[value])
+        for attempt in monitor.step_ns(t, {"x": value}):
+            decided = decided or (attempt.number == 1 and attempt.verdict.value) or None
+        if decided is not None:
+            assert read.names[state] == decided
+
+
+def test_what_cannot_be_stands_in_no_label():
+    """Above 3 it is above 2: a label tells the values apart, with no word of what cannot be."""
+    spec = loads(
+        "spec s\ntime sampled\nsignal x : real\nrequirement R\n"
+        "  upon x > 3 then always (x > 3 -> next x > 2)\nrequirement S\n"
+        "  upon x > 3 then eventually (x > 2) or always x < 1\n"
+    )
+    assert "[!0&!1] 0\n[0&!1 | 0&1] 1" not in written(spec.checked)
+    assert Read(written(spec.checked)).propositions == ["x > 2", "x > 3"]
+    assert "AP: 0\n" in written(spec.checked, "S")
