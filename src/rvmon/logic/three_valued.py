@@ -1,8 +1,7 @@
 """Formulas of the present and past with four values, as state formulas with three.
 
 Before the birth of its signals a proposition is neither true nor false nor unknown. No monitor has
-that value: each place in which a formula stands says what it takes it for, and the formula is made
-into one that is that.
+that value: where a formula stands says what it is taken for, and the formula is rewritten so.
 """
 
 from __future__ import annotations
