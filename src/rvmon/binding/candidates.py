@@ -11,8 +11,10 @@ from typing import Any
 
 from rvmon.binding.expression import number, term_of
 from rvmon.binding.words import (
+    AXES,
     EMPTY,
     MODIFIERS,
+    OF_COMMENTS,
     OF_TOPICS,
     Dimension,
     dimensions_of,
@@ -29,8 +31,6 @@ from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, parse_unit
-
-_AXES = ("x", "y", "z")
 
 _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "m/s": {
@@ -71,6 +71,7 @@ class Candidate:
         around: words of the topic, of its frames and of the type.
         meaning: of the field; of what is calculated that of the result.
         axis: along which it is measured; empty if along none.
+        told: words of a comment on it.
     """
 
     topic: Topic
@@ -80,6 +81,7 @@ class Candidate:
     around: tuple[str, ...]
     meaning: Meaning
     axis: str = ""
+    told: tuple[str, ...] = ()
 
     @property
     def is_command(self) -> bool:
@@ -122,7 +124,8 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
                 words: tuple[str, ...] = tuple(word for word in own if word not in ALONG)
             else:
                 words = (*own, *_along(meaning, axis))
-            yield Candidate(topic, value, kind, words, around, meaning, axis)
+            told = tuple(words_of(topic.told.get(leaf, "")))
+            yield Candidate(topic, value, kind, words, around, meaning, axis, told)
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
             turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
             whole = leaf.rpartition(".")[0]
@@ -151,14 +154,14 @@ def _places(
     words = [*words_of(leaf), *(one for word in meaning.words for one in words_of(word))]
     if "[" not in leaf:
         last = words_of(leaf.rpartition(".")[2])[-1:]
-        yield leaf, words, last[0] if last and last[0] in _AXES else ""
+        yield leaf, words, last[0] if last and last[0] in AXES else ""
         return
     array = leaf.removesuffix("[]")
     if "[" in array:
         return
     if "xyz" in meaning.words and meaning.sort is not Sort.QUATERNION:
         plain = [word for word in words if word != "xyz"]
-        for place, axis in enumerate(_AXES):
+        for place, axis in enumerate(AXES):
             yield f"{array}[{place}]", [*plain, axis], axis
     elif "distance" in words and meaning.sort is Sort.MEASURED:
         yield f"min({array})", ["nearest", *words], ""
@@ -187,7 +190,7 @@ def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
 def foreign_words(candidate: Candidate) -> list[str]:
     """The words of a candidate that say something, without those of the meaning alone."""
     written = [*words_of(candidate.topic.name), *words_of(candidate.value)]
-    plain = {*EMPTY, *_AXES, "hypot", candidate.axis}
+    plain = {*EMPTY, *AXES, "hypot", candidate.axis}
     return [word for word in dict.fromkeys(written) if word not in plain]
 
 
@@ -196,6 +199,7 @@ def modifiers_of(candidate: Candidate) -> set[str]:
     is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
     words = words_of(candidate.topic.name)
     found = {word for word in words if word in (MODIFIERS if is_alone else OF_TOPICS)}
+    found |= {word for word in candidate.told if word in OF_COMMENTS}
     return found | {word for word in candidate.own if word in MODIFIERS}
 
 

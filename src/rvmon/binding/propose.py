@@ -12,7 +12,6 @@ from rvmon.binding.candidates import Candidate, Range, candidates_of, events_of,
 from rvmon.binding.rank import fitting, is_clear, wanted_of
 from rvmon.readers.messages.file import MessageFile
 from rvmon.readers.messages.look import Looked, names_in
-from rvmon.readers.messages.meaning import Sort
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
 from rvmon.units import base_unit, parse_unit, unit_table
@@ -22,6 +21,9 @@ _MOST = 4
 
 _WHOLE = 1.5
 """No ratio of a whole is as large."""
+
+_TURN = 7
+"""No angle in radians, of what turns once, is as large."""
 
 Found = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]
@@ -112,27 +114,36 @@ def _range(one: Candidate, ranges: Ranges) -> str:
 
 
 def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
+    values = ranges.get((one.topic.name, one.value), Range())
     if type_.unit:
-        told = one.meaning.sort is Sort.MEASURED
-        dimension = parse_unit(type_.unit).dimension
-        units = [unit for unit in one.meaning.units if unit.dimension == dimension]
-        own = units[0].symbol if units else one.unit.symbol if one.unit is not None else ""
-        high = ranges.get((one.topic.name, one.value), Range()).high
-        is_whole = not dimension and high is not None and high > _WHOLE
-        symbol = own or _plain_unit(dimension) or ("%" if is_whole and not told else "1")
-        remark = ""
-        if not told:
-            remark = (
-                "  # by the name of the field" if own else "  # a guess: the messages do not say"
-            )
+        symbol, remark = _unit_of(type_.unit, one, max(values.high or 0, -(values.low or 0)))
         yield f"unit = {_text(symbol)}{remark}"
-        if told and symbol == "1" and is_whole:
+        if symbol == "1" and not remark and (values.high or 0) > _WHOLE:
             yield f'# It looks like per cent: then value = "1 * {one.value}", unit = "%"'
     if _has_codes(type_, one):
-        values = ranges.get((one.topic.name, one.value), Range()).first
-        there = f": it holds {', '.join(map(str, values))}" if values else ""
+        there = f": it holds {', '.join(map(str, values.first))}" if values.first else ""
         listed = ", ".join(f"0 = {_text(label)}" for label in type_.labels[:1])
         yield f"# labels = {{ {listed} }}  # which number stands for which{there}"
+
+
+def _unit_of(declared: str, one: Candidate, largest: float) -> tuple[str, str]:
+    """The unit of a value, and a remark unless the messages say it.
+
+    Args:
+        declared: the unit of the name.
+        one: what feeds it.
+        largest: of its values, without their sign.
+    """
+    dimension = parse_unit(declared).dimension
+    told = [unit.symbol or "1" for unit in one.meaning.units if unit.dimension == dimension]
+    if told:
+        return told[0], ""
+    if one.unit is not None:
+        return one.unit.symbol, "  # by the name of the field"
+    plain = _plain_unit(dimension) or "1"
+    if (plain == "1" and largest > _WHOLE) or (plain == "rad" and largest > _TURN):
+        return {"1": "%", "rad": "deg"}[plain], "  # a guess: by its values"
+    return plain, "  # a guess: the messages do not say"
 
 
 def _plain_unit(dimension: tuple[tuple[str, int], ...]) -> str:

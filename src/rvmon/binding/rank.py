@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from rvmon.binding.candidates import ALONG, Candidate, foreign_words, modifiers_of
 from rvmon.binding.words import (
+    AXES,
     EMPTY,
     MODIFIERS,
     ORDINALS,
@@ -58,7 +59,7 @@ class Wanted:
     @property
     def axis(self) -> str:
         """Along which axis, if the name says it."""
-        return next((word for word in self.words if word in ("x", "y", "z")), "")
+        return next((word for word in self.words if word in AXES), "")
 
 
 def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
@@ -177,7 +178,12 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
         if not weight:
             return 0.0
         total += weight
-    better = 0.05 * (candidate.topic.type == _MOVING) + 0.02 * candidate.value.startswith("hypot(")
+    is_exact = words_of(candidate.value) == [*wanted.words]
+    better = (
+        0.005 * is_exact
+        + 0.05 * (candidate.topic.type == _MOVING)
+        + 0.02 * candidate.value.startswith("hypot(")
+    )
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
         better += 0.2  # a text says which label it is, a number does not
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
@@ -194,4 +200,4 @@ def _weight(word: str, candidate: Candidate) -> float:
     if is_found(word, candidate.own) or (word == "minimum" and candidate.value[:4] == "min("):
         return 1.0
     is_its_unit = candidate.unit is not None and is_measured_in(word, candidate.unit)
-    return 0.9 * (is_its_unit or is_found(word, candidate.around))
+    return 0.9 * (is_its_unit or is_found(word, (*candidate.around, *candidate.told)))

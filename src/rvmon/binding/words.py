@@ -25,7 +25,7 @@ _SAME = {
     "yaw": "heading hdg theta",
     "position": "pos positions",
     "relative": "rel",
-    "satellites": "satellite sats nsats sat",
+    "satellites": "satellite sats nsats sat sv svs",
     "percentage": "percent pct soc",
     "number": "num nr count",
     "torque": "torques",
@@ -52,7 +52,7 @@ def _set(*lines: str) -> frozenset[str]:
     return frozenset(word for line in lines for word in line.split())
 
 
-_APART = re.compile(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
+_APART = re.compile(r"[A-Z]+(?![^\W\d_A-Z])|[A-Z]?[^\W\d_A-Z]+|\d+")
 
 _JOINED = {
     **{f"v{axis}": ("speed", axis) for axis in "xyz"},
@@ -63,6 +63,7 @@ _JOINED = {
     "yawrate": ("yaw", "rate"),
     "rollspeed": ("roll", "rate"),
     "pitchspeed": ("pitch", "rate"),
+    "cpuload": ("cpu", "load"),
 }
 """Words that are written as one."""
 
@@ -79,12 +80,16 @@ MODIFIERS = _set(
     "command error tolerance limit minimum maximum offset bias variance accuracy delta",
     "reset counter design time timestamp stamp increment last home initial origin average",
     "mean derivative integral raw scaling covariance confidence quality valid health",
+    "full nominal rated",
     "fault innovation drift index id device",
 )
 """Words that make another quantity of what they stand beside."""
 
 OF_TOPICS = _set("innovation variance bias error drift")
 """Of these words those that make another quantity of all that a topic says."""
+
+OF_COMMENTS = OF_TOPICS | _set("accuracy covariance limit tolerance")
+"""Of them those that do so where a comment says them."""
 
 SUBJECTS = _set(
     "wind water air person pedestrian human people obstacle object ball door target lead other",
@@ -159,6 +164,8 @@ _QUANTITIES = {
     "magnetometer": "T",
 }
 """Units of the quantities that words stand for."""
+
+AXES = ("x", "y", "z")
 
 _TELLING = frozenset({"degC K", "V", "A", "W", "J", "Pa", "N"})
 """Units of which each is of one quantity."""
@@ -254,9 +261,9 @@ def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
         elif word in ("speed", "acceleration") and "linear" in words:
             units = units[:1]
         elif word == "x" or word == "y" or word == "z":
-            others = dimensions_of([one for one in words if one not in ("x", "y", "z")])
+            others = [one for one in words if one not in AXES and one not in EMPTY]
             if others:
-                return others
+                return dimensions_of(others)
         if units:
             return frozenset(parse_unit(unit).dimension for unit in units)
     return frozenset()

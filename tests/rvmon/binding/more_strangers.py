@@ -69,7 +69,7 @@ MORE_STRANGERS = {
         "signal gps_ground_speed : real [m/s]\nsignal horizontal_accuracy : real [m]\n"
         "signal num_satellites : int\nsignal latitude : real [deg]",
         {
-            "gps_ground_speed": ("/ublox/navpvt gSpeed [mm/s]",),
+            "gps_ground_speed": ("/ublox/navpvt gSpeed [mm/s]", ""),
             "horizontal_accuracy": ("/ublox/navpvt hAcc [mm]",),
             "num_satellites": ("/ublox/navpvt numSV",),
             "latitude": ("/ublox/fix latitude [deg]",),

@@ -4,6 +4,7 @@ import tomllib
 
 import pytest
 from tests.rvmon.binding.more_robots import LAST, LATER
+from tests.rvmon.binding.more_strangers import MORE_STRANGERS
 from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
 from tests.rvmon.binding.strangers import STRANGERS
 from tests.rvmon.binding.traps import FRESH, TRAPS
@@ -14,7 +15,16 @@ from rvmon.cli import main
 
 pytest.importorskip("rosbags")
 
-ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS, **FRESH, **STRANGERS}
+ROBOTS = {
+    **REPORTED,
+    **HELD_OUT,
+    **LATER,
+    **LAST,
+    **TRAPS,
+    **FRESH,
+    **STRANGERS,
+    **MORE_STRANGERS,
+}
 
 
 def write(robot, folder):

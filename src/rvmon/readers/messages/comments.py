@@ -60,14 +60,12 @@ _BEHIND_IN = re.compile(
     r"\bin (?:units of )?(\S+(?: (?:celsius|c\b|per \w+|meters?))?)", re.IGNORECASE
 )
 
-_SCALE = re.compile(r"(?<![\d.])(?:0?\.0*1|10+|1e-?\d|10\^-?\d)\s*\*?\s*(?=[a-zA-Z])")
+_POWER = r"(?:0?\.0*1|10+|1e-?\d|10\^-?\d)"
+
+_SCALE = re.compile(rf"(?<![\d.]){_POWER}\s*\*?\s*(?=[a-zA-Z])|\s*[*/x]\s*{_POWER}$|E\d$")
 """What makes tenths, or hundreds, of a unit of it."""
 
 _FIELD = re.compile(r"(?P<type>[\w/]+)(?:<=\d+)?(?:\[[^\]]*\])?\s+(?P<name>\w+)[^=]*")
-
-_VECTORS = re.compile(r"(?:^|/)(?:Vector3|Point)\w*$")
-
-_NUMBERS = re.compile(r"float|double|u?int")
 
 
 def spoken_unit(text: str) -> str:
@@ -75,10 +73,11 @@ def spoken_unit(text: str) -> str:
 
     >>> spoken_unit("rad/sec"), spoken_unit("Degrees Celsius"), spoken_unit("10mA")
     ('rad/s', 'degC', '~mA')
+    >>> spoken_unit("deg / 1e-7")
+    '~deg'
     """
     plain = text.strip(" .:").replace("**", "^").replace("²", "^2")
-    scale = _SCALE.match(plain)
-    plain = plain if scale is None else plain[scale.end() :]
+    plain, is_scaled = _SCALE.subn("", plain, count=1)
     for pattern, written in _WRITTEN.items():
         plain = re.sub(pattern, written, plain, flags=re.IGNORECASE)
     parts = [_part(part) for part in plain.split("/")]
@@ -87,7 +86,7 @@ def spoken_unit(text: str) -> str:
     except UnknownUnitError:
         return ""
     # Is it a gram, or how things fall?
-    return "" if found.symbol in ("", "g") else f"{'~' * (scale is not None)}{found.symbol}"
+    return "" if found.symbol in ("", "g") else f"{'~' * is_scaled}{found.symbol}"
 
 
 def _part(text: str) -> str:
@@ -110,36 +109,44 @@ def unit_in_comment(comment: str) -> str:
     return next(filter(None, units), "")
 
 
-def units_of(definition: str) -> Mapping[str, Mapping[str, str]]:
-    r"""The units that the text of a definition says: by type (the first is ""), by field.
+def comments_of(definition: str) -> Mapping[str, Mapping[str, str]]:
+    r"""What the text of a definition says of fields: by type (the first is ""), by field.
 
     A comment above a field is of the next field; one that speaks of several, `# speeds (m/s)`, of
     all of a type that follow it.
 
-    >>> units_of("# Speeds (rad/s)\nfloat32 left\nfloat32 right\nbool ok  # in m")
-    {'': {'left': 'rad/s', 'right': 'rad/s'}}
+    >>> comments_of("# Speeds (rad/s)\nfloat32 left\nfloat32 right\nbool ok  # in use")
+    {'': {'left': 'Speeds (rad/s)', 'right': 'Speeds (rad/s)', 'ok': 'in use'}}
     """
     found: dict[str, dict[str, str]] = {}
     for part in re.split(r"^=+$", definition, flags=re.MULTILINE):
         named = re.match(r"\s*MSG: (\S+)", part)
-        own = dict(_units_in(part))
+        own = dict(_comments_in(part))
         if own:
             found["" if named is None else named[1].replace("/msg/", "/")] = own
     return found
 
 
-def _units_in(part: str) -> Iterator[tuple[str, str]]:
-    above, kind = "", ""
+def _comments_in(part: str) -> Iterator[tuple[str, str]]:
+    above, kind, beside = "", "", ""
     for line in part.splitlines():
         code, _, comment = line.partition("#")
         field = _FIELD.fullmatch(code.strip())
         if field is None:
-            above, kind = comment if not code.strip() else "", ""
+            is_more = bool(beside) and line[:1].isspace()
+            above, kind = comment if not code.strip() and not is_more else "", ""
             continue
-        is_first = not kind
+        of_several = kind == field["type"] and re.search(r"\w\ws\b", above)
+        beside = comment.strip()
+        if text := beside or (above.strip() if not kind or of_several else ""):
+            yield field["name"], text
         kind = kind or field["type"]
-        unit = unit_in_comment(comment)
-        if not unit and kind == field["type"] and (is_first or re.search(r"\w\ws\b", above)):
-            unit = unit_in_comment(above)
-        if unit and (_NUMBERS.match(field["type"]) or _VECTORS.search(field["type"])):
-            yield field["name"], unit
+
+
+def is_vector(type_name: str) -> bool:
+    """Whether what is said of a message of a type is said of each of its fields.
+
+    >>> is_vector("geometry_msgs/Vector3"), is_vector("geometry_msgs/Pose")
+    (True, False)
+    """
+    return bool(re.search(r"(?:^|/)(?:Vector3|Point)\w*$", type_name))

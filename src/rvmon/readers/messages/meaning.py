@@ -25,8 +25,9 @@ from enum import Enum
 from functools import cache
 from importlib import resources
 
-from rvmon.readers.messages.comments import spoken_unit
+from rvmon.readers.messages.comments import is_vector, spoken_unit, unit_in_comment
 from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Kind
 from rvmon.units import Unit, parse_unit
 
 
@@ -84,8 +85,8 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
             # What is said of a vector is said of all that is inside it.
             found = inner if found.sort is Sort.OPEN else found
         way = ".".join(steps[:place])
-        if way in topic.units and found.sort is Sort.OPEN:
-            found = _told(topic.units[way])
+        if found.sort is Sort.OPEN:
+            found = _told(way, topic)
         told = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
         type_name = plain_type(told)
     return found
@@ -105,11 +106,15 @@ def plain_type(type_name: str) -> str:
     return re.sub(r"[/.]msg[/.]", "/", type_name)
 
 
-@cache
-def _told(unit: str) -> Meaning:
-    """What is measured in a unit that a recording writes, if that is one."""
-    plain = "1" if unit == "1" else spoken_unit(unit)
-    return _read(plain) if plain else UNKNOWN
+def _told(path: str, topic: Topic) -> Meaning:
+    """What a recording says of a field, itself or by a comment on a number or a vector."""
+    unit = topic.units.get(path, "")
+    is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
+    if unit:
+        unit = "1" if unit == "1" else spoken_unit(unit)
+    elif path in topic.told and (is_number or is_vector(topic.messages.get(path, ""))):
+        unit = unit_in_comment(topic.told[path])
+    return _read(unit) if unit else UNKNOWN
 
 
 @cache

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, not_installed
-from rvmon.readers.messages.comments import units_of
+from rvmon.readers.messages.comments import comments_of
 from rvmon.readers.messages.meaning import plain_type
 from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.readers.values import first_line
@@ -157,10 +157,10 @@ def ros_topic(
         return Topic(name, type_name, {}, fault), bytes
     messages: dict[str, str] = {}
     leaves = dict(_leaves(store, type_name, messages))
-    told = units_of(definition[1] or others.get(type_name, "")) if definition[0] != "idl" else {}
-    units = {} if not told else dict(_units(leaves, messages, told))
+    text = "" if definition[0] == "idl" else definition[1] or others.get(type_name, "")
+    told = dict(_told(leaves, messages, comments_of(text)))
     unpack = store.deserialize_ros1 if is_ros1 else store.deserialize_cdr
-    topic = Topic(name, type_name, leaves, messages=messages, units=units)
+    topic = Topic(name, type_name, leaves, messages=messages, told=told)
     return topic, lambda raw: unpack(raw, type_name)
 
 
@@ -223,15 +223,15 @@ def _bare_idl(part: str) -> str:
     return part.partition("\n")[2] if part.startswith("IDL: ") else part
 
 
-def _units(
-    leaves: Iterable[str], messages: Mapping[str, str], told: Mapping[str, Mapping[str, str]]
+def _told(
+    leaves: Iterable[str], messages: Mapping[str, str], comments: Mapping[str, Mapping[str, str]]
 ) -> Iterator[tuple[str, str]]:
-    """The units that a definition says, by path; what stands in tables is said there."""
-    for path in (*messages, *leaves):
+    """What a definition says of fields, by path."""
+    for path in (*messages, *leaves) if comments else ():
         above, _, field = path.rpartition(".")
-        own = told.get(plain_type(messages[above]) if above else "", {})
-        if unit := own.get(field.removesuffix("[]")):
-            yield path, unit
+        own = comments.get(plain_type(messages[above]) if above else "", {})
+        if text := own.get(field.removesuffix("[]")):
+            yield path, text
 
 
 _FILLER = "structure_needs_at_least_one_member"

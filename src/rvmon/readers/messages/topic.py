@@ -26,7 +26,8 @@ class Topic:
         messages: the types of the fields that are messages themselves, by their path, as far as
             the definition names them.
         doubtful: the fields whose kind is not known: nothing was seen of them.
-        units: of the fields, or vectors, whose unit the recording says itself, by their path.
+        units: of the fields whose unit the recording says itself, by their path.
+        told: what comments in the definition say of fields, by their path.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Topic:
     messages: Mapping[str, str] = field(default_factory=dict)
     doubtful: frozenset[str] = frozenset()
     units: Mapping[str, str] = field(default_factory=dict)
+    told: Mapping[str, str] = field(default_factory=dict)
 
 
 Message = tuple[str, int, Any]
