@@ -29,8 +29,8 @@ from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.law.syntax import intervals
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.verdict import Verdict
 
 CONTEST_OF = {
     "reelay": "reelay-discrete",

@@ -29,13 +29,12 @@ from pathlib import Path
 from tests.tools.differential import cases_of, disagreements
 from tests.tools.forms import Compiler, Maker
 
-from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.core import amalgamate
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.planned import PlannedCore, planned_core
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 

@@ -38,7 +38,7 @@ from rvmon.cdv.system import Checker
 from rvmon.cdv.template import PolicyName
 from rvmon.session import load
 from rvmon.timed.model.network import Network
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained", "model-based")
 POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")

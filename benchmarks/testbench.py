@@ -41,10 +41,10 @@ from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv import Campaign
 from rvmon.cdv.close import Budget, Closed, close
-from rvmon.cdv.close.witnesses import EDGES
+from rvmon.cdv.close.goals import EDGES
 from rvmon.cdv.mutation.baseline import record_suite
-from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.play import play_mutants
+from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.plan import Job, plan
 from rvmon.cdv.play import player
 from rvmon.cdv.shrink import Shrunk, shrink

@@ -31,13 +31,13 @@ from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import BOOLS
+from rvmon.testing.generate import BOOLS
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 TRIGGER = SignalAtom("p")
 LENGTHS = (1, 7, 40)

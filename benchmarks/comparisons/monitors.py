@@ -31,14 +31,13 @@ from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.case import Case, show_case, show_spec
-from rvmon.testing.generate.choices import BOOLS, Rng, chance
+from rvmon.testing.generate import BOOLS, Rng, chance
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile, show_case, show_spec
 from rvmon.testing.law.margins import margins
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 Figures = Mapping[Key, tuple[float, float, float]]
 """Of each attempt the least and the greatest that robustness can be, and what is kept up."""

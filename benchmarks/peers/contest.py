@@ -23,7 +23,7 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
 )
-from rvmon.testing.generate.choices import CARRIER, EVENTS, FURTHER, NUMBERS, chance, pick
+from rvmon.testing.generate import CARRIER, EVENTS, FURTHER, NUMBERS, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
 
 

@@ -19,9 +19,9 @@ from rvmon.spec.checked.specification import (
 )
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 ROW = "row"
 """The event of every sample, which starts an attempt."""

@@ -15,8 +15,7 @@ from rvmon import __version__
 from rvmon.cli import guarded
 from rvmon.cli.campaign import add_commands, run_tests
 from rvmon.cli.campaign_options import add_run_options
-from rvmon.cli.numbers import positive
-from rvmon.cli.parser import Parser
+from rvmon.cli.parser import Parser, positive
 
 if TYPE_CHECKING:
     from rvmon.cdv import Campaign

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from rvmon.session import Spec, load, loads
     from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
+    from rvmon.verdict import Verdict
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
-    from rvmon.verdict.verdict import Verdict
 
 __version__ = "0.1.0"
 
@@ -60,7 +60,7 @@ _HOMES = {
     "Requirement": "rvmon.spec.checked.specification",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
-    "Verdict": "rvmon.verdict.verdict",
+    "Verdict": "rvmon.verdict",
     "load": "rvmon.session",
     "loads": "rvmon.session",
     **{name: "rvmon.errors" for name in __all__ if name.endswith("Error")},

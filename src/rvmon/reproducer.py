@@ -19,7 +19,7 @@ import msgspec
 
 from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError
-from rvmon.spec.rules.rule import Findings
+from rvmon.spec.rules import Findings
 from rvmon.spec.syntax.imports import load_files
 from rvmon.texts import cannot_read, text_of_file
 from rvmon.writing import beside

@@ -45,8 +45,8 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.texts import shown, shown_json, shown_line
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import Verdict
 
 NAMES = int(os.environ.get("HOSTILE_NAMES", "40"))
 BATCH = 1000

@@ -33,7 +33,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.testing.generate.choices import (
+from rvmon.testing.generate import (
     BOOLS,
     CARRIER,
     FIELD,

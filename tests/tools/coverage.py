@@ -13,11 +13,10 @@ from rvmon.coverage.monitor import SpecCoverage
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import Rng, chance, pick
+from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Truths

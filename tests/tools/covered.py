@@ -19,7 +19,7 @@ from rvmon.coverage.model import (
 )
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 SECOND = 1_000_000_000
 

@@ -10,9 +10,8 @@ from functools import partial
 
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace, show_case
 from rvmon.testing.law.syntax import intervals
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.compare import differences, frame_differences

@@ -16,8 +16,8 @@ import numpy as np
 
 from rvmon.readers import line_chunks, parquet
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import Rng, chance
+from rvmon.testing.generate import Rng, chance
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind

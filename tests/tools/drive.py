@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Protocol, cast
 
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

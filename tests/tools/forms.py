@@ -15,7 +15,7 @@ from rvmon.monitor.monitor import restore
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind

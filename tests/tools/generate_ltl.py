@@ -11,7 +11,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.generate.choices import BOOLS, Rng, chance, pick
+from rvmon.testing.generate import BOOLS, Rng, chance, pick
 
 _EVER = Interval(0, None)
 _UNARY = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)

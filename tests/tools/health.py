@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from rvmon.spec.checked.formula import BoundAtom, Constant, Literal, Passed
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import heard
 from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.word import Word

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 from rvmon.spec.checked.specification import Requirement
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.decisions import Followed, Followings
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Truth

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.law.sample_words import heard
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from tests.tools.law import names_read
 
 

@@ -15,7 +15,7 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.specification import Requirement
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.word import Word

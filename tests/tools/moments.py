@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 

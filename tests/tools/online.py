@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, TypeGuard
 
 from rvmon.errors import RvmonError, TimeOrderError
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 from tests.tools.compare import Key, Outcome, key_of
 from tests.tools.drive import Monitored, OnlineMonitor, feed
 from tests.tools.forms import HeldBack

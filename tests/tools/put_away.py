@@ -12,7 +12,7 @@ from rvmon import native
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from tests.tools.drive import Found, Lost, told

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.specification import CheckedSpec, Event, Type
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import Rng, chance, pick
+from rvmon.testing.generate import Rng, chance, pick
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from tests.tools.law import word

@@ -17,7 +17,7 @@ from rvmon.spec.checked.formula import (
     Unary,
 )
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.syntax import numerics
 from rvmon.trace.sample import Sample

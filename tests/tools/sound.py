@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import Rng
+from rvmon.testing.generate import Rng
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 from tests.tools.law import judge as oracle
 from tests.tools.law import names_read
 from tests.tools.refill import refilled

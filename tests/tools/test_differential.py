@@ -10,14 +10,13 @@ import pytest
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import UnaryOp
-from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.syntax import subformulas
 from rvmon.trace.sample import Sample, Value
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import Verdict
 from tests.tools.build import (
     always,
     e,

@@ -13,9 +13,8 @@ import pytest
 from rvmon.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.build import always, eventually, no, p, q, requirement, spec_of, timeline, two

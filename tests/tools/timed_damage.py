@@ -8,8 +8,7 @@ from pathlib import Path
 from random import Random
 
 from rvmon.errors import ModelError
-from rvmon.export.network_dot import network_dot
-from rvmon.export.uppaal import uppaal_xml
+from rvmon.export.uppaal import network_dot, uppaal_xml
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify

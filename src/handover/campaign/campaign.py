@@ -23,8 +23,8 @@ from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot.handover import STATES
 from rvmon.cdv import Campaign, Control, Robot, Strategy
 from rvmon.cdv.output import TEMPLATES
-from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import Presentation
 from rvmon.errors import not_installed
 
 FOREMOST = ("R1", "R2", "R3", "R4", "R5")

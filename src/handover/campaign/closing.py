@@ -12,7 +12,7 @@ from handover.generator.model_based import ACTIONS, PROJECTED, instantiate
 from handover.generator.out_of_turn import out_of_turn
 from handover.model import handover_network
 from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
-from rvmon.cdv.close.witnesses import EDGES
+from rvmon.cdv.close.goals import EDGES
 from rvmon.coverage.requirements import AT, JUST_BEFORE
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
 from handover.model import handover_network
 from rvmon.cdv import Observer, Test
-from rvmon.cdv.close.witnesses import EDGES, Witness, Witnesses
+from rvmon.cdv.close.goals import EDGES, Witness, Witnesses
 from rvmon.cdv.code_coverage import hits_of_states
-from rvmon.cdv.presentation import RobotTest
+from rvmon.cdv.tables import RobotTest
 from rvmon.confidence import interval_text
 from rvmon.execute import parallel
 from rvmon.report.pages import component

@@ -18,7 +18,7 @@ from rvmon.cdv import tables
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.report.table import RunGroup, VerdictTable
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from rvmon.writing import write_whole
 
 SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"

@@ -12,8 +12,7 @@ from rvmon.live.driver import Driver
 from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import MessageReaders
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.binding import Clock
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import Clock, Schema
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 CLOCK = "/clock"

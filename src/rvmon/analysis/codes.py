@@ -11,8 +11,7 @@ from importlib import resources
 from rvmon.analysis.findings import RULES as ANALYSIS
 from rvmon.diagnostics import Severity
 from rvmon.errors import UnknownNameError
-from rvmon.spec.rules import names, properties, requirements, syntax, time, types
-from rvmon.spec.rules.rule import Rule
+from rvmon.spec.rules import Rule, names, properties, requirements, syntax, time, types
 from rvmon.timed.model.rules import RULES as MODELS
 
 _FAMILIES = (syntax, names, types, time, requirements, properties)

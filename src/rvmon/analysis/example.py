@@ -10,8 +10,8 @@ from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)

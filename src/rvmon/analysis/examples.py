@@ -24,7 +24,7 @@ from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 NEVER = (1 << 63) - 1
 """Later than any instant."""

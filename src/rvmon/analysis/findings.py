@@ -15,7 +15,7 @@ from rvmon.spec.checked.classify import FUTURE, subformulas
 from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
 from rvmon.spec.print.printer import format_duration
-from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules import Rule, finding
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ from rvmon.spec.syntax.expressions import (
 )
 from rvmon.spec.syntax.parse import parse_expression
 from rvmon.texts import did_you_mean
-from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
+from rvmon.trace.schema import Applied, Constant, Elements, Field, Term
 
 
 def yaw(x: float, y: float, z: float, w: float) -> float:

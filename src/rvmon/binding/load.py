@@ -18,9 +18,7 @@ from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.texts import cannot_read, did_you_mean, text_of_file
-from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
-from rvmon.trace.gaps import gaps_of
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Applied, Binding, Bound, Clock, Constant, Kind, Schema, Term, gaps_of
 from rvmon.trace.stamps import stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 

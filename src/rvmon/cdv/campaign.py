@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rvmon.cdv.code import Code
-from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.system import System
+from rvmon.cdv.tables import Presentation
 from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Model, Subject

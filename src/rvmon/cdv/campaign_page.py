@@ -11,13 +11,12 @@ from msgspec import structs
 
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.plan import Job, Played
-from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary, differences
-from rvmon.cdv.tables import INTERVALS, RobotTables
+from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
 from rvmon.coverage.record import Ending
 from rvmon.report.pages import render, table_html
 from rvmon.report.table import VerdictTable
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 Cell = tuple[str, str, str, Verdict]
 """Robot, strategy, requirement and verdict: a count in a table."""

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from rvmon.cdv.campaign import STRATEGY, Campaign, ExpectedFailure, Gate, unreachable_items
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.plan import Played, Results, accepted_failures, is_about
-from rvmon.cdv.run_share import Decision
+from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.summary import differences, missed
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
 from rvmon.session import load
 from rvmon.texts import shown
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 RobotRequirement = tuple[str, str]
 """Names of a robot and of one of its requirements."""

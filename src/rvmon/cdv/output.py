@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.plan import Results
-from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.tables import (
     INTERVALS,
     LEGEND,
+    Presentation,
     RobotTables,
     named_tables,
     to_json,
@@ -25,7 +25,7 @@ from rvmon.cdv.tables import (
 from rvmon.cdv.test import save
 from rvmon.report.percent import percent_text
 from rvmon.report.table import table_latex, table_text, tables_csv
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:

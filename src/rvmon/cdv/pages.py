@@ -28,7 +28,7 @@ from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from rvmon.writing import write_whole
 
 

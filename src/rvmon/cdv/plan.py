@@ -12,7 +12,7 @@ from rvmon.cdv.test import Test, TestError, blamed, from_json, load, to_json
 from rvmon.coverage.model import Group, Hits
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
 

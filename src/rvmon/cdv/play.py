@@ -17,17 +17,16 @@ from rvmon.cdv.code import Code
 from rvmon.cdv.code_coverage import Meter, hits_of_states
 from rvmon.cdv.coverage import spec_coverages
 from rvmon.cdv.plan import Job, Outcome, Plan, Played, Results
+from rvmon.cdv.resume import Unfinished
 from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
 from rvmon.cdv.test import TestError, blamed
-from rvmon.cdv.unfinished import Unfinished
 from rvmon.coverage.model import Hits
 from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
-from rvmon.execute import parallel
-from rvmon.execute.ended import Ended
+from rvmon.execute import Ended, parallel
 from rvmon.session import load
 from rvmon.texts import shown_line
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test

@@ -20,7 +20,7 @@ from rvmon.cdv.test import Test, TestError, VerdictName, from_json, save, to_jso
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.execute import parallel
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from rvmon.writing import write_whole
 
 MOST = 2_000

@@ -13,7 +13,7 @@ from rvmon.cdv.code_coverage import (
     statements_name,
 )
 from rvmon.cdv.plan import Outcome, Played, Results
-from rvmon.cdv.run_share import decide
+from rvmon.cdv.sequential_test import decide
 from rvmon.cdv.summary import (
     BlockCoverage,
     CampaignSummary,
@@ -27,7 +27,7 @@ from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.cdv.run_share import Decision
+from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Hits
 from rvmon.coverage.record import Ending
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 Transition = tuple[str, str]
 """From one state of the robot to another."""

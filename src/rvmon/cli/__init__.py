@@ -20,7 +20,7 @@ from rvmon.cli.output import rendered, spell, warn
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
 from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
-from rvmon.execute.ended import interrupted_by_sigterm
+from rvmon.execute import interrupted_by_sigterm
 
 if TYPE_CHECKING:
     import argparse
@@ -149,7 +149,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     import argparse
 
     from rvmon.cli.parser import Parser
-    from rvmon.verdict.verdict import LAW
+    from rvmon.verdict import LAW
 
     listed = [
         line

@@ -15,8 +15,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.close import MARGIN
 from rvmon.cdv.close.faults import with_mutants
-from rvmon.cdv.close.outcome import closed_document
-from rvmon.cdv.close.text import print_closed
+from rvmon.cdv.close.outcome import closed_document, print_closed
 from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.output import TESTS, TEXT_COLUMNS, dated_files, left_over, typed
 from rvmon.cdv.plan import Plan, Results

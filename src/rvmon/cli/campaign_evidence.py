@@ -11,10 +11,10 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.plan import Job, Outcome, Results
 from rvmon.cdv.play import outcomes
+from rvmon.cdv.resume import sources_of
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import to_json as document_json
 from rvmon.cdv.test import from_json, to_json
-from rvmon.cdv.unfinished import sources_of
 from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
 from rvmon.evidence.keep import (

@@ -20,8 +20,8 @@ from rvmon.report.folder import made
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
-    from rvmon.cdv.mutation.mutant import Mutant
-    from rvmon.cdv.mutation.report import MutationReport
+    from rvmon.cdv.mutation.output import MutationReport
+    from rvmon.cdv.mutation.python_mutants import Mutant
     from rvmon.cdv.mutation.spec_mutants import SpecMutant
 
 MOST_LISTED = 10
@@ -98,8 +98,8 @@ def _reported(
     arguments: Namespace,
 ) -> MutationReport:
     from rvmon.cdv.mutation.baseline import mutated_spec, record_suite
+    from rvmon.cdv.mutation.output import MutationReport, SuiteTried
     from rvmon.cdv.mutation.play import play_mutants
-    from rvmon.cdv.mutation.report import MutationReport, SuiteTried
     from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
     from rvmon.cdv.mutation.tried import failing_runs, readers
 

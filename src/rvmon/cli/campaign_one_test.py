@@ -24,7 +24,7 @@ from rvmon.report.folder import made, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
 from rvmon.session import Spec, load
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from rvmon.writing import write_whole
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from argparse import ArgumentParser
 
-from rvmon.cli.numbers import duration, number_or_folder, positive, shard
 from rvmon.cli.options import add_dask
+from rvmon.cli.parser import duration, number_or_folder, positive, shard
 
 
 def add_run_options(parser: ArgumentParser) -> None:

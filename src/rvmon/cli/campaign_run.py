@@ -18,12 +18,12 @@ from rvmon.cdv.output import dated_files, left_over, print_summary, typed, write
 from rvmon.cdv.pages import write_pages
 from rvmon.cdv.plan import Plan, Results, plan, plan_of_folder
 from rvmon.cdv.play import INTERRUPTED, execute
-from rvmon.cdv.run_share import Decision
+from rvmon.cdv.resume import unfinished
+from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables, to_json
 from rvmon.cdv.test import TestError
-from rvmon.cdv.unfinished import unfinished
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.output import busy, rendered, say, say_json, warn
+from rvmon.cli.parser import duration
 from rvmon.cli.reading import add_binding
 from rvmon.report.percent import counted
 from rvmon.texts import cannot_read, text_of_file, text_of_input

@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import span, ticks
 from rvmon.cli.options import add_const, constants_of, refuse_over
 from rvmon.cli.output import say, warn
+from rvmon.cli.parser import span, ticks
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     add_allow_missing,
@@ -135,7 +135,7 @@ def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
 def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: Attempt) -> None:
     from rvmon import __version__
     from rvmon.reproducer import Case, write_case
-    from rvmon.verdict.verdict import LAW
+    from rvmon.verdict import LAW
 
     case = Case(
         __version__,

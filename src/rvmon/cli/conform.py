@@ -7,9 +7,9 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_budget, add_format, budget_of
 from rvmon.cli.output import busy, say, say_json, warn
+from rvmon.cli.parser import duration
 from rvmon.cli.reading import add_time
 from rvmon.errors import TraceError, UnknownNameError
 

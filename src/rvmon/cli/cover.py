@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format, add_max_memory
 from rvmon.cli.output import busy, say, say_json, warn
+from rvmon.cli.parser import percentage
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.report.folder import write_file
 

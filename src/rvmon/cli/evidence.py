@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from rvmon.cli.judging import judge_all, spec_and_options
-from rvmon.cli.numbers import positive
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
+from rvmon.cli.parser import positive
 from rvmon.cli.run_output import is_recording, rows_of_judged
 from rvmon.evidence.keep import (
     Kept,
@@ -26,9 +26,9 @@ from rvmon.evidence.keep import (
 )
 from rvmon.evidence.matrix import Row, rows_by_item
 from rvmon.session import load
+from rvmon.verdict import LAW
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.table_file import csv_bytes
-from rvmon.verdict.verdict import LAW
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign

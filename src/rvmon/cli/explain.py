@@ -7,9 +7,9 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.output import say
+from rvmon.cli.parser import positive
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:

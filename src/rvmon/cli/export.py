@@ -68,8 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _model_text(arguments: argparse.Namespace) -> str:
     """A network of timed automata; of the queries that UPPAAL cannot express it is told."""
-    from rvmon.export.network_dot import network_dot
-    from rvmon.export.uppaal import left_out, uppaal_xml
+    from rvmon.export.uppaal import left_out, network_dot, uppaal_xml
     from rvmon.timed.language.load import load_network
 
     if arguments.to not in _OF_MODELS:

@@ -108,7 +108,7 @@ def _print_binding(arguments: argparse.Namespace) -> int:
 
 
 def _write_campaign(folder: Path, *, force: bool) -> int:
-    from rvmon.starter.campaign import campaign_files
+    from rvmon.starter import campaign_files
 
     files = campaign_files()
     there = [name for name in files if (folder / name).exists()]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import duration, positive
+from rvmon.cli.parser import duration, positive
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The parser of the command line."""
+"""The parser of the command line, and the numbers on it, refused before any work is done."""
 
 from __future__ import annotations
 
@@ -6,9 +6,14 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
 from typing import Any, NoReturn
 
+from rvmon.errors import TraceError
+from rvmon.execute.shard import Shard
 from rvmon.texts import did_you_mean, shown
+from rvmon.trace.time import TICKS_PER_UNIT, ticks_of_seconds, ticks_of_text
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 
@@ -55,3 +60,136 @@ class Parser(argparse.ArgumentParser):
         formatter.add_text(self.epilog)
         text = f"{self.prog}: error: {message}\n{formatter.format_help()}"
         self.exit(2, f"{shown(text)}{self.prog} --help says more\n")
+
+
+def positive(text: str) -> int:
+    """Read a whole number of at least 1.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none; `argparse` says which option it stands at.
+
+    >>> positive("3")
+    3
+    """
+    number = int(text) if text.isascii() and text.isdigit() and len(text) < 20 else 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, not {text}")
+    return number
+
+
+def shard(text: str) -> Shard:
+    """Read which of how many shares of the work is to be done.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none.
+
+    >>> shard("2/4")
+    Shard(number=2, count=4)
+    """
+    number, slash, count = text.partition("/")
+    if slash and positive(number) <= positive(count):
+        return Shard(int(number), int(count))
+    raise argparse.ArgumentTypeError(f"expected the second of four as 2/4, not {text}")
+
+
+def number_or_folder(text: str) -> int | Path:
+    """Read how many tests there are to be, or where they are.
+
+    Raises:
+        argparse.ArgumentTypeError: it is neither.
+
+    >>> number_or_folder("3")
+    3
+    """
+    if text.isascii() and text.isdigit():
+        return positive(text)
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"expected a number, or a folder of tests, not {text}")
+    return Path(text)
+
+
+def duration(text: str) -> float:
+    """Read a number of seconds, at least 0.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too long.
+
+    >>> duration("0.1")
+    0.1
+    """
+    seconds = instant(text)
+    if seconds < 0:
+        raise argparse.ArgumentTypeError(f"expected seconds, at least 0, not {text}")
+    return seconds
+
+
+def instant(text: str) -> float:
+    """Read an instant in seconds that fits the range of time.
+
+    Raises:
+        argparse.ArgumentTypeError: it is no number, not finite, or too far away.
+
+    >>> instant("12.5")
+    12.5
+    """
+    try:
+        seconds = float(text)
+        ticks_of_seconds(seconds)
+    except (ValueError, TraceError):
+        raise argparse.ArgumentTypeError(
+            f"expected a time in seconds, such as 12.5, not {text}"
+        ) from None
+    return seconds
+
+
+def ticks(text: str) -> int:
+    """Read a time with or without a unit, exactly; seconds go without saying.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too far away.
+
+    >>> ticks("10 s"), ticks("1700000000.000000001"), ticks("500ms")
+    (10000000000, 1700000000000000001, 500000000)
+    """
+    plain = text.strip()
+    unit = plain.lstrip("+-.0123456789").strip()
+    try:
+        if unit and unit not in TICKS_PER_UNIT:
+            raise TraceError("no unit of time")
+        return ticks_of_text(plain.removesuffix(unit).strip(), unit or "s")
+    except TraceError:
+        raise argparse.ArgumentTypeError(
+            f"expected a time such as 12.5, 10s or 500ms, not {text}"
+        ) from None
+
+
+def span(text: str) -> int:
+    """Read how long something lasts, at least 0, as `ticks` reads times.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too long.
+
+    >>> span("2 min")
+    120000000000
+    """
+    found = ticks(text)
+    if found < 0:
+        raise argparse.ArgumentTypeError(f"expected a time of at least 0, not {text}")
+    return found
+
+
+def percentage(text: str) -> float:
+    """Read a percentage, with or without its sign, as a share from 0 to 1.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or beyond 100.
+
+    >>> percentage("95%"), percentage("99.5")
+    (0.95, 0.995)
+    """
+    number = text.removesuffix("%").strip()
+    plain = number.isascii() and number.replace(".", "", 1).isdecimal() and len(number) < 20
+    share = Fraction(number) / 100 if plain else Fraction(-1)
+    if not 0 <= share <= 1:
+        raise argparse.ArgumentTypeError(f"expected a percentage, such as 95%, not {text}")
+    return float(share)

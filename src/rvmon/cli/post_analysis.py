@@ -14,7 +14,7 @@ from rvmon.session import Spec
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Question

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.trace.gaps import READINGS_OF_NAN
+from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
     import argparse

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import instant, positive, shard
 from rvmon.cli.options import (
     add_const,
     add_dask,
@@ -19,6 +18,7 @@ from rvmon.cli.options import (
     refuse_over,
 )
 from rvmon.cli.output import rendered, say_json, warn
+from rvmon.cli.parser import instant, positive, shard
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -30,7 +30,7 @@ from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged, Options

@@ -45,8 +45,8 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
         RvmonError: it cannot be written.
     """
     import rvmon
+    from rvmon.verdict import LAW
     from rvmon.verdict.table_file import write_results as write
-    from rvmon.verdict.verdict import LAW
 
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
     write(path, rows_of(judged), about)

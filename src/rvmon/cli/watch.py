@@ -12,12 +12,12 @@ from collections.abc import Callable
 from io import FileIO
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import positive, span
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.output import warn
+from rvmon.cli.parser import positive, span
 from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
 from rvmon.errors import RvmonError, SpecError
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.adapters.dds import DdsSource

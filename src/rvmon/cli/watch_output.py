@@ -16,7 +16,7 @@ from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
 from rvmon.report.style import MARKS
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_ticks
-from rvmon.verdict.verdict import Verdict, fold
+from rvmon.verdict import Verdict, fold
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
 from rvmon.cli.output import busy, say_json, shown_while_reading
+from rvmon.cli.parser import instant
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     add_allow_missing,

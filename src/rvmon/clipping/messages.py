@@ -17,7 +17,7 @@ from rvmon.readers.messages.mcap import mcap_errors
 from rvmon.readers.messages.ros import bag_errors, bag_readers
 from rvmon.readers.messages.topic import Messages
 from rvmon.readers.places import local_path
-from rvmon.trace.binding import Bound, Clock
+from rvmon.trace.schema import Bound, Clock
 
 _Raw = tuple[str, Any, int, Any]
 """Topic, channel, ticks at which it was recorded, and the message as the library has it."""

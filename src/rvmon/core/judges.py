@@ -16,8 +16,8 @@ from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State
 from rvmon.spec.checked.specification import EndPolicy, Mode
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Decision
-from rvmon.verdict.verdict import Verdict
 
 _OPEN = (Verdict.INCONCLUSIVE, Decision.OPEN)
 

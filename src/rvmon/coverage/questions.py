@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rvmon.coverage.model import Score, weighted
 from rvmon.coverage.record import UNKNOWN, Coverage, TestRecord
 from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, ClassVar
 
 from rvmon.coverage.model import Model
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     import numpy as np

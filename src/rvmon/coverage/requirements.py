@@ -22,9 +22,9 @@ from rvmon.monitor.records import RECORD
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 Passages = Mapping[tuple[int, int], Hit]
 """From a location of an automaton to one; from the first to itself: attempts began."""

@@ -19,7 +19,7 @@ from rvmon.coverage.model import Hits
 from rvmon.coverage.record import UNKNOWN, Ending, Entry, Row, TestRecord
 from rvmon.coverage.schema import damaged
 from rvmon.errors import CoverageError
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 _BYTES = 20
 """Of an item that was hit: four of its id, eight of how often, eight of the first instant."""

@@ -31,9 +31,9 @@ from rvmon.reproducer import (
     placed,
 )
 from rvmon.session import Spec
+from rvmon.verdict import LAW
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.table_file import csv_bytes
-from rvmon.verdict.verdict import LAW
 from rvmon.writing import write_whole
 
 SUMS = "SHA256SUMS"

@@ -13,9 +13,9 @@ from rvmon.report.style import MARKS
 from rvmon.report.table import plain
 from rvmon.report.terminal import in_short
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.table_file import csv_table
-from rvmon.verdict.verdict import Verdict, fold
 
 LISTED = 100
 """Recordings, or tests, of one verdict that the page names; the table names all."""

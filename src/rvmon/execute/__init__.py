@@ -3,5 +3,44 @@
 `parallel.execute` shares tasks among processes, or the workers of a scheduler of Dask; nothing else
 starts any for Python's work. `shard` is a share of the work that knows of no other.
 `journal` keeps results as they come, so that work which was ended goes on.
-`command.run` runs a program, `ended.interrupted_by_sigterm` has both cleaned up.
+`command.run` runs a program; `interrupted_by_sigterm` has all of them cleaned up.
 """
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How the process of a task was ended.
+
+    Attributes:
+        timed_out: whether that was done here, as the task took too long.
+        why: for people.
+        seconds: wall time that the task had taken.
+    """
+
+    timed_out: bool
+    why: str
+    seconds: float
+
+
+@contextmanager
+def interrupted_by_sigterm() -> Iterator[None]:
+    """A request to end interrupts as Ctrl-C does: what was begun is ended, and cleaned up.
+
+    Only the main thread can say so.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    known = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL if known is None else known)

@@ -23,7 +23,7 @@ from typing import Any
 
 from rvmon.cache import contents
 from rvmon.errors import RvmonError, WorkerLostError, not_installed
-from rvmon.execute.ended import Ended
+from rvmon.execute import Ended
 from rvmon.execute.worker import answer, packed_error
 
 CONNECT_S = 10

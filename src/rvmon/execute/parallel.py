@@ -17,7 +17,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rvmon.errors import RvmonError, WorkerLostError
-from rvmon.execute.ended import Ended
+from rvmon.execute import Ended
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

@@ -21,7 +21,7 @@ from rvmon.errors import RvmonError
 from rvmon.logic.automaton import FAILED, PASSED, Automaton
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 MOST_PROPOSITIONS = 12
 

@@ -1,4 +1,4 @@
-"""A network as UPPAAL's XML, which `rvmon.timed.language.load` reads back.
+"""A network as UPPAAL's XML, which `rvmon.timed.language.load` reads back, and as a drawing in DOT.
 
 Each automaton becomes a template without parameters, all that was local becomes global. What
 UPPAAL does not know stands in comments that our reader understands: the unit of time, weights and
@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
-from rvmon.export.functions import function_lines, type_text, updates_text
-from rvmon.export.names import Names, Thing
+from rvmon.analysis.graph import quoted
+from rvmon.export.names import Names, Thing, function_lines, type_text, updates_text
 from rvmon.texts import shown, shown_line
 from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
 from rvmon.timed.model.guards import has_paths
@@ -179,3 +179,35 @@ def _formula(names: Names, formula: QueryFormula) -> str:
 def _text(text: str) -> str:
     """The text as XML can hold it."""
     return escape(shown(text))
+
+
+_MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}
+
+
+def network_dot(network: Network) -> str:
+    """One cluster for each automaton; urgent locations are marked U, committed ones C."""
+    names = Names(network)
+    lines = ["digraph network {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
+    for index, automaton in enumerate(network.automata):
+        lines += _cluster(names, index, automaton)
+    return "\n".join([*lines, "}", ""])
+
+
+def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+    yield f"  subgraph cluster_{index} {{"
+    yield f"    label={quoted(automaton.name)};"
+    for place, location in enumerate(automaton.locations):
+        invariant = condition_text(names, location.invariant)
+        text = _MARKS[location.kind] + location.name + (f"\n{invariant}" if invariant else "")
+        bold = ", penwidth=2" if place == automaton.initial else ""
+        yield f"    l{index}_{place} [label={quoted(text)}{bold}];"
+    for edge in automaton.edges:
+        parts = [
+            condition_text(names, edge.guard),
+            sync_text(names, edge),
+            updates_text(names, edge.updates),
+            f"weight {edge.weight}" if edge.weight != 1 else "",
+        ]
+        text = "\n".join(filter(None, parts))
+        yield f"    l{index}_{edge.source} -> l{index}_{edge.target} [label={quoted(text)}];"
+    yield "  }"

@@ -31,9 +31,9 @@ from rvmon.report.tracks import concerned_names
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
+from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import LAW, Verdict
 from rvmon.writing import beside, write_whole
 
 _LEVELS = {Verdict.PASS: 2, Verdict.INCONCLUSIVE: 3, Verdict.FAIL: 4}

@@ -15,7 +15,7 @@ from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Timers, Tol
 from rvmon.spec.checked.names_read import sources_asked
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.session import Spec

@@ -13,8 +13,8 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.live.waiting import Dropped, Gap, Told, Values
 from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.health import Health, HealthKind
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.verdict import Verdict, fold
 
 if TYPE_CHECKING:
     from rvmon.monitor import Monitor

@@ -15,8 +15,8 @@ from rvmon.spec.print.printer import format_duration
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame, Decision
-from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True, eq=False)

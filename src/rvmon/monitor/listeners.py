@@ -10,9 +10,9 @@ from rvmon import native
 from rvmon.errors import OverlapError, RvmonError
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import TIME_LIMIT
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict, fold
 
 Callback = Callable[[Attempt], object]
 

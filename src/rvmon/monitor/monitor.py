@@ -19,9 +19,9 @@ from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.snapshot import Options, document_of, put_back, written
 from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict, fold
 
 
 class Monitor(FedMonitor[Attempt]):

@@ -34,8 +34,8 @@ from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
 from rvmon.monitor.obligation_words import Words, all_of
 from rvmon.trace.time import format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame
-from rvmon.verdict.verdict import Verdict
 
 
 def owed_at(network: Network, core: Core, position: int, words: Words) -> str:

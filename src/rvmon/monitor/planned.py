@@ -23,8 +23,8 @@ from rvmon.spec.checked.specification import CheckedSpec, Requirement, Type
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.core.sections import Packed

@@ -9,9 +9,9 @@ import numpy as np
 
 from rvmon import native
 from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict, fold
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,8 +13,8 @@ from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import OneCall
 from rvmon.monitor.planned import planned_core
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
-from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)

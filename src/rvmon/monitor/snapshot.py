@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon import native
 from rvmon.errors import SnapshotError
 from rvmon.monitor.planned import PlannedCore
-from rvmon.verdict.verdict import LAW
+from rvmon.verdict import LAW
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled_spec import CompiledSpec

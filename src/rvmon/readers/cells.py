@@ -20,8 +20,7 @@ from rvmon.readers.batch import (
 )
 from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.values import as_declared, fits, plain
-from rvmon.trace.gaps import Gaps
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Gaps, Kind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

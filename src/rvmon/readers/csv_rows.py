@@ -11,9 +11,8 @@ from rvmon.errors import TraceError
 from rvmon.readers.line_chunks import LONGEST_LINE
 from rvmon.readers.naming import aliases_of, stamps_among
 from rvmon.readers.values import as_declared, scalar_of_text, shorten
-from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Scalar, Value
-from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import ticks_of_cell
 
 
@@ -183,7 +182,7 @@ def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Val
     A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
     false; one without occurs where its own cell is true.
 
-    >>> from rvmon.trace.gaps import NO_GAPS
+    >>> from rvmon.trace.schema import NO_GAPS
     >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
     >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]
     [{'pick': {'id': 7}}, {'pick': False}, {'pick': True}]

@@ -13,10 +13,9 @@ from typing import Protocol
 from rvmon.errors import TraceError
 from rvmon.readers.places import name_of, named_errors
 from rvmon.readers.rows import Row, Rows
-from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Outage, Recording, Sample
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import BY_NAME, Schema
 
 
 class File(Recording, Protocol):

@@ -13,9 +13,8 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.readers.values import DESCRIPTION, as_declared, double_of, fits, shorten
-from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Payload, Scalar, Value
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Gaps, Kind, Schema
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TIME_LIMIT
 

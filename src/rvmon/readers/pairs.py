@@ -8,9 +8,8 @@ from typing import Any
 from rvmon.errors import TraceError
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.values import as_declared, plain
-from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Sample
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Gaps, Kind, Schema
 from rvmon.trace.time import ticks_of_seconds
 
 

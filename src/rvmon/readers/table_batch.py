@@ -11,8 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.batch import Batch, NotPlainError
 from rvmon.readers.cells import batch_of, cells_of_column
 from rvmon.readers.csv_rows import Layout
-from rvmon.trace.gaps import NO_GAPS
-from rvmon.trace.schema import Kind, Stamps
+from rvmon.trace.schema import NO_GAPS, Kind, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
 

@@ -21,7 +21,7 @@ from rvmon.report.pages import render, table_html
 from rvmon.report.percent import counted, share_text
 from rvmon.report.table import VerdictTable
 from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 WIDTH, HEIGHT = 1000, 100
 """Units of the drawing, which is stretched to the width of the page."""

@@ -19,7 +19,7 @@ from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.rules.properties import MOST_COMBINATIONS
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 LISTED = 5
 """Tests that are named of those that hit an item."""

@@ -14,7 +14,7 @@ from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, 
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -17,8 +17,8 @@ from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration
 from rvmon.trace.sample import Scalar, Value
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

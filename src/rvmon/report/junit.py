@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from rvmon.report.wording import full_reason, without_attempts
 from rvmon.texts import shown
 from rvmon.trace.time import format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.spec.checked.specification import CheckedSpec, Requirement

@@ -18,9 +18,9 @@ from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import axis_row, place_of, timeline
 from rvmon.report.wording import full_reason, without_attempts
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import Verdict
 
 DRAWN = 200
 """Attempts of each verdict that are drawn per requirement, the first ones; the rest is counted."""

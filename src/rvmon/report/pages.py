@@ -22,7 +22,7 @@ from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.style import MARKS, verdict_colours
 from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.texts import shown
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from jinja2 import Environment

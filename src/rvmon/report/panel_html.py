@@ -161,7 +161,7 @@ def headline(run: str, panel: Panel, origin: int) -> str:
 
     >>> from rvmon.report.time_axis import View
     >>> from rvmon.verdict.attempt import Attempt
-    >>> from rvmon.verdict.verdict import Verdict
+    >>> from rvmon.verdict import Verdict
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
     >>> view = View(0, 20_000_000_000)
     >>> panel = Panel("R2-1", "R2", failed, failed.verdict, view, (), None)

@@ -21,9 +21,9 @@ from rvmon.report.tracks import Track, TrackKind, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,8 @@ from rvmon.report.tracks import PLACES, Track, TrackKind
 from rvmon.report.wording import forecast_sentence
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 UNITS = 1000
 """Units of the drawing per metre, and of an angle per radian."""

@@ -17,9 +17,9 @@ from rvmon.report.run_html import run_page
 from rvmon.report.terminal import in_short
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 
 _BROKEN = "cannot be evaluated"

@@ -13,10 +13,10 @@ from rvmon.report.wording import forecast_sentence, full_reason, without_attempt
 from rvmon.spec.checked.goals import BinKind
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredBin, CoveredGroup
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.console import Console

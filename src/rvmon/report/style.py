@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.text import Text

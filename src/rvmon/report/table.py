@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rvmon.confidence import interval, interval_text
 from rvmon.report.style import MARKS
 from rvmon.texts import shown_line
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.console import Group

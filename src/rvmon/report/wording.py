@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rvmon.spec.print.printer import format_duration
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 
 def without_attempts(verdict: Verdict, miss: str) -> str:
@@ -39,7 +39,7 @@ def with_lateness(attempt: Attempt, came: int | None) -> str:
         came: the instant at which it came, ticks; `None`: it did not, or nobody looked.
 
     >>> from rvmon.verdict.attempt import Blame
-    >>> from rvmon.verdict.verdict import Verdict
+    >>> from rvmon.verdict import Verdict
     >>> second = 10**9
     >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)

@@ -12,7 +12,7 @@ from rvmon.errors import SpecError
 from rvmon.spec.check.specification import check
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.names import overridden, resolve, unused_names
-from rvmon.spec.rules.rule import MOST, Enough, Findings
+from rvmon.spec.rules import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
 from rvmon.spec.syntax.imports import load_files
 from rvmon.spec.syntax.items import ParsedSpec

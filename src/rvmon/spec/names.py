@@ -15,10 +15,10 @@ from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.names_read import names_of_spec
 from rvmon.spec.checked.specification import CheckedSpec, Event, Role, Signal
+from rvmon.spec.rules import Findings
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import requirements as trigger_rules
-from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name, expressions_in
 from rvmon.spec.syntax.items import (
     ConstItem,

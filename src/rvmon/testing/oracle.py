@@ -19,9 +19,9 @@ from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Rest, Truth, Word
 from rvmon.trace.sample import Sample, Trace, Value
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import Verdict
 
 
 class HasChecked(Protocol):

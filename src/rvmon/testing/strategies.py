@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace, show_case
 
 _ANY_SPEC = Profile()
 _ANY_TRACE = TraceProfile()

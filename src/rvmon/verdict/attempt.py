@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from rvmon.native import Record
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 class Decision(StrEnum):

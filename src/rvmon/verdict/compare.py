@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from rvmon.verdict import Verdict, fold
 from rvmon.verdict.rows import VerdictRow
-from rvmon.verdict.verdict import Verdict, fold
 
 
 class Change(StrEnum):

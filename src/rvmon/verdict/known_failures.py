@@ -13,8 +13,8 @@ import msgspec
 
 from rvmon.errors import RvmonError
 from rvmon.texts import did_you_mean
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 
 class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 from rvmon.trace.health import Health
+from rvmon.verdict import LAW, Verdict, fold
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredGroup, IllegalHit
-from rvmon.verdict.verdict import LAW, Verdict, fold
 
 if TYPE_CHECKING:
     import pandas

@@ -11,9 +11,9 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health
 from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.covered import CoveredGroup, IllegalHit
-from rvmon.verdict.verdict import LAW, Verdict
 
 if TYPE_CHECKING:
     from rvmon.spec.checked.specification import Requirement

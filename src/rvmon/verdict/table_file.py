@@ -12,9 +12,9 @@ from typing import Any, NoReturn
 import msgspec
 
 from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 from rvmon.verdict.rows import VerdictRow, arrow_table, broken_rows, column_types
-from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 
 TABLE = "verdicts"

@@ -19,7 +19,7 @@ from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json
 from rvmon.coverage.record import Ending
 from rvmon.session import load
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 pytestmark = pytest.mark.campaign
 

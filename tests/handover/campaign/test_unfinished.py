@@ -13,7 +13,7 @@ import pytest
 
 from handover.cli import main
 from rvmon.cdv.play import execute
-from rvmon.cdv.unfinished import NAME
+from rvmon.cdv.resume import NAME
 from rvmon.cli import campaign_run
 from rvmon.coverage.database import read
 from rvmon.execute.journal import entries

@@ -9,8 +9,8 @@ import rvmon
 from rvmon.analysis.example import Budget
 from rvmon.analysis.examples import difference_of, shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
-from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import show_spec
 from rvmon.testing.oracle import evaluate
 
 pytestmark = pytest.mark.law

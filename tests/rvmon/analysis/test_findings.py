@@ -14,9 +14,8 @@ from rvmon.analysis.vacuity import possible
 from rvmon.cli import main
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import TraceProfile, random_trace, show_spec
 from rvmon.testing.oracle import evaluate
 
 SPEC = """

@@ -11,8 +11,8 @@ from rvmon.analysis.examples import shortest_examples, verdict_of
 from rvmon.analysis.graph import ANY, cubes_of, graph_of
 from rvmon.analysis.vacuity import possible
 from rvmon.monitor import compile_spec
-from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import show_spec
 
 pytestmark = pytest.mark.law
 

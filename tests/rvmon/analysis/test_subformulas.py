@@ -17,15 +17,14 @@ from rvmon.analysis.truths import (
 )
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import show_case
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import TraceProfile, random_trace, show_case
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.verdict import Verdict
 
 PROFILE = Profile(requirements=1, depth=3, captures=False, for_each=False)
 

@@ -7,8 +7,8 @@ import pytest
 from rvmon.analysis.choices import SILENT
 from rvmon.analysis.examples import Player, _choices
 from rvmon.monitor import compile_spec
-from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import show_spec
 from rvmon.trace.sample import Sample
 
 pytestmark = pytest.mark.law

@@ -15,7 +15,7 @@ from rvmon.cdv.test import TestError, load, save, to_json
 from rvmon.cli.campaign import main
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 class Steps(cdv.Test):

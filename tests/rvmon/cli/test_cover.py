@@ -11,7 +11,7 @@ from rvmon.cli import main
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
 from rvmon.coverage.record import TestRecord
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 @pytest.fixture

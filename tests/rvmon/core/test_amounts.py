@@ -6,9 +6,8 @@ from tests.tools.forms import Compiler, Maker
 
 import rvmon
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.outage import Outage
 from rvmon.trace.sample import Sample
 

@@ -12,7 +12,7 @@ from tests.tools.forms import FORMS, Maker
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 SPEC = """

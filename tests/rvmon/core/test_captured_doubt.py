@@ -5,7 +5,7 @@ from tests.tools.differential import disagreements
 from tests.tools.forms import Maker
 
 import rvmon
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 HEAD = "spec s\ntime {}\nsignal q : bool\nsignal x : real\nevent e\nevent g(k: int)\n"

@@ -10,7 +10,7 @@ from tests.tools.forms import Maker
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.outage import Outage
 from rvmon.trace.sample import Sample
 

@@ -18,7 +18,7 @@ from tests.tools.law import judge
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.monitor.intake import Validator
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 

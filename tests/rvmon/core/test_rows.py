@@ -11,8 +11,8 @@ from tests.tools.forms import Compiler
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 

@@ -18,9 +18,8 @@ from tests.tools.special_specs import random_chain
 from rvmon.monitor import compile_spec
 from rvmon.monitor.planned import PlannedCore
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 
 REQUIREMENTS = """

@@ -13,7 +13,7 @@ from rvmon.coverage.questions import Answers
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.errors import CoverageError
 from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from rvmon.coverage.model import Hit
 from rvmon.coverage.questions import Answers, VerdictChange, compare, only
 from rvmon.coverage.ranking import ranking
 from rvmon.coverage.record import TestRecord
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs the signals of
 COMMAND = """
 import sys
 from rvmon.execute.command import run
-from rvmon.execute.ended import interrupted_by_sigterm
+from rvmon.execute import interrupted_by_sigterm
 
 with interrupted_by_sigterm():
     run(["sh", "-c", "sleep 600 & echo $! $$; wait"], stdout=sys.stdout, capture_output=False)

@@ -24,7 +24,7 @@ JOBS = pytest.mark.parametrize("jobs", [1, 2, 5])
 PARENT = """
 import multiprocessing, os, sys, time
 from functools import partial
-from rvmon.execute.ended import interrupted_by_sigterm
+from rvmon.execute import interrupted_by_sigterm
 from rvmon.execute.parallel import execute
 
 def told(number):

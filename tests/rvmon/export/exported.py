@@ -18,7 +18,7 @@ from rvmon.monitor import CompiledSpec, compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.records import NUMBER, RECORD
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 

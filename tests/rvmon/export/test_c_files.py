@@ -17,9 +17,8 @@ from rvmon.monitor import compile_spec
 from rvmon.monitor.plans import plan_alone
 from rvmon.native import memory_of
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.trace.sample import Sample
 
 pytestmark = pytest.mark.compiler

@@ -6,8 +6,7 @@ import pytest
 from tests.tools.timed_generate import random_model
 
 from handover.model import handover_network
-from rvmon.export.network_dot import network_dot
-from rvmon.export.uppaal import uppaal_xml
+from rvmon.export.uppaal import network_dot, uppaal_xml
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.search.suite import Criterion, build_suite
 from rvmon.timed.search.verify import verify

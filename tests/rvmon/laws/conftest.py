@@ -14,9 +14,8 @@ from tests.tools.drive import drive
 from tests.tools.forms import Maker
 from tests.tools.law import judge as oracle
 
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.verdict.report import Report
 
 PLAIN = TraceProfile()

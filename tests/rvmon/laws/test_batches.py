@@ -13,8 +13,8 @@ from tests.tools.drive import drive
 from tests.tools.forms import Maker
 
 from rvmon.session import Spec
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report

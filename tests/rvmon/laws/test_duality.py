@@ -30,8 +30,8 @@ from tests.tools.build import (
 
 from rvmon.spec.checked.formula import BinaryOp, Formula, Interval, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.formula import Shape, interval
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.strategies import formulas, specs, traces
 from rvmon.trace.sample import Sample, Value

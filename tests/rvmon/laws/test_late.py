@@ -13,12 +13,11 @@ from tests.tools.late import after_late, is_touched, stretch_of
 from tests.tools.law import judge, word
 
 from rvmon.spec.checked.specification import Mode, TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 

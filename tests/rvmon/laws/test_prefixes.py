@@ -11,7 +11,7 @@ from tests.tools.compare import differences, outcomes
 from tests.tools.law import names_read
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate.choices import BOOLS
+from rvmon.testing.generate import BOOLS
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample

@@ -12,8 +12,8 @@ from tests.tools.drive import drive
 from tests.tools.forms import Maker
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import numerics, parts_of
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample

@@ -14,14 +14,13 @@ from rvmon.logic.state_formula import signals_of
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode
-from rvmon.testing.case import Case
-from rvmon.testing.generate.choices import signals
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate import signals
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.strategies import specs, traces
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
 
 ALL_KNOWN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 

@@ -8,7 +8,7 @@ from tests.tools.law import judge
 
 import rvmon
 from rvmon.logic.automaton import moves_in_runs
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 HEAD = """

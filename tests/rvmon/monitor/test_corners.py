@@ -36,7 +36,7 @@ from rvmon import loads
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.formula import Captured
 from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 EACH = ForEach("each", k)

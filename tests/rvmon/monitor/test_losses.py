@@ -10,9 +10,8 @@ import rvmon
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.monitor.monitor import restore
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.outage import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.health import HealthKind

@@ -6,7 +6,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 SPEC = """spec handover "Handover"
 time held

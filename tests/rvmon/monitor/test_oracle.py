@@ -10,13 +10,12 @@ from rvmon import loads
 from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
-from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.margins import margins
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Decision
-from rvmon.verdict.verdict import Verdict
 
 pytestmark = pytest.mark.law
 

@@ -7,7 +7,7 @@ from tests.tools.differential import disagreements
 from tests.tools.forms import FORMS, Maker
 
 import rvmon
-from rvmon.testing.case import Case
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 CASES = {

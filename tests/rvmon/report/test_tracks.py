@@ -28,9 +28,9 @@ from rvmon.report.tracks import (
 )
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Blame
 from rvmon.verdict.report import report_of
-from rvmon.verdict.verdict import Verdict
 
 SECOND = 1_000_000_000
 SPEC_TEXT = """

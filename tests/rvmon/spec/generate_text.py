@@ -9,9 +9,9 @@ from functools import cache
 from typing import Any
 
 from rvmon.diagnostics import Source, Span
-from rvmon.spec.rules.rule import Findings
+from rvmon.spec.rules import Findings
 from rvmon.spec.syntax.parse import grammar, parse_spec
-from rvmon.testing.generate.choices import Rng, chance, pick
+from rvmon.testing.generate import Rng, chance, pick
 
 HEAD = """spec demo
 time sampled

@@ -9,8 +9,8 @@ from rvmon.errors import SpecError
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
+from rvmon.spec.rules import MOST
 from rvmon.spec.rules.properties import MOST_COMBINATIONS
-from rvmon.spec.rules.rule import MOST
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.size_limits import DEEPEST, LARGEST
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, ITEM_WORDS, RESERVED

@@ -37,7 +37,7 @@ from rvmon.spec.checked.specification import Capture, ForEach, TimeModel
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:

@@ -10,9 +10,8 @@ from tests.tools.law import judge
 
 import rvmon
 from rvmon.spec.checked.specification import Requirement
-from rvmon.testing.case import Case, show_case, show_spec
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import Case, TraceProfile, show_case, show_spec
 from rvmon.testing.oracle import evaluate
 
 NOT_WRITTEN = {"RV022", "RV023", "RV025", "RV042"}

@@ -5,8 +5,8 @@ import pickle
 
 import pytest
 
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.verdict import Verdict
 
 REST = {
     "reason": "too late",

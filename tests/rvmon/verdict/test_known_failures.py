@@ -5,10 +5,10 @@ import datetime
 import pytest
 
 from rvmon.errors import RvmonError
+from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.known_failures import KnownFailures, read_known
 from rvmon.verdict.report import report_of
-from rvmon.verdict.verdict import Verdict
 
 FILE = """
 [[known]]

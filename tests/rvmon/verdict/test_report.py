@@ -9,9 +9,9 @@ import pytest
 
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health, HealthKind
+from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import LAW, Verdict
 
 
 def attempts() -> list[Attempt]:

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.session import Spec
-from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 from tests.tools.differential import cases_of
 from tests.tools.law import judge, word
 from tests.tools.sound import is_spoken_of, narrowed

@@ -9,17 +9,16 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from rvmon.cdv.campaign import Campaign, unreachable_items
-from rvmon.cdv.close.goals import Goals
+from rvmon.cdv.close.goals import Goals, Witnesses
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
-from rvmon.cdv.close.witnesses import Witnesses
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.play import INTERRUPTED, outcomes
 from rvmon.coverage.model import model_of
 from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.coverage.record import Ending
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 BATCH = 4
 """Tests that are played before anything is learned from them, whatever the number of processes."""

@@ -11,16 +11,15 @@ from functools import cached_property, partial
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code import Code
 from rvmon.cdv.code_coverage import code_groups, statements_name
-from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.play import Bench
 from rvmon.cdv.system import Run, Values
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Subject
 from rvmon.errors import RvmonError
-from rvmon.execute import parallel
-from rvmon.execute.ended import Ended
+from rvmon.execute import Ended, parallel
 from rvmon.session import Spec, load
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)

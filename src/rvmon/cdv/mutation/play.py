@@ -19,14 +19,13 @@ from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType, FunctionType, ModuleType
 
 from rvmon.cdv.mutation.baseline import Progress, Recorded, Suite, difference, recorder
-from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.mutation.tried import Finding, How, Tried
 from rvmon.cdv.play import Bench
 from rvmon.errors import RvmonError
-from rvmon.execute import parallel
-from rvmon.execute.ended import Ended
+from rvmon.execute import Ended, parallel
 from rvmon.texts import text_of_file
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 
 def plant(mutant: Mutant, source: str) -> None:

@@ -17,7 +17,7 @@ from rvmon.analysis.conflicts import starts_with
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.requirement import Subject
 from rvmon.cdv.mutation.baseline import Recorded
-from rvmon.cdv.mutation.mutant import third_of
+from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.tried import Score
 from rvmon.cdv.system import Checker
 from rvmon.logic.formula import horizon
@@ -44,7 +44,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_duration, format_formula
 from rvmon.trace.time import TICKS_PER_UNIT
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 _CONNECTIVES = {
     BinaryOp.AND: BinaryOp.OR,

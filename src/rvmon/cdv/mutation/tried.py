@@ -13,7 +13,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from rvmon.cdv.mutation.baseline import Difference, Recorded
-from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.names_read import names_of_requirement
 from rvmon.spec.checked.specification import CheckedSpec
@@ -173,7 +173,7 @@ def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
         reading: as `readers` gives it.
 
     >>> from pathlib import Path
-    >>> from rvmon.cdv.mutation.mutant import Mutant
+    >>> from rvmon.cdv.mutation.python_mutants import Mutant
     >>> mutant = Mutant(Path("a.py"), 3, "constant", "x = 3", "x = 4", "x = 4")
     >>> question(Tried(mutant, 2, 2, (), Difference("t", 1_500_000_000, "beep", "", "True")), {})
     'in `t` the run differs at 1.5 s in `beep` (none → True), which no requirement reads'

@@ -9,8 +9,7 @@ from typing import Any
 from rvmon.errors import TraceError
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import shorten
-from rvmon.trace.binding import Field, Named, Step
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Field, Kind, Named, Step
 
 Get = Callable[[Any], Any]
 

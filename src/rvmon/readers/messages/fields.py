@@ -15,9 +15,8 @@ from rvmon.readers.messages.by_names import Get, by_names
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
 from rvmon.texts import nearest
-from rvmon.trace.binding import Applied, Constant, Elements, Field, Named, Step, Term
 from rvmon.trace.sample import calculated
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Applied, Constant, Elements, Field, Kind, Named, Step, Term
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
 

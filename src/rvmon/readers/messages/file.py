@@ -16,9 +16,8 @@ from rvmon.readers.messages.topic import Message, Messages
 from rvmon.readers.messages.transforms import WithTransforms, pairs_asked, sends_transforms
 from rvmon.readers.places import local_path
 from rvmon.readers.rows import Row
-from rvmon.trace.binding import Clock
 from rvmon.trace.sample import Outage
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import Clock, Schema
 
 
 def open_messages(path: Path, form: str, schema: Schema) -> Messages:

@@ -12,8 +12,7 @@ from rvmon.readers.messages.fields import expect_kinds, field_of
 from rvmon.readers.messages.meaning import plain_type
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.binding import Bound, Field, Term
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 
 
 @dataclass(frozen=True, slots=True)

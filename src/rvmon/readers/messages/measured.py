@@ -9,8 +9,7 @@ from functools import reduce
 from rvmon.errors import TraceError
 from rvmon.readers.messages.meaning import Sort, meaning_of
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.binding import Applied, Bound, Constant, Elements, Field, Term
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import Applied, Bound, Constant, Elements, Field, Schema, Term
 from rvmon.units import PLAIN, Unit, parse_unit
 
 _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})

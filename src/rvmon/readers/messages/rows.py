@@ -12,9 +12,8 @@ from rvmon.readers.messages.skew import Skew
 from rvmon.readers.messages.topic import Messages, Topic
 from rvmon.readers.rows import Row
 from rvmon.readers.values import DESCRIPTION, as_declared, fits, plain, shorten
-from rvmon.trace.binding import Bound, Clock, Term
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Bound, Clock, Kind, Schema, Term
 from rvmon.trace.time import whole_ticks
 
 _ABSENT = object()

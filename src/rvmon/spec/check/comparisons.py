@@ -47,10 +47,10 @@ from rvmon.spec.checked.formula import (
     passed,
 )
 from rvmon.spec.checked.names_read import names_in
+from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 from rvmon.units import parse_unit, product

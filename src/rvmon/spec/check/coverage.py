@@ -28,10 +28,10 @@ from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.spec.checked.operators import Connectives, Tense
 from rvmon.spec.checked.rewrite import read
 from rvmon.spec.print.printer import format_formula
+from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import requirements as trigger_rules
-from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import (
     Call,
     Comparison,

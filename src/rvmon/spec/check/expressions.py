@@ -37,11 +37,11 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.operators import Tense, Window
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.rules import Findings, Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.expressions import (
     Call,
     Choice,

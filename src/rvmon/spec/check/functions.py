@@ -42,10 +42,10 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function, Recall
 from rvmon.spec.checked.names_read import names_in
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.fixes import NEVER
 from rvmon.texts import did_you_mean

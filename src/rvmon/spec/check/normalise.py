@@ -24,8 +24,8 @@ from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.rewrite import rewritten
 from rvmon.spec.checked.specification import Event, Mode, Role, Signal
+from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import properties as rules
-from rvmon.spec.rules.rule import Refusal
 
 _UNBOUNDED = Interval()
 

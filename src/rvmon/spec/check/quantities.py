@@ -26,8 +26,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Refusal
 from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
 
 Placed = tuple[Quantity, Span]

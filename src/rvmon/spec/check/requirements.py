@@ -60,11 +60,11 @@ from rvmon.spec.checked.specification import (
     Requirement,
     RunShare,
 )
+from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import requirements as rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import (
     Expression,
     Ident,

@@ -19,11 +19,11 @@ from rvmon.spec.checked.specification import (
     Type,
 )
 from rvmon.spec.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
+from rvmon.spec.rules import Findings, Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.expressions import Expression, Name, expressions_in
 from rvmon.spec.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
 from rvmon.trace.schema import Kind

@@ -18,7 +18,7 @@ from rvmon.diagnostics import Source, Span
 from rvmon.spec.checked import formula, specification
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.operators import BinaryOp, Interval, UnaryOp
-from rvmon.trace import schema
+from rvmon.trace.schema import Kind
 
 
 def _class_named(name: str) -> type | None:
@@ -28,8 +28,8 @@ def _class_named(name: str) -> type | None:
 
 @cache
 def _classes() -> Mapping[str, type]:
-    modules = (formula, specification, diagnostics, schema)
-    own = {one.__name__: one for one in (NumericOp, UnaryOp, BinaryOp, Interval)}
+    modules = (formula, specification, diagnostics)
+    own = {one.__name__: one for one in (NumericOp, UnaryOp, BinaryOp, Interval, Kind)}
     return {**own, **dict(_own_classes(*modules))}
 
 

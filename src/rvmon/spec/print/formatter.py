@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from rvmon.diagnostics import Source, render_full
 from rvmon.errors import SpecError
 from rvmon.spec.print.layout import WIDTH, Piece, lines_of, pieces_of, text_of
-from rvmon.spec.rules.rule import Findings
+from rvmon.spec.rules import Findings
 from rvmon.spec.syntax.parse import parse_spec
 from rvmon.spec.syntax.words import split_items
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.spec.rules.rule import Breach, Rule, finding
+from rvmon.spec.rules import Breach, Rule, finding
 from rvmon.texts import did_you_mean
 
 DEEPEST = 20

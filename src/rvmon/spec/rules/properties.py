@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.spec.rules.rule import Breach, Rule, finding, short
+from rvmon.spec.rules import Breach, Rule, finding, short
 from rvmon.texts import did_you_mean
 
 MOST_COMBINATIONS = 10_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.spec.rules.rule import Breach, Rule, finding, short
+from rvmon.spec.rules import Breach, Rule, finding, short
 from rvmon.texts import did_you_mean
 
 NO_VALUE = Rule("RV028", "no-value-to-capture", Severity.WARNING)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.spec.rules.rule import Breach, Rule, finding, short
+from rvmon.spec.rules import Breach, Rule, finding, short
 
 SYNTAX = Rule("RV001", "syntax", Severity.ERROR)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.spec.rules.rule import Breach, Rule, finding, short
+from rvmon.spec.rules import Breach, Rule, finding, short
 
 NO_DURATION = Rule("RV030", "no-duration", Severity.ERROR)
 

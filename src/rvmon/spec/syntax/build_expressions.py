@@ -16,8 +16,8 @@ from lark.visitors import Transformer_NonRecursive, v_args
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
+from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import syntax as rules
-from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import (
     Call,
     Choice,

@@ -9,8 +9,7 @@ import lark
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics import Diagnostic, Source, Span
-from rvmon.spec.rules import names, syntax, types
-from rvmon.spec.rules.rule import short
+from rvmon.spec.rules import names, short, syntax, types
 from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
 from rvmon.units import unit_table

@@ -9,8 +9,8 @@ from importlib import resources
 from pathlib import Path
 
 from rvmon.diagnostics import Source
+from rvmon.spec.rules import Findings, Refusal
 from rvmon.spec.rules import names as rules
-from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.items import ImportItem, ParsedSpec
 from rvmon.spec.syntax.parse import parse_spec
 from rvmon.texts import text_of_file

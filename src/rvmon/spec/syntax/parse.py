@@ -11,8 +11,8 @@ import lark
 from lark.exceptions import UnexpectedInput, VisitError
 
 from rvmon.diagnostics import Diagnostic, Source, Span
+from rvmon.spec.rules import Findings, Refusal
 from rvmon.spec.rules import syntax as rules
-from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.build import Builder
 from rvmon.spec.syntax.expected import explain_unexpected
 from rvmon.spec.syntax.expressions import Expression

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
+from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import syntax as rules
-from rvmon.spec.rules.rule import Refusal, Reported
 
 DEEPEST = 100
 """Deeper nesting is refused."""

@@ -1,1 +1,84 @@
-"""Random formulas, specifications and traces, biased towards what monitors get wrong."""
+"""Random formulas, specifications and traces, biased towards what monitors get wrong.
+
+Here are the random choices, and the names that test specifications use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping, Sequence
+from typing import Protocol, TypeVar
+
+from rvmon.spec.checked.specification import Event, Signal, Type
+from rvmon.trace.schema import Kind
+
+T = TypeVar("T")
+
+
+class Rng(Protocol):
+    """A source of integers; `random.Random` is one."""
+
+    def randint(self, a: int, b: int, /) -> int:
+        """An integer from `a` to `b`, both included; the least is the simplest."""
+
+
+def chance(rng: Rng, percent: int) -> bool:
+    """True in so many cases of a hundred; false is the simpler."""
+    return rng.randint(1, 100) > 100 - percent
+
+
+def pick(rng: Rng, options: Sequence[T]) -> T:
+    """One of the options, each as likely; the first is the simplest."""
+    return options[rng.randint(0, len(options) - 1)]
+
+
+def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
+    """One of the options, as likely as its weight says; the first is the simplest."""
+    rest = rng.randint(0, sum(weight for weight, _ in options) - 1)
+    for weight, option in options:
+        if rest < weight:
+            return option
+        rest -= weight
+    raise AssertionError("the weights add up")
+
+
+BOOLS = ("p", "q", "r")
+NUMBERS = ("x", "y")
+"""A real number and a whole one."""
+LABEL = "mode"
+LABELS = ("red", "green", "blue")
+EVENTS = ("e", "f")
+CARRIER = "g"
+"""The event with a payload."""
+FIELD = "k"
+FURTHER = "h"
+"""Another event with a payload."""
+SIZE = "m"
+WIDE = (-(2**63), -(2**53) - 1, 0, 2**53, 2**53 + 1, 2**62, 2**63 - 1)
+"""Whole numbers that doubles do not tell from their neighbours, but for 0."""
+
+
+def signals(
+    stale: Mapping[str, int] | None = None, ignoring: Container[str] = ()
+) -> dict[str, Signal]:
+    """The signals.
+
+    Args:
+        stale: those that are `stale after` so many ticks.
+        ignoring: those of which NaN and null are no update.
+    """
+    kinds = {
+        **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
+        **dict(zip(NUMBERS, (Type(Kind.REAL), Type(Kind.INT)), strict=True)),
+        LABEL: Type(Kind.LABEL, labels=LABELS),
+    }
+    after = stale or {}
+    return {
+        name: Signal(name, type_, stale_after=after.get(name), ignores_nan=name in ignoring)
+        for name, type_ in kinds.items()
+    }
+
+
+def events() -> dict[str, Event]:
+    """The events."""
+    fields = {CARRIER: {FIELD: Type(Kind.INT)}, FURTHER: {SIZE: Type(Kind.REAL)}}
+    return {name: Event(name, fields.get(name, {})) for name in (*EVENTS, CARRIER, FURTHER)}

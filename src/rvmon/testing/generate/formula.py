@@ -36,7 +36,7 @@ from rvmon.spec.checked.formula import (
     passed,
 )
 from rvmon.spec.checked.operators import Tense, Window
-from rvmon.testing.generate.choices import (
+from rvmon.testing.generate import (
     BOOLS,
     CARRIER,
     EVENTS,

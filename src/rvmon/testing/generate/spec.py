@@ -31,7 +31,7 @@ from rvmon.spec.checked.specification import (
     Requirement,
     TimeModel,
 )
-from rvmon.testing.generate.choices import (
+from rvmon.testing.generate import (
     BOOLS,
     CARRIER,
     EVENTS,

@@ -10,7 +10,7 @@ import pytest
 from rvmon import cdv
 from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
 from rvmon.cdv.close import Budget, close
-from rvmon.cdv.close.witnesses import EDGES
+from rvmon.cdv.close.goals import EDGES
 from rvmon.cdv.test import TestError
 from rvmon.coverage.record import Ending
 from rvmon.errors import ModelError, UnknownNameError

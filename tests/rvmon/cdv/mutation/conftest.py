@@ -8,9 +8,8 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.mutation.baseline import record_suite
-from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.play import play_mutants
-from rvmon.cdv.mutation.python_mutants import code_mutants
+from rvmon.cdv.mutation.python_mutants import Mutant, code_mutants
 
 CODE = '''\
 TOP = 3

@@ -8,9 +8,8 @@ import pytest
 from tests.rvmon.cdv.mutation.conftest import lift_of
 
 from rvmon.cdv.mutation.baseline import record_suite
-from rvmon.cdv.mutation.mutant import HELD_OUT
 from rvmon.cdv.mutation.play import plant
-from rvmon.cdv.mutation.python_mutants import code_mutants
+from rvmon.cdv.mutation.python_mutants import HELD_OUT, code_mutants
 from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
 from rvmon.cdv.mutation.tried import How, Missing, failing_runs, missing, scored
 from rvmon.errors import RvmonError

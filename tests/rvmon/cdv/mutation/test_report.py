@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from rvmon.cdv.mutation.baseline import Difference
-from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
-from rvmon.cdv.mutation.output import mutation_page, report_text
-from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+from rvmon.cdv.mutation.output import MutationReport, SuiteTried, mutation_page, report_text
+from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
 from rvmon.cdv.mutation.tried import Finding, How, Tried, equivalents, readers
 from rvmon.cdv.tables import to_json
 from rvmon.errors import RvmonError

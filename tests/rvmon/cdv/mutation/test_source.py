@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.mutation.mutant import THIRDS, third_of
-from rvmon.cdv.mutation.python_mutants import code_mutants, mutants
+from rvmon.cdv.mutation.python_mutants import THIRDS, code_mutants, mutants, third_of
 from rvmon.cdv.mutation.python_operators import OPERATORS
 from rvmon.errors import RvmonError
 

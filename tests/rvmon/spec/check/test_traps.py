@@ -16,7 +16,7 @@ from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.syntax import numerics
 from rvmon.trace.sample import Sample
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 NOWHERE = Span(Source("", ""), 0, 0)
 

@@ -9,8 +9,8 @@ from tests.rvmon.spec.print.writing import meaning, scribbled
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
-from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import show_spec
 
 EXAMPLE = """# Head
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from rvmon.spec.checked.formula import Binary, BinaryOp
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.generate.choices import Rng, chance, pick
+from rvmon.testing.generate import Rng, chance, pick
 
 _SYNONYMS = {
     "not": ("not", "!"),

@@ -18,10 +18,9 @@ from tests.tools.law import judge
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.syntax import intervals, subformulas
 from rvmon.testing.strategies import cases

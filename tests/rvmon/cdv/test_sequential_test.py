@@ -5,10 +5,10 @@ import random
 
 import pytest
 
-from rvmon.cdv.run_share import ALPHA, BETA, decide, errors_text
+from rvmon.cdv.sequential_test import ALPHA, BETA, decide, errors_text
 from rvmon.cli.campaign import main
 from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 P, F, NT, I = Verdict  # noqa: E741 - the letters of the tables
 MOST = RunShare(at_least=False, percent=5.0)

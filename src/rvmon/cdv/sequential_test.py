@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import ceil, log
 
 from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict import Verdict
 
 ALPHA = 0.05
 """How probable it is at most that what holds is rejected."""
