@@ -157,7 +157,7 @@ def _follower() -> Callable[[str], frozenset[str]]:
         test = witnesses.test(witness, edge, 1)
         assert isinstance(test, AbstractTest)  # noqa: S101 - the campaign's model makes no other
         run = Handover(ROBOT).play(test, Observer(()))
-        return frozenset(witnesses.shown(witness, hits_of_states(run)).get(EDGES, ()))
+        return frozenset(witnesses.shown(witness, edge, hits_of_states(run)).get(EDGES, ()))
 
     return shown
 

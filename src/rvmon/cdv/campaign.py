@@ -14,6 +14,7 @@ from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Model, Subject
 from rvmon.errors import UnknownNameError
+from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:
     from rvmon.timed.model.network import Network
@@ -253,9 +254,13 @@ def unreachable_items(
         items = [*_named(one, model)]
         if not items and whole:
             place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
+            known = [
+                f"{name}: {item}" for name, group in model.groups.items() for item in group.items
+            ]
+            fix = did_you_mean(place, known, "take it out of `Closing.unreachable`")
             raise UnknownNameError(
                 f"the campaign calls unreachable what there is not: {place}: nothing that is "
-                "measured is called so; take it out of `Closing.unreachable`"
+                f"measured is called so; {fix}"
             )
         found |= dict.fromkeys(items, one.reason)
     return found

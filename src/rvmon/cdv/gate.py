@@ -212,8 +212,8 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
             for item in items
             if (group, item) in out
         }
-        wrong = "; ".join(f"{item}, by {test}" for item, test in first.items())
-        yield f"what is called unreachable is not hit ({robot})", wrong
+        wrong = "; ".join(f"{test} hits {item}" for item, test in first.items())
+        yield f"no test hits what is called unreachable ({robot})", wrong
 
 
 def _gate_name(campaign: Campaign, one: Played) -> str:

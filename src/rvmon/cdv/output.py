@@ -68,18 +68,16 @@ def print_summary(
             console.print(LEGEND, style="dim")
             console.print(INTERVALS, style="dim")
             console.print()
+        under = figures.strategies.values()
         measured = {
-            "statements of its code that ran": [
-                one.statements for one in figures.strategies.values()
-            ],
-            "branches of its code that were taken": [
-                one.branches for one in figures.strategies.values()
-            ],
+            ("statements", "that ran"): [one.statements for one in under],
+            ("branches", "that were taken"): [one.branches for one in under],
         }
-        for what, columns in measured.items():
+        for (what, how), columns in measured.items():
             if any(columns):
-                console.print(f"{figures.title}: {what}", style="bold")
-                console.print(_shares(summary.kind, list(figures.strategies), columns))
+                console.print(f"{figures.title}: {what} of its code {how}", style="bold")
+                heads = summary.kind, what, *figures.strategies
+                console.print(_shares(heads, columns))
                 console.print()
     for figures in summary.robots.values():
         for line in _known(figures):
@@ -149,17 +147,14 @@ def _print_verdicts(tables: RobotTables, console: Console) -> None:
         console.print(tables.remark, style="dim")
 
 
-def _shares(
-    kind: str, strategies: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]]
-) -> Table:
+def _shares(heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]]) -> Table:
     """How much of each block ran under each strategy."""
     from rich import box
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
-    table.add_column(kind, no_wrap=True)
-    table.add_column("all", justify="right")
-    for name in strategies:
+    table.add_column(heads[0], no_wrap=True)
+    for name in heads[1:]:
         words = [name] if len(name) <= _WIDE else name.rsplit("-", 1)
         table.add_column(" ".join(words), justify="right", min_width=max(map(len, words)))
     for block, first in columns[0].items():
@@ -246,7 +241,8 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
         return ""
     places = " and ".join(f"{count} in {folder / part}" for part, count in counts.items())
     return (
-        f"files that this campaign did not write stay: {places}; remove them, or name a new --out"
+        f"files that this campaign did not write stay: {places}; who plays the folder plays those "
+        "too: remove them, or name a new --out"
     )
 
 

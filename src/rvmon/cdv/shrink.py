@@ -102,7 +102,8 @@ def shrink(
         test: that fails; its type says what is `removable`, and what is `simpler`.
         outcome: of its run.
         play: plays a test; the same test is to give the same run.
-        requirement: that is to fail; default: as the run ended, or the first that fails in it.
+        requirement: that is to fail; default: as the run ended, or the first that fails in it, of
+            those that the test knows to fail if one does.
         most: tests that are played at most.
 
     Raises:
@@ -112,7 +113,8 @@ def shrink(
     if requirement is not None and requirement not in outcome.verdicts:
         there_are = ", ".join(outcome.verdicts)
         raise UnknownNameError(f"no requirement `{requirement}`: there are {there_are}")
-    failure = failure_of(outcome, requirement)
+    known = [name for name, verdict in test.expected.items() if verdict == "F"]
+    failure = failure_of(outcome, requirement, known)
     if failure is None:
         return None
     began = time.perf_counter()
@@ -122,16 +124,19 @@ def shrink(
     return Shrunk(search.test, search.outcome, failure, search.tried, seconds, is_minimal)
 
 
-def failure_of(outcome: Outcome, requirement: str | None = None) -> Failure | None:
+def failure_of(
+    outcome: Outcome, requirement: str | None = None, known: Sequence[str] = ()
+) -> Failure | None:
     """What is wrong with a run; `None` if nothing is.
 
     Args:
         outcome: of the run.
         requirement: that is looked at; default: as the run ended, or the first that fails in it.
+        known: requirements that are looked at before others.
     """
     if requirement is None and outcome.ending is not Ending.COMPLETED:
         return Failure("", outcome.ending, _kind(outcome))
-    names = outcome.verdicts if requirement is None else (requirement,)
+    names = (*known, *outcome.verdicts) if requirement is None else (requirement,)
     failures = (Failure(name) for name in names)
     return next((failure for failure in failures if failure.is_of(outcome)), None)
 

@@ -14,6 +14,7 @@ from rvmon.cdv.test import TestError
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
+    from rvmon.timed.model.network import Edge as NetworkEdge
     from rvmon.timed.model.network import Network
     from rvmon.timed.runs.run import Run
 
@@ -150,8 +151,9 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
     return times
 
 
-Edge = tuple[str, str, str]
-"""An edge of a network: automaton, location before, location after."""
+Edge = tuple[str, str, str] | tuple[str, str, str, str]
+"""An edge of a network: automaton, location before, location after; where there are several, also
+the label, or the channel if it has none."""
 
 
 def templates_of(
@@ -196,7 +198,12 @@ def project(
 
     The closed difference constraints of the run, restricted to those instants, are exactly the
     limits that the whole run puts on them.
+
+    Raises:
+        TestError: an action is for an edge that there is not, or for several that differ in label
+            or channel.
     """
+    does = _by_edge(network, actions)
     timing = run.timing
     assert timing is not None  # noqa: S101 - the model checker knows the timing of its runs
     instants, texts, taken = [0], [""], list[Action | None]([None])
@@ -208,7 +215,7 @@ def project(
             source, target = (automaton.locations[i].name for i in (edge.source, edge.target))
             instants.append(number)
             texts.append(f"{automaton.name}: {source} → {target}")
-            taken.append(actions.get((automaton.name, source, target)))
+            taken.append(does.get((index, edge)))
     # A test acts in whole units: a limit between two units is the next one inside.
     within = [
         [floor(bound / timing.scale) if (bound := float(timing.bounds[p, q])) < inf else inf
@@ -226,6 +233,34 @@ def project(
         if (wait := _wait(within, first, last)) != Wait(0)
     )
     return steps, limits
+
+
+def _by_edge(
+    network: Network, actions: Mapping[Edge, Action]
+) -> dict[tuple[int, NetworkEdge], Action]:
+    """What a test does for each edge of a network."""
+    found: dict[tuple[int, NetworkEdge], Action] = {}
+    for name, action in actions.items():
+        alike = {
+            (place, edge): full
+            for place, automaton in enumerate(network.automata)
+            for edge in automaton.edges
+            if name in ((full := _name_of(network, place, edge))[:3], full)
+        }
+        if not alike:
+            raise TestError(f"actions of a model: it has no edge {name}")
+        if len(several := dict.fromkeys(alike.values())) > 1:
+            told = ", ".join(map(str, several))
+            raise TestError(f"actions of a model: it has several edges {name}: name each: {told}")
+        found |= dict.fromkeys(alike, action)
+    return found
+
+
+def _name_of(network: Network, place: int, edge: NetworkEdge) -> tuple[str, str, str, str]:
+    automaton = network.automata[place]
+    source, target = (automaton.locations[i].name for i in (edge.source, edge.target))
+    channel = "" if edge.sync is None else network.channels[edge.sync.slot.first].name
+    return automaton.name, source, target, edge.label or channel
 
 
 def _wait(within: Sequence[Sequence[float]], first: int, last: int) -> Wait:

@@ -112,6 +112,13 @@ def test_what_is_not_wrong_is_not_shrunk():
         shrink(steps(1), OUTCOME, fails_if(bool), "R9")
 
 
+def test_the_failure_that_a_test_knows_comes_first():
+    """Of several requirements that fail it is that which the test is about."""
+    both = outcome(R1="F", R2="F")
+    found = shrink(steps(1, expected={"R0": "P", "R2": "F"}), both, lambda _: both)
+    assert str(found.failure) == "R2 fails"
+
+
 def test_a_test_that_cannot_be_played_is_no_smaller_one():
     """As one whose type refuses it."""
 

@@ -104,7 +104,7 @@ def close(
                 for proposal in proposals:
                     outcome, _ = next(results)
                     if witnesses is not None and proposal.witness is not None:
-                        shown = witnesses.shown(proposal.witness, outcome.hits)
+                        shown = witnesses.shown(proposal.witness, proposal.test.name, outcome.hits)
                         outcome = replace(outcome, hits={**outcome.hits, **shown})
                     played = Played(Job(proposal.test, robot), outcome)
                     added = goals.add(proposal.test.name, outcome.hits)
@@ -134,7 +134,7 @@ def close(
         share=goals.share,
         proved=goals.proved,
         argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
-        open=goals.holes(),
+        open=goals.holes() if witnesses is None else witnesses.explained(goals.holes()),
         wrong=goals.wrong,
         groups=() if witnesses is None else witnesses.groups,
         seconds=time.monotonic() - begun,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.campaign import ClosingModel
@@ -160,6 +161,7 @@ class Witnesses:
         self._model = model
         self._describes = describes
         self._answers: dict[str, Witness | Proof | None] = {}
+        self._astray: dict[Goal, tuple[str, str]] = {}
 
     @cached_property
     def _network(self) -> Network:
@@ -220,16 +222,30 @@ class Witnesses:
         template = Template(name, "", witness.query, "shortest", unit_s, steps, limits)
         return model.make(template, seed)
 
-    def shown(self, witness: Witness, hits: Hits) -> dict[str, dict[str, Hit]]:
-        """The edges of the model that the test of a run has shown."""
+    def shown(self, witness: Witness, test: str, hits: Hits) -> dict[str, dict[str, Hit]]:
+        """The edges of the model that the test of a run has shown, by its name and hits."""
         if not self._describes:
             return {}
+        edges = [self._names[taken] for taken in _edges_of(witness.run)]
         visited = hits.get(STATES, {})
         went = sorted(visited, key=lambda state: visited[state].first or 0)
-        planned = self._course(witness.run)
-        if went[: len(planned)] != planned:
-            return {}
-        return {EDGES: {self._names[taken]: Hit(1) for taken in _edges_of(witness.run)}}
+        for came, planned in zip_longest(went, self._course(witness.run)):
+            if planned is not None and came != planned:
+                entered = "no further state" if came is None else f"`{came}`"
+                why = f"a test of a run that takes it enters {entered} where the run enters "
+                for edge in edges:
+                    self._astray.setdefault((EDGES, edge), (f"{why}`{planned}`", test))
+                return {}
+        return {EDGES: dict.fromkeys(edges, Hit(1))}
+
+    def explained(self, holes: Mapping[Goal, Hole]) -> dict[Goal, Hole]:
+        """Holes, those of edges with how the first test of such a run went another way."""
+        needs = "a `make` that does what the run does, or a model that does what the system does"
+        return {
+            goal: replace(hole, why=why, needs=needs, nearest=test) if test else hole
+            for goal, hole in holes.items()
+            for why, test in [self._astray.get(goal, ("", ""))]
+        }
 
     def _course(self, run: Run) -> list[str]:
         """The states of the system in a run, in the order of their first entry."""

@@ -382,10 +382,11 @@ class Resolver:
                 span = written.span
                 key = ("", ())
         if key not in self.automata:
-            families = {name for name, _ in self.automata}
-            fix = (
-                did_you_mean(key[0], sorted(families)) if self.automata else "only queries see them"
-            )
+            if not self.automata:
+                message = f"edges and invariants do not see the locations of `{span.text}`"
+                fix = "only queries do: set a variable where it is entered and left, and read that"
+                raise model_error("TA002", message, span, fix)
+            fix = did_you_mean(key[0], sorted({name for name, _ in self.automata}))
             raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
         return self.automata[key]
 

@@ -167,9 +167,14 @@ def test_what_is_called_unreachable_is_not_sought_and_must_not_be_met(dials):
 
 def test_unknown_items_are_refused(dials):
     """What is called unreachable has to be there."""
-    for place in (("both", "two × seven"), ("nothing", "two"), ("", "return 1")):
-        with pytest.raises(UnknownNameError, match="calls unreachable what there is not"):
+    for place, fix in (
+        (("both", "two × seven"), "did you mean `both: "),
+        (("nothing", "two"), "did you mean `of_right: two`?"),
+        (("", "return 1"), "take it out"),
+    ):
+        with pytest.raises(UnknownNameError, match="calls unreachable what there is not") as caught:
             close(dials(unreachable=[Unreachable(*place, "so")]), "machine", jobs=1)
+        assert fix in str(caught.value)
 
 
 def test_lines_go_by_their_text(dials, code):
@@ -241,7 +246,33 @@ def test_edges_are_shown_only_by_tests_that_go_their_way(dials):
     """A machine that never switches on shows none of the edges of a run that does."""
     campaign = dials(model=model(states={"off": "on", "on": "off"}))
     closed = close(campaign, "machine", jobs=1, budget=Budget(tests=12))
-    assert {name for group, name in closed.open if group == EDGES} >= {"machine: off → on"}
+    hole = closed.open[EDGES, "machine: off → on"]
+    assert hole.why.endswith("where the run enters `on`")
+    assert hole.nearest in {one.played.job.test.name for one in closed.tests}
+
+
+@pytest.mark.parametrize(
+    ("edge", "wrong"),
+    [
+        (("person", "choosing", "gone"), "no edge"),
+        (("person", "choosing", "done", "aloud"), "no edge"),
+        (("person", "choosing", "done"), "several edges .* name each: .*''.*, 'quit'"),
+    ],
+)
+def test_what_a_test_does_is_for_one_edge(dials, edge, wrong):
+    """Edges between the same locations go by label or channel; a name that fits none is told."""
+    text = MODEL.replace("choosing -> done", "choosing -> done\n  edge choosing -> done as quit")
+
+    def tests(actions):
+        network = model(network=lambda: loads_network(text), actions=actions)
+        return close(dials(model=network), "machine", jobs=1, budget=Budget(tests=8)).tests
+
+    with pytest.raises(TestError, match=wrong):
+        tests({edge: "left"})
+    quits = tests({("person", "choosing", "done", "quit"): "left"})
+    turned = {one.origin: one.played.job.test.left for one in quits}
+    assert turned["a run of the model that shows the edge person: choosing → done (2)"] == 2
+    assert turned["a run of the model that shows the edge person: choosing → done"] == 0
 
 
 def test_a_model_proves_nothing_of_robots_that_it_does_not_describe(dials):

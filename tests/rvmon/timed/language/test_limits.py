@@ -50,6 +50,11 @@ A = "automaton A { location a start a } "
         ),
         (A + "query q: E<> A.a query q: A[] A.a", "TA003", "two things named `q`"),
         ("signal s = A.a signal s = A.a " + A, "TA003", "two things named `s`"),
+        (
+            A + "automaton B { location b start b edge b -> b when A.a }",
+            "TA002",
+            "edges and invariants do not see the locations of `A`",
+        ),
         (A + "query: E<>[<=2147483647] A.a", "TA007", "a bound of 2147483647"),
         (A + "query: A.a -->[<=-1] A.a", "TA007", "a bound of -1"),
     ],
