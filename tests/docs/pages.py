@@ -148,7 +148,7 @@ class Runner:
                 pattern = re.escape(expected).replace("…", r"[\s\S]*")
                 assert re.fullmatch(pattern, shown), f"{block.place}\n{shown}"
             else:
-                assert shown == expected, f"{block.place}: {lines[start]}"
+                assert shown == expected, f"{block.place}: {lines[start]}\n{shown}"
 
     def _output(self, command: str) -> str:
         """What a command prints, times left out; or nothing if that goes to a file."""

@@ -117,7 +117,7 @@ def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[
         return
     for attempt in found:
         one = waiting[key_of(attempt)]
-        for part in one.misnamed(attempt.required):
+        for part in one.misnamed(attempt.required, attempt.origin):
             yield f"{attempt} is said to owe {part}, which waits for nothing"
         deadline = one.deadline()
         if attempt.deadline != deadline:

@@ -94,20 +94,21 @@ class Waiting:
                 return last
         return None
 
-    def misnamed(self, owed: str) -> Iterator[str]:
+    def misnamed(self, owed: str, origin: int) -> Iterator[str]:
         """What is said to be owed though it is none of the parts that wait for something.
 
         Args:
             owed: from the record of an attempt.
+            origin: the first instant of its run, ticks.
         """
         parts = _PART.findall(owed) or ([owed] if owed else [])
         wrong = set(parts)
-        allowed = self._undecided()
+        allowed = self._undecided(origin)
         while wrong and (name := next(allowed, None)):
             wrong.discard(name)
         yield from (part for part in parts if part in wrong)
 
-    def _undecided(self) -> Iterator[str]:
+    def _undecided(self, origin: int) -> Iterator[str]:
         """Parts whose truth at a position since the trigger is open, as a record names them."""
         for part in self._parts:
             for position in self._concerned:
@@ -115,7 +116,7 @@ class Waiting:
                     self._truths.truth(part, position, positive=sign) for sign in (True, False)
                 )
                 if Truth.UNKNOWN in signs:
-                    yield from _named(part, self._letters[position].instant)
+                    yield from _named(part, self._letters[position].instant - origin)
         if self._requirement.mode is Mode.WHENEVER or self._in_doubt:
             # It is owed at every position to come, which goes by its name.
             yield f"`{format_formula(self._requirement.consequent)}`"
@@ -125,11 +126,11 @@ class Waiting:
             yield "`the consequent`"
 
 
-def _named(part: Formula, instant: int) -> Iterator[str]:
+def _named(part: Formula, since: int) -> Iterator[str]:
     window = None
     if isinstance(part, Unary | Binary) and part.op not in _PAST:
         window = part.interval
-    until = None if window is None or window.high is None else format_ticks(instant + window.high)
+    until = None if window is None or window.high is None else format_ticks(since + window.high)
     for shown in (part, Unary(UnaryOp.NOT, part)):
         text = f"`{format_formula(shown)}`"
         if until is None:

@@ -20,7 +20,7 @@ from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
     if best.missing and best.at is None:
         valueless = _without_values(spec, best.parts, seen)
         return "; ".join(_apart(best.parts, truths, valueless, seen.begin, seen.end))
-    return _sentence(best, truths)
+    return _sentence(best, truths, seen.begin)
 
 
 def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
@@ -110,18 +110,18 @@ def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
     return _Miss(parts, there, -at if there else None)
 
 
-def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
+def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
     """What is to be reported if some part was true, or there is none."""
     at = miss.at
     if at is None or not miss.missing:
-        when = "" if at is None else f" at {format_ticks(at)}"
+        when = "" if at is None else f" at {format_instant(at, origin)}"
         return f"its trigger was true{when}, but not known to be false before: no edge was seen"
     rest = miss.there[0]
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part)
     unknown = any(holds(seen[part].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
-    while_ = f"while `{format_formula(rest)}` was (first at {format_ticks(at)})"
+    while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
     return f"{_listed(miss.missing)} {lacking} {while_}"
 
 

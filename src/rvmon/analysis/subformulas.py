@@ -130,7 +130,6 @@ class Breakdown:
         attempt: its record.
         start: first tick of the window that is shown.
         end: its last tick.
-        origin: from which people count seconds, ticks.
         late: when what it had awaited came after its deadline, ticks; `None` if it did not.
         part_truths: the trigger, then what is owed, each before its parts.
     """
@@ -138,7 +137,6 @@ class Breakdown:
     attempt: Attempt
     start: int
     end: int
-    origin: int
     late: int | None
     part_truths: tuple[PartTruth, ...]
 
@@ -176,7 +174,7 @@ def dissect(
     seen = look_through(spec, questions, samples, end, names)
     late = late_in([attempt], waits, seen).get(attempt.number)
     part_truths = part_truths_of(requirement, attempt, seen, start, stop)
-    return Breakdown(attempt, start, stop, begin, late, part_truths)
+    return Breakdown(attempt, start, stop, late, part_truths)
 
 
 def part_truths_of(

@@ -25,7 +25,7 @@ from rvmon.cli.reproduced import ENDING
 from rvmon.errors import RvmonError
 from rvmon.readers.places import name_of
 from rvmon.report.folder import refuse_no_file
-from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_stamp, format_stamped
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
@@ -113,7 +113,9 @@ def run(arguments: argparse.Namespace) -> int:
         if same is None:
             _warn_of_another(data, place, attempt, again, copied)
             return 1
-        when = "" if same.decided is None else f", decided at {format_ticks(same.decided)}"
+        when = ""
+        if same.decided is not None:
+            when = f", decided at {format_stamped(same.decided, attempt.origin)}"
         say(f"{attempt.name} is {same.name} in it: {same.verdict}{when}, as in {data}")
         if case is not None:
             _write_case(arguments, case, place, same)
@@ -216,7 +218,7 @@ def _begin(spec: Spec, attempt: Attempt) -> int:
 
 def _show(data: str, out: str, copied: Copied, piece: Piece) -> None:
     size = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
-    say(f"{out}: {size}, {format_ticks(copied.first)} to {format_ticks(copied.last)}")
+    say(f"{out}: {size}, {format_stamp(copied.first)} to {format_stamp(copied.last)}")
     if piece.held:
         say(f"carried to its start: {', '.join(f'`{name}`' for name in piece.held)}")
 
@@ -253,7 +255,7 @@ def _warn_of_another(
     """Say that the attempt is not the same on the piece, and what to do."""
     verdict = report.verdicts[attempt.requirement]
     if attempt.decided is not None and copied.last < attempt.decided:
-        why = f"it was decided at {format_ticks(attempt.decided)}: a later --to"
+        why = f"it was decided at {format_stamped(attempt.decided, attempt.origin)}: a later --to"
     else:
         why = "what it remembers lies before: a longer --before"
     warn(

@@ -29,7 +29,7 @@ from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -373,7 +373,8 @@ def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
         failed = next((attempt for attempt in own if attempt.verdict is Verdict.FAIL), None)
         if failed is not None and failed.decided is not None:
             line += (
-                f"; attempt {failed.number} failed at {format_ticks(failed.decided)}: "
+                f"; attempt {failed.number} failed at "
+                f"{format_stamped(failed.decided, failed.origin)}: "
                 f"{failed.reason}"
             )
         yield line

@@ -158,7 +158,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
             raise RvmonError(f"error: {arguments.source}: there is no line: nothing was evaluated")
         began = stamp_of(first, spec.schema)
         followed = None
-        clock = _own_clock(arguments)
+        clock = _own_clock()
         if began is not None and arguments.realtime is None:
             clock = followed = SimulatedClock(began)
         live = _live(arguments, spec, clock, shown.judged)
@@ -193,7 +193,7 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     from rvmon.adapters.mqtt import MqttSource, address_of
 
     address = address_of(arguments.source)
-    live, hear = _live_here(arguments, spec, shown, _own_clock(arguments))
+    live, hear = _live_here(arguments, spec, shown, _own_clock())
     objects = JsonObjects(live, spec.schema)
     source = MqttSource(objects, address, verdicts=arguments.publish)
     hear(source.publish)
@@ -217,7 +217,7 @@ def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> L
         if arguments.realtime is not None:
             raise RvmonError(f"--realtime: the time is that of {CLOCK} already: leave it out")
         followed = SimulatedClock()
-    live, hear = _live_here(arguments, spec, shown, followed or _own_clock(arguments))
+    live, hear = _live_here(arguments, spec, shown, followed or _own_clock())
     feed = MessageFeed(live, spec.schema, clock=followed)
     source: Ros1Source | Ros2Source | DdsSource
     if domain is not None:
@@ -286,10 +286,10 @@ def _live_here(
     return _live(arguments, spec, clock, judged), hearing.append
 
 
-def _own_clock(arguments: argparse.Namespace) -> Clock:
+def _own_clock() -> Clock:
     from rvmon.live import WallClock
 
-    return WallClock(since_1970=arguments.realtime is not None)
+    return WallClock(since_1970=True)
 
 
 def _live(

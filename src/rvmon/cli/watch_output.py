@@ -15,7 +15,7 @@ import msgspec
 from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
 from rvmon.report.style import MARKS
-from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict, fold
 
 if TYPE_CHECKING:
@@ -185,7 +185,8 @@ def _line(judgement: Judgement) -> str:
     decided = attempt.triggered if attempt.decided is None else attempt.decided
     sign = MARKS[attempt.verdict].sign
     reason = f"  {attempt.reason}" if attempt.reason else ""
-    return f"{robot}{format_ticks(decided)}  {attempt.name} {attempt.verdict} {sign}{reason}"
+    when = format_stamped(decided, attempt.origin)
+    return f"{robot}{when}  {attempt.name} {attempt.verdict} {sign}{reason}"
 
 
 def tables(driver: Driver, height: int | None = None) -> RenderableType:
@@ -255,8 +256,9 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
         waiting = f"{status.open_counts[name]:,}" if status.open_counts.get(name) else ""
         text = Text(spec.requirements[name].text, no_wrap=is_cut, overflow="ellipsis")
         table.add_row(name, verdict_text(status.verdicts[name]), *counts, waiting, left, text)
+    when = format_stamped(status.now, status.since or 0)
     return Group(
-        Text(f"{heading}{run}to {format_ticks(status.now)}, {status.samples:,} samples{lost}"),
+        Text(f"{heading}{run}to {when}, {status.samples:,} samples{lost}"),
         table,
         *_rest([status.verdicts[name] for name in names[rows:]], "requirements"),
     )

@@ -21,7 +21,7 @@ from rvmon.readers.recording import JOINED, format_of
 from rvmon.readers.tables import arrow_cells
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamp
 from rvmon.writing import beside
 
 
@@ -72,7 +72,7 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
                 message = str(error)
                 raise TraceError(message if path in message else f"{path}: {message}") from None
             if not copied.count:
-                between = f"{format_ticks(piece.start)} and {format_ticks(piece.stop)}"
+                between = f"{format_stamp(piece.start)} and {format_stamp(piece.stop)}"
                 raise TraceError(f"{path}: there is nothing between {between}")
     except OSError as error:
         raise RvmonError(f"cannot write {out}: {error.strerror or error}") from None

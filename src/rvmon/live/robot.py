@@ -15,6 +15,7 @@ from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report_json import seconds
 
 if TYPE_CHECKING:
     from rvmon.monitor import Monitor
@@ -37,7 +38,7 @@ class Judgement:
     attempt: Attempt
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain values, for JSON and messages: instants in ns."""
+        """As plain values, for JSON and messages: instants in ns, and in seconds of its run."""
         attempt = self.attempt
         return {
             "robot": self.robot,
@@ -47,6 +48,7 @@ class Judgement:
             "verdict": attempt.verdict.value,
             "triggered": attempt.triggered,
             "decided": attempt.decided,
+            **seconds(attempt),
             "reason": attempt.reason,
         }
 

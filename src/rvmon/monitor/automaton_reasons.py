@@ -148,10 +148,11 @@ class MachineRuns:
         location, anchors = token
         ages = [now // 2 - anchor for anchor in anchors]
         compiled = attempt.compiled
-        owed = compiled.words.owed(after(self.residuals[location], ages), anchors)
+        owed = compiled.words.owed(after(self.residuals[location], ages), anchors, attempt.origin)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
         lasting = longer(compiled.obligation.owed, attempt.triggered, end)
-        reason = f"{still_required(owed, end)}{lasting}{doubt}{unborn(attempt.unborn, end)}"
+        waiting = still_required(owed, end, attempt.origin)
+        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
         alone = (self._alone(attempt.worse), self._alone(attempt.better))
         return Explanation(reason, owed, deadline=earlier(*alone, void=attempt.void))
 

@@ -26,7 +26,7 @@ from rvmon.logic.letters import TruthValue, holds
 from rvmon.logic.progress import Phase, after, instance, phase, step
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
 from rvmon.logic.state_formula import State
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant, format_ticks
 
 AT_DECISION = -2
 """The start of what was instantiated at the instant of the decision; no clock has this number."""
@@ -217,6 +217,7 @@ class Standing:
     """How the propositions of a requirement stood at a position.
 
     Attributes:
+        origin: the first instant of the run, ticks.
         gap: ticks between two positions; `None` if only samples are positions.
         begun: the position from which on it saw what is its own; `None`: it saw all.
         values: by proposition, its truth.
@@ -224,6 +225,7 @@ class Standing:
         before: by proposition and truth, the last position at which it had another one.
     """
 
+    origin: int
     gap: int | None
     begun: int | None
     values: Mapping[State, int]
@@ -253,17 +255,21 @@ def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow:
         flow: as it stood at the decision.
     """
 
+    def told(t: int) -> str:
+        return format_instant(t, flow.origin)
+
     def part(one: Part) -> str:
         match one:
             case str():
                 return one
-            case Place():
-                return format_ticks(one.ticks(decided, start))
+            case Place(base=base):
+                ticks = one.ticks(decided, start)
+                return format_ticks(ticks) if base is Base.AGE else told(ticks)
             case Turned(proposition=proposition, seen=seen):
                 since = flow.since[proposition]
                 verb = "became" if start < since == decided else "was"
-                long = f" (since {format_ticks(since)})" if since < decided else ""
-                return f"{verb} {seen} at {format_ticks(decided)}{long}"
+                long = f" (since {told(since)})" if since < decided else ""
+                return f"{verb} {seen} at {told(decided)}{long}"
             case AfterTrigger():
                 if start != triggered or start == decided:
                     return ""
@@ -271,14 +277,14 @@ def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow:
             case LastWith(proposition=proposition, value=value, verb=verb):
                 last = flow.last_with(proposition, value, decided)
                 if last is None and flow.begun is not None:
-                    return f"it had not {verb} since {format_ticks(flow.begun)}"
+                    return f"it had not {verb} since {told(flow.begun)}"
                 if last is None:
                     return f"it had never {verb} before"
                 if last == decided:
-                    return f"it came at {format_ticks(last)}, too late"
+                    return f"it came at {told(last)}, too late"
                 if flow.gap == 1 and one.lasting:
-                    return f"it had {verb} until {format_ticks(last + 1)}"
-                return f"it had last {verb} at {format_ticks(last)}"
+                    return f"it had {verb} until {told(last + 1)}"
+                return f"it had last {verb} at {told(last)}"
             case _:
                 assert_never(one)
 

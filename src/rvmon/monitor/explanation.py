@@ -14,7 +14,7 @@ from rvmon.spec.checked.specification import EndPolicy
 from rvmon.spec.print.printer import format_duration
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame, Decision
 
@@ -44,11 +44,13 @@ class Doubt:
     """Why the two runs of an attempt parted: what was not known.
 
     Attributes:
+        origin: the first instant of the run, ticks.
         position: where.
         outages: of the signals and events in question; that they ended may become known later.
         texts: of propositions that were unknown though all they read was known.
     """
 
+    origin: int
     position: int
     outages: tuple[Outage, ...]
     texts: tuple[str, ...]
@@ -58,27 +60,27 @@ class Doubt:
 
         >>> second = 10**9
         >>> stale = Outage("far", HealthKind.STALE, second + 1, 4 * second, second // 2)
-        >>> print(Doubt(2 * second, (stale,), ()))
+        >>> print(Doubt(0, 2 * second, (stale,), ()))
         `far` was not known from 1 s to 4 s: no update for 500 ms (stale)
         """
-        causes = [outage_in_words(outage) for outage in self.outages]
-        at = format_ticks(self.position)
+        causes = [outage_in_words(outage, self.origin) for outage in self.outages]
+        at = format_instant(self.position, self.origin)
         causes += [f"`{text}` was not known at {at}" for text in self.texts]
         return "; ".join(causes) or f"what was not known before still mattered at {at}"
 
 
-def outage_in_words(outage: Outage) -> str:
-    """From when to when a signal was not known, and why."""
+def outage_in_words(outage: Outage, origin: int) -> str:
+    """From when to when a signal was not known, and why; counted from an origin, ticks."""
     name = f"`{outage.name}`"
     if outage.why is HealthKind.ABSENT:
         return f"{name} has no source"
     if outage.why is HealthKind.MISSING:
         if outage.until is None:
             return f"{name} never had a value"
-        return f"{name} had no value before {format_ticks(outage.until)}"
+        return f"{name} had no value before {format_instant(outage.until, origin)}"
     # What is stale is so a tick after the time that it is given.
-    since = format_ticks(outage.since - (outage.why is HealthKind.STALE))
-    end = "on" if outage.until is None else f"to {format_ticks(outage.until)}"
+    since = format_instant(outage.since - (outage.why is HealthKind.STALE), origin)
+    end = "on" if outage.until is None else f"to {format_instant(outage.until, origin)}"
     match outage.why:
         case HealthKind.STALE:
             why = f"no update for {format_duration(outage.bound)} (stale)"
@@ -116,9 +118,9 @@ def earlier(
     return min(found, default=None)
 
 
-def still_required(required: str, end: int | None) -> str:
+def still_required(required: str, end: int | None, origin: int) -> str:
     """What an undecided attempt waits for, or waited for when the trace ended."""
-    when = "" if end is None else f" when the recording ended at {format_ticks(end)}"
+    when = "" if end is None else f" when the recording ended at {format_instant(end, origin)}"
     return f"still required{when}: {required}"
 
 
@@ -137,10 +139,10 @@ def unborn_of(
     return tuple(one for one in found if one.why is HealthKind.MISSING)
 
 
-def unborn(outages: Sequence[Outage], end: int | None) -> str:
+def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
     """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
     ended = "" if end is not None else " so far"
-    return "".join(f"; {outage_in_words(one)}{ended}" for one in outages)
+    return "".join(f"; {outage_in_words(one, origin)}{ended}" for one in outages)
 
 
 def longer(owed: Core, triggered: int, end: int | None) -> str:
@@ -168,6 +170,7 @@ class Undecided:
 
     Attributes:
         compiled: the requirement, or what judges its attempts in doubt.
+        origin: the first instant of the run, ticks.
         triggered: the instant of its trigger, ticks.
         worse: where the run stands that takes the unknown for the worse.
         better: the same for the better.
@@ -179,6 +182,7 @@ class Undecided:
     """
 
     compiled: CompiledRequirement
+    origin: int
     triggered: int
     worse: Token
     better: Token

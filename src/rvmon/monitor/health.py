@@ -15,7 +15,7 @@ from rvmon.spec.checked.names_read import sources_asked
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value, payloads_of
-from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
+from rvmon.trace.time import TIME_LIMIT, format_instant, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,9 +88,11 @@ class HealthLog:
         for name, ids in readers.items():
             if name in absent:
                 found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
-            elif name in first and self.began not in (None, first[name]):
+            elif name in first and self.began is not None and self.began != first[name]:
                 at = first[name]
-                since = "no value" if at is None else f"first value at {format_ticks(at)}"
+                since = "no value"
+                if at is not None:
+                    since = f"first value at {format_instant(at, self.began)}"
                 found.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
         for number, count, at in run.stale():
             ids = readers.get(names[number], ())

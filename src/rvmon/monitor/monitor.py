@@ -95,7 +95,7 @@ class Monitor(FedMonitor[Attempt]):
     def _many(self, raw: tuple[bytes, bytes, bytes, Any]) -> Sequence[Attempt]:
         from rvmon.monitor.records import recorded  # NumPy is needed for so many alone
 
-        return recorded(self._planned, raw)
+        return recorded(self._planned, raw, self._core.times()[0] or 0)
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)

@@ -33,20 +33,21 @@ from rvmon.monitor.network.network import Network, settled
 from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
 from rvmon.monitor.obligation_words import Words, all_of
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame
 
 
-def owed_at(network: Network, core: Core, position: int, words: Words) -> str:
+def owed_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:
     """What a formula at a position asks for, as text; empty if it is decided."""
-    return _Owing(network, words).at(core, position)
+    return _Owing(network, words, origin).at(core, position)
 
 
 class _Owing:
-    def __init__(self, network: Network, words: Words) -> None:
+    def __init__(self, network: Network, words: Words, origin: int) -> None:
         self.network = network
         self.words = words
+        self.origin = origin
         self.gap = network.positions.gap
 
     def at(self, core: Core, position: int) -> str:
@@ -75,7 +76,7 @@ class _Owing:
         text = f"`{self.words.text(core)}`"
         if high is None:
             return text
-        return f"{text} {word} {format_ticks(position * self.gap + high)}"
+        return f"{text} {word} {format_instant(position * self.gap + high, self.origin)}"
 
     def _spawned(self, core: Core, first: int) -> str:
         """What the first position asks for, of those from `first` on that are not known."""
@@ -270,11 +271,11 @@ class NetworkRuns:
         compiled = attempt.compiled
         position = token[1][0] // network.positions.gap
         core = compiled.obligation.owed
-        owed = owed_at(network, core, position, compiled.words)
+        owed = owed_at(network, core, position, compiled.words, attempt.origin)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        waiting = still_required(owed or "what lies ahead", end)
+        waiting = still_required(owed or "what lies ahead", end, attempt.origin)
         lasting = longer(core, attempt.triggered, end)
-        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end)}"
+        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
         alone = (_alone(self.worse, attempt.worse), _alone(self.better, attempt.better))
         return Explanation(reason, owed, earlier(*alone, void=attempt.void))
 

@@ -150,7 +150,7 @@ class Told:
     def _then(self, note: Note) -> tuple[int, ...]:
         return truths(note.words[_HEAD:], len(self._texts))
 
-    def _stood(self, note: Note) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
+    def _stood(self, note: Note, origin: int) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
         """The leaves, the propositions, and how these were."""
         words, propositions = note.state, self._propositions
         leaves = truths(words[2:], len(self._texts))
@@ -164,7 +164,11 @@ class Told:
             before[state, FALSE], before[state, TRUE] = map(_instant, words[at + 1 : at + 3])
             at += 3
         held = dict(zip(propositions, values, strict=True))
-        return leaves, values, Standing(self._gap, _instant(words[1]), held, since, before)
+        return (
+            leaves,
+            values,
+            Standing(*(origin, self._gap, _instant(words[1]), held, since, before)),
+        )
 
     def _letters(self, values: Sequence[int]) -> tuple[int, int]:
         """The letters of both readings."""
@@ -185,7 +189,7 @@ class Told:
         else:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
-                seen = truths_shown(self._texts, self._stood(note)[0])
+                seen = truths_shown(self._texts, self._stood(note, attempt.origin)[0])
         return {
             "reason": why.reason,
             "deadline": why.deadline,
@@ -197,7 +201,7 @@ class Told:
         }
 
     def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
-        leaves, values, flow = self._stood(note)
+        leaves, values, flow = self._stood(note, attempt.origin)
         passed = attempt.verdict is Verdict.PASS
         if note.flags & _NETWORK:
             position = note.words[6]
@@ -239,10 +243,11 @@ class Told:
         judged, worse, better, at = runs(note, at)
         outages = self._outages(words[at:])
         known = {one.name: one for one in outages if one.until is None}
-        doubt = self._doubt(words[4], leaves, outages)
+        doubt = self._doubt(attempt.origin, words[4], leaves, outages)
         names = frozenset().union(*self._reads)
         return judged, Undecided(
             self.compiled,
+            attempt.origin,
             attempt.triggered,
             worse,
             better,
@@ -292,7 +297,7 @@ class Told:
         return found
 
     def _doubt(
-        self, position: int, leaves: Sequence[int], outages: Sequence[Outage]
+        self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[Outage]
     ) -> Doubt | None:
         """What left an attempt open; `None`: nothing has."""
         if position == _NEVER:
@@ -310,7 +315,7 @@ class Told:
                 own = {name: lost[name] for name in sorted(names & lost.keys())}
                 found |= own
                 texts += [] if own else [text]
-        return Doubt(position, tuple(found.values()), tuple(texts))
+        return Doubt(origin, position, tuple(found.values()), tuple(texts))
 
     @cached_property
     def _reads(self) -> Sequence[frozenset[str]]:

@@ -23,7 +23,7 @@ from rvmon.monitor.cause import (
 from rvmon.spec.checked.classify import has_future, is_pulse
 from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
 from rvmon.spec.print.printer import format_formula
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Blame
 
 _APART = 50
@@ -219,12 +219,12 @@ class Words:
         first, last = (0, 0) if span is None else (span.start, span.end)
         return Blame(self.text(node), first, last, window, at)
 
-    def owed(self, residual: Residual, anchors: Sequence[int]) -> str:
+    def owed(self, residual: Residual, anchors: Sequence[int], origin: int) -> str:
         """What a residual still asks for, as text of the spec."""
         clauses = []
         for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
             parts = [
-                self._with_deadline(node, anchors, clock)
+                self._with_deadline(node, anchors, clock, origin)
                 for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
             ]
             clauses.append(all_of(parts))
@@ -234,14 +234,16 @@ class Words:
         """All that is reported of a residual, for clocks that were started at any time."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
-        return self.owed(residual, anchors), deadline(residual, anchors)
+        return self.owed(residual, anchors, 0), deadline(residual, anchors)
 
-    def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int) -> str:
+    def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int, origin: int) -> str:
         text = f"`{self.text(node)}`"
         if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
             return text
         last = anchors[clock] + node.high
-        return f"{text} {'by' if isinstance(node, Until) else 'until'} {format_ticks(last)}"
+        return (
+            f"{text} {'by' if isinstance(node, Until) else 'until'} {format_instant(last, origin)}"
+        )
 
 
 def all_of(parts: Sequence[str]) -> str:

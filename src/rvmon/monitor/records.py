@@ -43,6 +43,7 @@ class RecordedAttempts(LazyAttempts):
         records: array of `RECORD`, in the order of reports.
         numbers: array of `NUMBER` [records, most], the values that they captured.
         notes: of these records, and the letters that they refer to.
+        origin: the first instant of the run, ticks.
     """
 
     def __init__(
@@ -51,8 +52,10 @@ class RecordedAttempts(LazyAttempts):
         records: NDArray[Any],
         numbers: NDArray[Any],
         notes: tuple[bytes, Sequence[tuple[Any, bytes]]],
+        origin: int,
     ) -> None:
         self._planned = planned
+        self._origin = origin
         self._notes = notes
         self._ids = planned.packed.ids
         self._records = records
@@ -68,7 +71,7 @@ class RecordedAttempts(LazyAttempts):
     def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
         if isinstance(index, slice):
             chosen = self._records[index], self._numbers[index]
-            return RecordedAttempts(self._planned, *chosen, self._notes)
+            return RecordedAttempts(self._planned, *chosen, self._notes, self._origin)
         return self._attempt(self._records[index], self._numbers[index])
 
     def __iter__(self) -> Iterator[Attempt]:
@@ -96,6 +99,7 @@ class RecordedAttempts(LazyAttempts):
         made.verdict = VERDICTS[verdict]
         made.decision = DECISIONS[decision]
         made.in_doubt = bool(in_doubt)
+        made.origin = self._origin
         made._details = self._details
         made._noted = values, note
         return made
@@ -119,12 +123,15 @@ def _number_of(number: Any) -> float | None:
     return float(number["bits"].view(np.float64)) if kind == _REAL else None
 
 
-def recorded(planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any]) -> RecordedAttempts:
+def recorded(
+    planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any], origin: int
+) -> RecordedAttempts:
     """The decided attempts among records, in their order.
 
     Args:
         planned: the plan that judged.
         raw: of a run of the core: the records, what they captured, their notes, letters.
+        origin: its first instant, ticks.
     """
     records, numbers, words, letters = raw
     made = np.frombuffer(records, RECORD)
@@ -132,7 +139,7 @@ def recorded(planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any]) -> Reco
     settled = made["decision"] != _OPEN
     if not settled.all():
         made, captured = made[settled], captured[settled]
-    return RecordedAttempts(planned, made, captured, (words, letters))
+    return RecordedAttempts(planned, made, captured, (words, letters), origin)
 
 
 def report_of_run(
@@ -164,9 +171,13 @@ def report_of_run(
             name: fold([one for one, count in own.items() if count], complete=complete[name])
             for name, own in counts.items()
         },
-        attempts=RecordedAttempts(planned, made, captured, (words, letters))
-        if order is None
-        else RecordedAttempts(planned, made[order], captured[order], (words, letters)),
+        attempts=RecordedAttempts(
+            planned,
+            made if order is None else made[order],
+            captured if order is None else captured[order],
+            (words, letters),
+            origin,
+        ),
         counts=counts,
         dropped=_dropped(ids, counts, made),
         origin=origin,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from rvmon.report.wording import full_reason, without_attempts
 from rvmon.texts import shown
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
 
@@ -39,7 +40,7 @@ def junit_xml(
                 _accept(cases[-1], known.expected(report)[name])
         for one in report.illegal:
             cases.append(ET.Element("testcase", name=shown(f"{one.group}: {one.item}")))
-            ET.SubElement(cases[-1], "failure", message=shown(str(one)))
+            ET.SubElement(cases[-1], "failure", message=shown(one.told(report.origin)))
         add_suite(root, report.trace or spec.name, cases)
     for trace, message in broken:
         case = ET.Element("testcase", name="recording")
@@ -81,9 +82,7 @@ def _case(report: Report, name: str, verdict: Verdict, requirement: Requirement)
         ET.SubElement(case, "skipped", message=shown(f"{verdict}: {why}"))
         return case
     reasons = [
-        shown(
-            f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
-        )
+        shown(f"attempt {attempt.numbered}, {_when(attempt)}: {full_reason(attempt, report)}")
         for attempt in report.of(name, verdict)
     ] or ["a step was interrupted: what followed was not evaluated in full"]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
@@ -99,5 +98,7 @@ def _accept(case: ET.Element, why: str) -> None:
         failure.set("message", shown(f"known: {why}; {failure.get('message')}"))
 
 
-def _when(decided: int | None) -> str:
-    return "undecided" if decided is None else format_ticks(decided)
+def _when(attempt: Attempt) -> str:
+    if attempt.decided is None:
+        return "undecided"
+    return format_stamped(attempt.decided, attempt.origin)

@@ -12,7 +12,7 @@ from rvmon.report.pages import render
 from rvmon.report.wording import duration_text
 from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile, Stretch
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 
 _HEIGHT = 40
 _EDGE = 3
@@ -48,7 +48,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         f"{len(profile.columns):,} names.",
         lost=[
             f"Lost: {lost_names(one)}, "
-            f"from {format_ticks(one.since - profile.start)} on: {one.why}."
+            f"from {format_stamped(one.since, profile.start)} on: {one.why}."
             for one in profile.outages
         ],
         marks=[duration_text(span * part // 4) for part in range(5)],

@@ -12,7 +12,7 @@ from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_stamp, format_stamped
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 20
@@ -29,10 +29,10 @@ _FEW = 3
 def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterator[Table | Text]:
     """The names under the requirements that read them, and those that nothing reads by topic."""
     span = duration_text(profile.end - profile.start)
-    start = format_ticks(profile.start)
+    start = format_stamp(profile.start)
     yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
     for one in profile.outages:
-        since = format_ticks(one.since - profile.start)
+        since = format_stamped(one.since, profile.start)
         yield Text(f"lost: {lost_names(one)} from {since} on: {one.why}", "yellow")
     for title, columns in grouped(profile, requirements):
         table = Table(title=title, title_justify="left", title_style="bold", box=None)

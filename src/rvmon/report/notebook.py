@@ -47,7 +47,7 @@ def attempt_html(attempt: Attempt) -> str:
     Args:
         attempt: any; of its signals nothing is drawn, as it keeps no more than their values.
     """
-    report = report_of([attempt.requirement], [attempt], end=attempt.decided)
+    report = report_of([attempt.requirement], [attempt], origin=attempt.origin, end=attempt.decided)
     return _piece(attempt=attempt, facts_of=partial(_facts, report))
 
 

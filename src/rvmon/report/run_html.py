@@ -23,9 +23,9 @@ from rvmon.report.scene import Outline, Scene
 from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
-from rvmon.report.wording import forecast_sentence
+from rvmon.report.wording import forecast_sentence, instants_of
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.trace.time import TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 
@@ -137,6 +137,8 @@ def run_page(content: RunPage) -> str:
         facts=content.facts,
         script=script_data(content, panels, view),
         distinct=dict.fromkeys,
+        instants_of=instants_of,
+        stamped=format_stamped,
         forecast_sentence=forecast_sentence,
         has_unknown=has_unknown,
         headline=headline,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from rvmon.report.percent import counted
 from rvmon.report.terminal import wrapped
-from rvmon.report.wording import forecast_sentence, full_reason, without_attempts
+from rvmon.report.wording import forecast_sentence, full_reason, instants_of, without_attempts
 from rvmon.spec.checked.goals import BinKind
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredBin, CoveredGroup
@@ -103,7 +103,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     """Print the verdicts on one recording."""
     from rich.text import Text
 
-    end = "" if report.end is None else f"  to {format_ticks(report.end)}"
+    end = "" if report.end is None else f"  to {format_stamped(report.end, report.origin)}"
     console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
     if spec.requirements:
         console.print(_verdict_table(report, spec))
@@ -121,8 +121,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
         console.print(_goals_text(report.goals))
     _print_coverage(report.coverage, console)
     for one in report.illegal:
-        console.print(str(one), style="bold red", markup=False)
-    for line in health_lines(report.health):
+        console.print(one.told(report.origin), style="bold red", markup=False)
+    for line in health_lines(report.health, report.origin):
         console.print(line)
 
 
@@ -200,9 +200,8 @@ def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, wi
     from rvmon.diagnostics import snippet
     from rvmon.report.style import verdict_text
 
-    when = f"attempt {attempt.numbered}, triggered {format_ticks(attempt.triggered)}"
-    if attempt.decided is not None:
-        when += f", decided {format_ticks(attempt.decided)}"
+    first, *rest = instants_of(attempt)
+    when = "\n  ".join([f"attempt {attempt.numbered}, {first}", *rest])
     if attempt.robustness is not None:
         when += f", robustness {attempt.robustness:.4g}"
     text = Text.assemble(
@@ -234,8 +233,13 @@ def _runs_table(reports: Sequence[Report]) -> Table:
     return table
 
 
-def health_lines(found: Sequence[Health]) -> Iterator[str]:
-    """What was not known of the input, or noticed while reading it, a line each."""
+def health_lines(found: Sequence[Health], origin: int) -> Iterator[str]:
+    """What was not known of the input, or noticed while reading it, a line each.
+
+    Args:
+        found: of the run.
+        origin: its first instant, ticks.
+    """
     if found:
         yield "input health:"
     ignored: dict[str, list[str]] = {}
@@ -246,7 +250,7 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
         if health.kind in (HealthKind.UNIT, HealthKind.CLOCK, HealthKind.CUT):
             yield f"  {health.name}  warning: {health.remark}"
             continue
-        first = "" if health.first is None else f", first at {format_ticks(health.first)}"
+        first = "" if health.first is None else f", first at {format_stamped(health.first, origin)}"
         times = "once" if health.count == 1 else f"{health.count} times"
         readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
         remark = f": {health.remark}" if health.remark else ""

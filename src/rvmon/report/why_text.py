@@ -10,9 +10,9 @@ from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
-from rvmon.report.wording import forecast_sentence, with_lateness
+from rvmon.report.wording import forecast_sentence, instants_of, with_lateness
 from rvmon.spec.checked.specification import Requirement
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -48,18 +48,13 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
     attempt = breakdown.attempt
     if requirement.text:
         yield requirement.text
-    decided = "" if attempt.decided is None else f", decided {_instant(attempt.decided, breakdown)}"
-    yield f"triggered {_instant(attempt.triggered, breakdown)}{decided}"
+    yield from instants_of(attempt)
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
         yield with_lateness(attempt, breakdown.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
-
-
-def _instant(t: int, breakdown: Breakdown) -> str:
-    return format_ticks(t - breakdown.origin)
 
 
 def _axis(breakdown: Breakdown) -> Iterator[Text]:
@@ -72,7 +67,7 @@ def _axis(breakdown: Breakdown) -> Iterator[Text]:
     if attempt.decided is not None:
         column = _column(attempt.decided, breakdown)
         marks[column] = MARKS[attempt.verdict].sign
-    first, last = _instant(breakdown.start, breakdown), _instant(breakdown.end, breakdown)
+    first, last = (format_instant(t, attempt.origin) for t in (breakdown.start, breakdown.end))
     margin = " " * (WIDTH - PLOT)
     yield Text(f"{margin}{first}{last:>{PLOT - len(first)}}", style="dim")
     yield Text(f"{margin}{''.join(marks)}".rstrip())

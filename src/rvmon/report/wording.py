@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rvmon.spec.print.printer import format_duration
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -24,6 +26,18 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
     is_sure = verdict is Verdict.NOT_TRIGGERED
     why = "never triggered" if is_sure else "not known ever to be triggered"
     return f"{why}: {miss}" if miss else why
+
+
+def instants_of(attempt: Attempt) -> Sequence[str]:
+    """When an attempt was triggered and decided; where stamps stand beside, in a line each.
+
+    >>> instants_of(Attempt("R1", 1, 5, 9, Verdict.PASS))
+    ('triggered 5 ns, decided 9 ns',)
+    """
+    found = [f"triggered {format_stamped(attempt.triggered, attempt.origin)}"]
+    if attempt.decided is not None:
+        found.append(f"decided {format_stamped(attempt.decided, attempt.origin)}")
+    return (*found,) if attempt.origin else (", ".join(found),)
 
 
 def full_reason(attempt: Attempt, report: Report) -> str:
@@ -51,7 +65,8 @@ def with_lateness(attempt: Attempt, came: int | None) -> str:
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:
         return attempt.reason
     span = duration_text(came - attempt.blame.window[1])
-    return f"{attempt.reason}; it came at {format_ticks(came)}, {span} after the deadline"
+    when = format_instant(came, attempt.origin)
+    return f"{attempt.reason}; it came at {when}, {span} after the deadline"
 
 
 def duration_text(ticks: int) -> str:

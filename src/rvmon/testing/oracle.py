@@ -100,7 +100,7 @@ def report_on(
         record
         for one in followings.values()
         for followed in one.attempts
-        if (record := _record(followed)) is not None
+        if (record := _record(followed, origin)) is not None
     ]
     undetermined = [name for name, one in followings.items() if not one.is_determined]
     return report_of(
@@ -108,7 +108,7 @@ def report_on(
     )
 
 
-def _record(followed: Followed) -> Attempt | None:
+def _record(followed: Followed, origin: int) -> Attempt | None:
     """The record of an attempt; of one in doubt whose obligation was met there is none."""
     start = followed.start
     requirement = start.view.requirement
@@ -139,6 +139,7 @@ def _record(followed: Followed) -> Attempt | None:
         decision,
         in_doubt=start.sure is None,
         captured=dict(start.captured),
+        origin=origin,
     )
 
 

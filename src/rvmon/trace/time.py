@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
+from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from typing import Any
@@ -31,6 +32,9 @@ TICKS_PER_UNIT = {
 
 UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 """Units of stamps, as people call them."""
+
+_DATES_FROM = 946_684_800 * TICKS_PER_SECOND
+"""The year 2000: stamps from it on are counted from 1970, for no clock of a robot runs so long."""
 
 _FAR = 4e9
 """Seconds within `TIME_LIMIT`."""
@@ -169,3 +173,34 @@ def format_ticks(ticks: int) -> str:
     digits = f"{rest:09d}".rstrip("0")
     sign = "-" if ticks < 0 else ""
     return f"{sign}{whole}{'.' + digits if digits else ''} s"
+
+
+def format_instant(t: int, origin: int) -> str:
+    """An instant as people speak of it: since the first one of its run; both in ticks.
+
+    >>> format_instant(1_700_000_014_250_000_000, 1_700_000_000_000_000_000)
+    '14.25 s'
+    """
+    return format_ticks(t - origin)
+
+
+def format_stamp(t: int) -> str:
+    """An instant as its recording has it, ticks; with its date to the second, if it is one.
+
+    >>> format_stamp(14_250_000_000), format_stamp(1_700_000_014_250_000_000)
+    ('14.25 s', '1700000014.25 s, 2023-11-14 22:13:34 UTC')
+    """
+    if t < _DATES_FROM:
+        return format_ticks(t)
+    date = datetime.fromtimestamp(t // TICKS_PER_SECOND, UTC)
+    return f"{format_ticks(t)}, {date:%Y-%m-%d %H:%M:%S} UTC"
+
+
+def format_stamped(t: int, origin: int) -> str:
+    """An instant as people speak of it, and its stamp where that is another; both in ticks.
+
+    >>> format_stamped(14_250_000_000, 5_000_000_000), format_stamped(14_250_000_000, 0)
+    ('9.25 s (stamp 14.25 s)', '14.25 s')
+    """
+    beside = f" (stamp {format_stamp(t)})" if origin else ""
+    return f"{format_instant(t, origin)}{beside}"

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from rvmon.native import Record
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_instant
 from rvmon.verdict import Verdict
 
 
@@ -75,6 +75,7 @@ class Attempt(Record):
         blame: what failed, for `F`.
         forecast: `P` or `F` if no continuation can change that any more, though undecided.
         in_doubt: whether it is not known that there was a trigger: it is `I`, or undecided.
+        origin: the first instant of its run, ticks: people count seconds from it.
         robustness: how far from the other verdict at least, in SI units, where somebody measured.
     """
 
@@ -94,6 +95,7 @@ class Attempt(Record):
     forecast: Verdict | None = None
     robustness: float | None = None
     in_doubt: bool = False
+    origin: int = 0
 
     _repr_html_: ClassVar[Callable[[Attempt], str]]
     """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
@@ -130,15 +132,18 @@ class Attempt(Record):
         >>> print(Attempt("R1", 3, 0, 2 * 10**9, Verdict.FAIL, reason="`a` false at 2 s"))
         R1 #3 FAIL at 2 s: `a` false at 2 s
         """
-        when = f"triggered at {format_ticks(self.triggered)}"
+        when = f"triggered at {format_instant(self.triggered, self.origin)}"
         if self.decided is not None:
-            when = f"at {format_ticks(self.decided)}"
+            when = f"at {format_instant(self.decided, self.origin)}"
         mark = "?" if self.in_doubt else "#"
         headline = f"{self.requirement} {mark}{self.number} {self.verdict.name} {when}"
         return f"{headline}: {self.reason}" if self.reason else headline
 
 
-_EARLY = (*("requirement", "number", "triggered", "decided"), *("verdict", "decision", "in_doubt"))
+_EARLY = (
+    *("requirement", "number", "triggered", "decided"),
+    *("verdict", "decision", "in_doubt", "origin"),
+)
 """The fields that every record has from the start; the others may be worked out late."""
 
 _LATE = tuple(one.name for one in fields(Attempt) if one.name not in (*_EARLY, "robustness"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.spec.checked.goals import BinKind
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +63,12 @@ class IllegalHit:
     count: int
     first: int
 
-    def __str__(self) -> str:
-        """One sentence for people.
+    def told(self, origin: int) -> str:
+        """One sentence for people; the instant is counted from the origin of the run, ticks.
 
-        >>> print(IllegalHit("phase", "back", 2, 3 * 10**9))
+        >>> print(IllegalHit("phase", "back", 2, 3 * 10**9).told(0))
         illegal: `back` of `phase` was hit at 3 s, 2 times in all
         """
         often = f", {self.count} times in all" if self.count > 1 else ""
-        return (
-            f"illegal: `{self.item}` of `{self.group}` was hit at {format_ticks(self.first)}{often}"
-        )
+        when = format_stamped(self.first, origin)
+        return f"illegal: `{self.item}` of `{self.group}` was hit at {when}{often}"

@@ -107,7 +107,7 @@ class Report:
         from rvmon.verdict.rows import VerdictRow, attempt_row
 
         for attempt in self.attempts:
-            yield attempt_row(self.trace, self.origin, attempt)
+            yield attempt_row(self.trace, attempt)
         for name, verdict in self.verdicts.items():
             found = [one for one, count in self.counts[name].items() if count]
             if not found or fold(found) is not verdict:  # none, or there may have been others
@@ -156,9 +156,9 @@ class Report:
         Args:
             requirements: `Spec.requirements`, of which severity and tags are to stand there.
         """
-        from rvmon.verdict.report_json import encode, encoded, labels, timed_record
+        from rvmon.verdict.report_json import encode, encoded, labels, record
 
-        texts = ((one.requirement, timed_record(one, self.origin)) for one in self.attempts)
+        texts = ((one.requirement, record(one)) for one in self.attempts)
         return encode(
             {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
             {

@@ -22,30 +22,29 @@ if TYPE_CHECKING:
 _ALWAYS = frozenset({"number", "triggered", "decided", "verdict", "decision", "reason"})
 """Keys that every attempt has in JSON; the others are left out where they are empty."""
 
-_NAMES = tuple(one.name for one in fields(Attempt) if one.name != "requirement")
+_NAMES = tuple(one.name for one in fields(Attempt) if one.name not in ("requirement", "origin"))
 
 
 def record(attempt: Attempt) -> dict[str, object]:
-    """An attempt by the keys that it has in JSON; its requirement stands elsewhere."""
+    """An attempt by the keys that it has in JSON; its requirement and origin stand elsewhere.
+
+    Instants are ticks, and seconds after the origin where their keys say so.
+    """
     shown: dict[str, object] = {}
     for name in _NAMES:
         value = getattr(attempt, name)
         if name in _ALWAYS or (value not in (None, "", {}) and value is not False):
             shown[name] = value
-    return shown
+    return shown | seconds(attempt)
 
 
-def timed_record(attempt: Attempt, origin: int) -> dict[str, object]:
-    """The same, and its instants in seconds after the origin (ticks)."""
-    shown = record(attempt)
-    shown["triggered_s"] = seconds(attempt.triggered, origin)
-    shown["decided_s"] = None if attempt.decided is None else seconds(attempt.decided, origin)
-    return shown
-
-
-def seconds(instant: int, origin: int) -> float:
-    """An instant in seconds after the origin; both in ticks."""
-    return (instant - origin) / TICKS_PER_SECOND
+def seconds(attempt: Attempt) -> dict[str, float | None]:
+    """The trigger and the decision of an attempt in seconds since the origin of its run."""
+    found = {"triggered_s": attempt.triggered, "decided_s": attempt.decided}
+    return {
+        name: None if t is None else (t - attempt.origin) / TICKS_PER_SECOND
+        for name, t in found.items()
+    }
 
 
 def encoded(value: object) -> str:
@@ -145,7 +144,7 @@ def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
     try:
         document = msgspec.json.decode(text, type=ReportJson)
         attempts = [
-            msgspec.convert({**shown, "requirement": name}, Attempt)
+            msgspec.convert(shown | {"requirement": name, "origin": document.origin}, Attempt)
             for name, entry in document.requirements.items()
             for shown in entry.attempts
         ]

@@ -57,24 +57,15 @@ class VerdictRow(NamedTuple):
 
 
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:
-    """The rows of a recording that broke off: that it did, then what was decided before.
-
-    Its attempts have no seconds, as these are counted from an origin that is known at the end only.
-    """
+    """The rows of a recording that broke off: that it did, then what was decided before."""
     yield VerdictRow(recording, error=error)
     for attempt in before:
-        yield attempt_row(recording, None, attempt)._replace(error=error)
+        yield attempt_row(recording, attempt)._replace(error=error)
 
 
-def attempt_row(recording: str, origin: int | None, attempt: Attempt) -> VerdictRow:
-    """The row of an attempt.
-
-    Args:
-        recording: its name.
-        origin: the instant from which people count seconds, ticks; `None` if that is not known.
-        attempt: what the row says.
-    """
-    decided = attempt.decided
+def attempt_row(recording: str, attempt: Attempt) -> VerdictRow:
+    """The row of an attempt in a recording."""
+    since = seconds(attempt)
     return VerdictRow(
         recording,
         attempt.requirement,
@@ -84,10 +75,10 @@ def attempt_row(recording: str, origin: int | None, attempt: Attempt) -> Verdict
         attempt.decision.value,
         attempt.in_doubt,
         attempt.triggered,
-        decided,
+        attempt.decided,
         attempt.deadline,
-        None if origin is None else seconds(attempt.triggered, origin),
-        None if origin is None or decided is None else seconds(decided, origin),
+        since["triggered_s"],
+        since["decided_s"],
         attempt.robustness,
         encoded(attempt.captured) if attempt.captured else "",
         attempt.reason,

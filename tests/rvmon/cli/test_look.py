@@ -76,7 +76,7 @@ def test_what_a_log_lost_is_told_and_shaded(tmp_path, capsys):
     rows = [(t, t / 1e6, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
     assert main(["look", str(path)]) == 0
-    assert "lost: everything from 0.1 s on: the logger dropped" in capsys.readouterr().out
+    assert "lost: everything from 0.1 s (stamp 1.1 s) on:" in capsys.readouterr().out
     assert main(["look", str(path), "-o", str(tmp_path / "a.html")]) == 0
     assert 'class="lost"' in (tmp_path / "a.html").read_text()
 

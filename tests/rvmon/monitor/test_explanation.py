@@ -27,7 +27,7 @@ CASES = {
         "upon go\nthen within 3 s released",
         [(1, {}), (12.1, {"go": True})],
         20,
-        "`released` had to occur between 12.1 s and 15.1 s, and did not; "
+        "`released` had to occur between 11.1 s and 14.1 s, and did not; "
         "it had never occurred before",
         "within 3 s released",
         (12_100_000_000, 15_100_000_000),
@@ -36,7 +36,7 @@ CASES = {
         "upon go\nthen within 3 s released",
         [(1, {"released": True}), (12, {"go": True})],
         20,
-        "`released` had to occur between 12 s and 15 s, and did not; it had last occurred at 1 s",
+        "`released` had to occur between 11 s and 14 s, and did not; it had last occurred at 0 s",
         "within 3 s released",
         (12_000_000_000, 15_000_000_000),
     ),
@@ -44,8 +44,8 @@ CASES = {
         "upon go\nthen for 2 s not released",
         [(4, {"go": True}), (4.75, {"released": True})],
         None,
-        "`released` occurred at 4.75 s, 0.75 s after the trigger; "
-        "it was not to occur from 4 s to 6 s",
+        "`released` occurred at 0.75 s, 0.75 s after the trigger; "
+        "it was not to occur from 0 s to 2 s",
         "for 2 s not released",
         (4_000_000_000, 6_000_000_000),
     ),
@@ -53,7 +53,7 @@ CASES = {
         "upon go\nthen for 2 s near",
         [(4, {"go": True, "near": True}), (5, {"near": False})],
         None,
-        "`near` became false at 5 s, 1 s after the trigger; it had to stay true until 6 s",
+        "`near` became false at 1 s, 1 s after the trigger; it had to stay true until 2 s",
         "for 2 s near",
         (4_000_000_000, 6_000_000_000),
     ),
@@ -77,7 +77,7 @@ CASES = {
         "upon go\nthen immediately slow",
         [(2, {"slow": False, "go": True})],
         None,
-        "`slow` was false at 2 s; it had to be true then",
+        "`slow` was false at 0 s; it had to be true then",
         "slow",
         (2_000_000_000, 2_000_000_000),
     ),
@@ -94,7 +94,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_failure_names_obligation_window_and_place(name):
-    """The reason is one sentence, and the blame points into the text of the spec."""
+    """A sentence counts from the first sample; the blame points into the spec's text."""
     requirement, samples, end, reason, blamed, window = CASES[name]
     spec, attempts = run(requirement, samples, end)
     [failed] = [a for a in attempts if a.verdict == "F"]
@@ -136,7 +136,7 @@ def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     _, [left] = run("upon go\nthen within 3 s released", samples, 2)
     assert (
         left.reason
-        == "still required when the recording ended at 2 s: `within 3 s released` by 4 s; "
+        == "still required when the recording ended at 1 s: `within 3 s released` by 3 s; "
         "a recording more than 2 s longer would have decided it"
     )
     assert left.deadline == 4 * 10**9

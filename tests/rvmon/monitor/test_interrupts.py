@@ -216,7 +216,9 @@ def test_a_torn_run_is_told_in_every_output() -> None:
         with pytest.raises(KeyboardInterrupt):
             _struck(monitor, _Strike(place))
         report = monitor.finish_ns(4 * _S)
-        found = [line for line in health_lines(report.health) if "interrupted" in line]
+        found = [
+            line for line in health_lines(report.health, report.origin) if "interrupted" in line
+        ]
         assert bool(found) is ("was not evaluated in full" in junit_xml([report], spec.checked))
         lines |= {line.partition(":")[0] for line in found}
-    assert "  monitor  interrupted once, first at 2 s" in lines
+    assert "  monitor  interrupted once, first at 1 s (stamp 2 s)" in lines

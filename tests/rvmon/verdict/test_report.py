@@ -13,11 +13,18 @@ from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.report import Report, report_of
 
+ORIGIN = 500_000_000
+
 
 def attempts() -> list[Attempt]:
     """One attempt of each verdict, the first with everything that a record can hold."""
     return [
-        Attempt("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN, deadline=9, required="F p"),
+        Attempt(
+            *("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN),
+            deadline=9,
+            required="F p",
+            origin=ORIGIN,
+        ),
         Attempt(
             "R2",
             1,
@@ -30,15 +37,16 @@ def attempts() -> list[Attempt]:
             blame=Blame("F p", 3, 6, (0, None), (1, 2)),
             forecast=Verdict.PASS,
             robustness=0.0,
+            origin=ORIGIN,
         ),
-        Attempt("R1", 1, 0, 2_500_000_000, Verdict.PASS, Decision.HELD_TO_END),
+        Attempt("R1", 1, 0, 2_500_000_000, Verdict.PASS, Decision.HELD_TO_END, origin=ORIGIN),
     ]
 
 
 def report() -> Report:
     health = Health(HealthKind.STALE, "x", 3, 17, ("R1",), "late")
     return report_of(
-        ["R1", "R2", "R3"], attempts(), health=[health], trace="run.csv", origin=500_000_000, end=7
+        ["R1", "R2", "R3"], attempts(), health=[health], trace="run.csv", origin=ORIGIN, end=7
     )
 
 
@@ -54,7 +62,7 @@ def test_order_and_fold() -> None:
 def test_what_was_not_kept_counts() -> None:
     """Verdicts and counts speak of dropped attempts as well, also when read back."""
     dropped = {"R1": {Verdict.FAIL: 3, Verdict.PASS: 10}, "R3": {Verdict.INCONCLUSIVE: 1}}
-    got = report_of(["R1", "R2", "R3"], attempts(), dropped=dropped)
+    got = report_of(["R1", "R2", "R3"], attempts(), dropped=dropped, origin=ORIGIN)
     assert got.verdicts == {"R1": "F", "R2": "F", "R3": "I"}
     assert got.counts["R1"] == {"P": 11, "F": 3, "I": 0}
     assert got.dropped == dropped

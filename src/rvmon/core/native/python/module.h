@@ -33,6 +33,7 @@ typedef struct {
     note_copy note;            /* from which `details` gives what is not set, unless NOTED is set */
     long long number;
     long long triggered;
+    long long origin;          /* the first instant of the run */
     char in_doubt;
 } attempt_record;
 

@@ -98,6 +98,7 @@ static PyObject *values_of(const rv_number *values, int32_t count)
 static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_number *captured)
 {
     const int32_t count = (captured == NULL) ? 0 : c->captured[told->requirement];
+    const int64_t began = rv_times_of(c->m).began;
     attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
     if (made == NULL) {
         return NULL;
@@ -109,6 +110,7 @@ static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_nu
     made->objects[DETAILS] = Py_NewRef(c->details);
     made->number = told->number;
     made->triggered = told->triggered;
+    made->origin = (began != RV_NO_TIME) ? began : 0;
     made->objects[DECIDED] = (told->decision == (uint8_t)RV_OPEN)
         ? Py_NewRef(Py_None) : PyLong_FromLongLong(told->decided);
     made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;

@@ -116,6 +116,7 @@ static PyGetSetDef record_getset[] = {
 static PyMemberDef record_members[] = {
     {"number", T_LONGLONG, offsetof(attempt_record, number), 0, NULL},
     {"triggered", T_LONGLONG, offsetof(attempt_record, triggered), 0, NULL},
+    {"origin", T_LONGLONG, offsetof(attempt_record, origin), 0, NULL},
     {"in_doubt", T_BOOL, offsetof(attempt_record, in_doubt), 0, NULL},
     RVMON_OBJECT("requirement", REQUIREMENT),
     RVMON_OBJECT("decided", DECIDED),
