@@ -12,18 +12,20 @@ def random_model(seed: int) -> str:
 
     All parts of the model occur: integer guards and updates, resets to a number, binary, broadcast
     and urgent channels, clock guards on receivers of broadcasts, urgent and committed locations,
-    strict and equal bounds; in every second model a record, an array, and functions with local
-    variables, branches, loops, parameters by value and by reference, which also set clocks.
+    strict and equal bounds, edges that branch; in every second model a record, an array, and
+    functions with local variables, branches, loops, parameters by value and by reference, which
+    also set clocks; in every third one priorities of channels, automata or both.
     """
-    return _RandomModel(Random(seed), functions=seed % 2 == 1).model()
+    return _RandomModel(Random(seed), functions=seed % 2 == 1, ranked=seed % 3 == 0).model()
 
 
 class _RandomModel:
     """One throw of everything."""
 
-    def __init__(self, random: Random, functions: bool) -> None:
+    def __init__(self, random: Random, functions: bool, ranked: bool) -> None:
         self._random = random
         self._functions = functions
+        self._ranked = ranked
         self._clocks = ["x", "y", "z"][: random.choice((1, 2, 2, 2, 3))]
         self._largest = 2 if len(self._clocks) == 3 else random.choice((1, 2, 3))
         self._automata = random.choice((1, 2, 2, 3))
@@ -38,6 +40,8 @@ class _RandomModel:
             lines += self._computing()
         for index in range(self._automata):
             lines += self._automaton(index)
+        if self._ranked:
+            lines += self._priorities()
         lines += [f"query: {query}" for query in self._queries()]
         return "\n".join(lines) + "\n"
 
@@ -53,12 +57,29 @@ class _RandomModel:
                 invariant = f" invariant {self._clock()} {sign} {random.randint(1, self._largest)}"
             lines.append(f"  {kind if place else ''}location l{place}{invariant}")
         lines.append("  start l0")
-        lines += [self._edge(count) for _ in range(random.randint(2, 5))]
+        for _ in range(random.randint(2, 5)):
+            lines += self._edge(count)
         return [*lines, "}"]
 
-    def _edge(self, count: int) -> str:
+    def _priorities(self) -> list[str]:
+        """Lists of priorities in which each separator is drawn."""
         random = self._random
-        text = f"  edge l{random.randrange(count)} -> l{random.randrange(count)}"
+        lines = []
+        for begin, names in (
+            ("chan priority ", [*self._channels, "default"]),
+            ("system ", [f"P{index}" for index in range(self._automata)]),
+        ):
+            if begin == "system " or random.random() < 0.7:
+                random.shuffle(names)
+                signs = [random.choice((" < ", " < ", ", ")) for _ in names[1:]]
+                pairs = zip(names, [*signs, ""], strict=True)
+                lines.append(begin + "".join(name + sign for name, sign in pairs))
+        return lines
+
+    def _edge(self, count: int) -> list[str]:
+        """An edge, or the branches of one."""
+        random = self._random
+        text = f"  edge l{random.randrange(count)} -> "
         sync, guards = "", []
         if self._channels and random.random() < 0.5:
             channel, end = random.choice(self._channels), random.choice("!?")
@@ -85,6 +106,15 @@ class _RandomModel:
                     )
                 )
             )
+        when = f" when {' and '.join(guards)}" if guards else ""
+        branches = 2 if random.random() < 0.15 else 1
+        return [
+            f"{text}l{random.randrange(count)}{when}{sync}{self._updates()} weight {1 / branches}"
+            for _ in range(branches)
+        ]
+
+    def _updates(self) -> str:
+        random = self._random
         updates = []
         if random.random() < 0.6:
             updates.append(f"{self._clock()} = {random.choice((0, 0, 0, 0, 1))}")
@@ -99,8 +129,7 @@ class _RandomModel:
                      "w[r.n % 2] = v <? 1", "r.b = some(w, 0)", "w[0] = w[1] = next(v)")
                 )
             )  # fmt: skip
-        when = f" when {' and '.join(guards)}" if guards else ""
-        return text + when + sync + (f" do {', '.join(updates)}" if updates else "")
+        return f" do {', '.join(updates)}" if updates else ""
 
     def _computing(self) -> list[str]:
         """A record, an array and functions over them."""

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 from math import floor
 
 import networkx as nx
@@ -35,19 +34,17 @@ from rvmon.timed.model.guards import (
     speaks_of_deadlock,
     with_deadlock,
 )
-from rvmon.timed.model.network import Edge, LeadsToFormula, Network, Query
+from rvmon.timed.model.network import LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,
     act,
-    channel_index,
     compares,
+    every_action,
     initial_configuration,
-    is_ready,
     wait,
 )
-from rvmon.timed.runs.run import Action
 
 
 class TooManyRegionsError(Exception):
@@ -134,7 +131,7 @@ class RegionGraph:
 
     def actions(self, region: Region) -> Iterator[Region]:
         """The regions behind all actions that are possible now."""
-        for action in _all_actions(self._network, region.now):
+        for action in every_action(self._network, region.now):
             try:
                 after = act(self._network, region.now, action)
             except InvalidRunError:
@@ -336,31 +333,3 @@ def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, b
         starts, lambda region: region.timer <= bound and satisfies(region.now, inside)
     )
     return any(later is not None and later.timer > bound for later in map(graph.later, waiting))
-
-
-def _all_actions(network: Network, now: Configuration) -> Iterator[Action]:
-    """Every choice of edges that could be an action, whether or not the rules allow it."""
-    edges = [
-        (index, edge)
-        for index, automaton in enumerate(network.automata)
-        for edge in automaton.edges
-        if is_ready(now, index, edge)
-    ]
-    for sender, first in edges:
-        if first.sync is None:
-            yield Action(((sender, first),))
-        elif first.sync.sends:
-            channel = channel_index(now, first)
-            choices: list[list[tuple[int, Edge] | None]] = []
-            for index in range(len(network.automata)):
-                able: list[tuple[int, Edge] | None] = [
-                    (other, edge)
-                    for other, edge in edges
-                    if other == index != sender
-                    and edge.sync is not None
-                    and not edge.sync.sends
-                    and channel_index(now, edge) == channel
-                ]
-                choices.append([*able, None])
-            for chosen in product(*choices):
-                yield Action(((sender, first), *(other for other in chosen if other is not None)))

@@ -9,12 +9,13 @@ operators inside, are not UPPAAL's: their text is kept as a comment.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from xml.sax.saxutils import escape
 
 from rvmon.analysis.graph import quoted
 from rvmon.export.names import Names, Thing, function_lines, type_text, updates_text
 from rvmon.texts import shown, shown_line
-from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
+from rvmon.timed.model.expressions import TRUE, PathFormula, Slot, Variable
 from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (
     Automaton,
@@ -47,7 +48,7 @@ def uppaal_xml(network: Network) -> str:
         for index, automaton in enumerate(network.automata)
         for line in _template(names, index, automaton)
     ]
-    lines = [f"  <system>system {', '.join(names.automata)};</system>", "  <queries>"]
+    lines = [f"  <system>system {_text(_system(names))};</system>", "  <queries>"]
     for query in network.queries:
         lines += _query(names, query)
     lines += ["  </queries>", "</nta>", ""]
@@ -63,6 +64,27 @@ def left_out(network: Network) -> list[Query]:
     return [query for query in network.queries if not _formula(names, query.formula)]
 
 
+def _system(names: Names) -> str:
+    """All automata, which stand in the order of their priorities."""
+    priorities = names.network.priorities
+    ranks = (0,) * len(names.automata) if priorities is None else priorities.automata
+    text = names.automata[0]
+    for (before, rank), name in zip(pairwise(ranks), names.automata[1:], strict=True):
+        text += (" < " if rank > before else ", ") + name
+    return text
+
+
+def _channel_priorities(names: Names) -> Iterator[str]:
+    priorities = names.network.priorities
+    if priorities is None or {*priorities.channels} <= {priorities.internal}:
+        return
+    levels = {priorities.internal: ["default"]}
+    for index, rank in enumerate(priorities.channels):
+        if rank != priorities.internal:
+            levels.setdefault(rank, []).append(names.slot(Slot(index), names.channels))
+    yield f"chan priority {' < '.join(', '.join(levels[rank]) for rank in sorted(levels))};"
+
+
 def _declarations(network: Network, names: Names) -> str:
     lines = [shown_line(f'// network {network.name} "{network.title}"')]
     if network.unit is not None:
@@ -74,6 +96,7 @@ def _declarations(network: Network, names: Names) -> str:
         channel = network.channels[thing.first]
         kind = ("urgent " if channel.urgent else "") + ("broadcast " if channel.broadcast else "")
         lines.append(f"{kind}chan {thing.declarator};")
+    lines += _channel_priorities(names)
     for thing in names.variables:
         members = network.variables[thing.first : thing.first + thing.length]
         lines.append(f"{type_text(members[0])} {thing.declarator} = {_initial(thing, members)};")

@@ -23,6 +23,7 @@ def test_random_networks_come_back(seed):
     assert again.automata == network.automata
     assert again.variables == network.variables
     assert again.channels == network.channels
+    assert again.priorities == network.priorities
     beyond = ("[<=", "EF ", "AG ", "AF ")
     plain = [q for q in network.queries if not any(part in q.text for part in beyond)]
     assert len(plain) == 7

@@ -22,7 +22,7 @@ from rvmon.timed.language.layout import (
     variable_of,
 )
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.symbols import flat
+from rvmon.timed.language.symbols import flat, leaves
 from rvmon.timed.model.expressions import Slot, Variable
 from rvmon.timed.model.network import Channel, Clock
 from rvmon.timed.model.operators import BaseType
@@ -61,6 +61,7 @@ class Parts:
     """What the declarations of a model have made so far.
 
     Attributes:
+        levels: the priorities of channels, if any are declared; `None` is all others.
         are_split: whether some edge as written is several, of which clocks decide.
     """
 
@@ -68,6 +69,7 @@ class Parts:
     variables: list[Variable] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
     channel_spans: list[Span] = field(default_factory=list)
+    levels: dict[int | None, int] = field(default_factory=dict)
     are_split: bool = False
 
 
@@ -139,6 +141,9 @@ def declare(
     """Give all declared names a meaning in `scope`, and what they declare a place in `parts`."""
     for item in declared:
         with findings.collect():
+            if isinstance(item, syntax.PrioritiesText):
+                _rank(item, scope, parts, resolver)
+                continue
             refuse_double(item.name, item.span, scope)
             scope.places[item.name] = item.span
             before = len(parts.variables)
@@ -147,7 +152,37 @@ def declare(
                 _warn_of_range(parts.variables[before], item, findings)
 
 
-def _warn_of_range(variable: Variable, item: syntax.Declared, findings: Findings) -> None:
+def _rank(written: syntax.PrioritiesText, scope: Scope, parts: Parts, resolver: Resolver) -> None:
+    """Give channels their priorities; `None` is all that are not named."""
+    if parts.levels:
+        fix = "write one list, from the lowest to the highest"
+        raise model_error("TA003", "a second list of priorities", written.span, fix)
+    for level, names in enumerate(written.levels):
+        for name in names:
+            for one in _ranked(name, scope, resolver):
+                if one in parts.levels:
+                    raise model_error("TA003", "a second priority of one channel", name.span)
+                parts.levels[one] = level
+    if None not in parts.levels:
+        fix = "name `default` too: all other channels, and steps without any"
+        raise model_error("TA004", "priorities without `default`", written.span, fix)
+
+
+def _ranked(name: syntax.Expression, scope: Scope, resolver: Resolver) -> Iterator[int | None]:
+    """The channels that a name in a list of priorities means."""
+    if isinstance(name, syntax.Name) and name.name == "default":
+        yield None
+        return
+    for leaf in leaves(resolver.symbol(name, scope)):
+        match leaf:
+            case PlacedSymbol(BaseType.CHANNEL, Slot(first, ())):
+                yield first
+            case _:
+                fix = "name channels, their arrays or elements, and `default`"
+                raise model_error("TA004", "this is no channel", name.span, fix)
+
+
+def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -> None:
     count = variable.high - variable.low + 1
     if count > WIDE:
         message = f"`{item.name}` has {count:,} values: each that it takes makes states of its own"
@@ -155,7 +190,7 @@ def _warn_of_range(variable: Variable, item: syntax.Declared, findings: Findings
         findings.add(finding("TA005", message, item.span, fix, severity=Severity.WARNING))
 
 
-def _symbol(item: syntax.Declared, scope: Scope, parts: Parts, resolver: Resolver) -> Symbol:
+def _symbol(item: syntax.Named, scope: Scope, parts: Parts, resolver: Resolver) -> Symbol:
     if isinstance(item, syntax.FunctionText):
         return FunctionSymbol(item, scope)
     kind = resolver.type(item.type, scope)

@@ -24,7 +24,8 @@ class Document:
 
     Attributes:
         unit: ticks of one unit of the model's time; `None` if it says nothing.
-        system: the automata and templates that run; `None`: all that are there.
+        system: the automata and templates that run, each with its priority; `None`: all that are
+            there.
         open_ints: whether `int` without a range is allowed, as UPPAAL's 16 bits.
     """
 
@@ -35,7 +36,7 @@ class Document:
     declarations: tuple[Declared, ...]
     templates: tuple[Template, ...]
     instances: tuple[Instance, ...]
-    system: tuple[Name, ...] | None
+    system: tuple[tuple[Name, int], ...] | None
     queries: tuple[QueryText, ...]
     signals: tuple[SignalText, ...] = ()
     open_ints: bool = False

@@ -28,6 +28,7 @@ from rvmon.timed.model.network import (
     LeadsToFormula,
     Mean,
     Network,
+    Priorities,
     Query,
     QueryFormula,
     Signal,
@@ -57,7 +58,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     resolver = Resolver(functions, open_ints=document.open_ints, diagonals=diagonals)
     top = Scope()
     declare(document.declarations, top, parts, resolver, findings)
-    automata, edges = list[Automaton](), 0
+    automata, ranks, edges = list[Automaton](), list[int](), 0
     symbols: dict[AutomatonKey, AutomatonSymbol] = {}
     for process in processes_of(document, top, resolver, findings):
         declare(process.template.declarations, process.scope, parts, resolver, findings)
@@ -65,6 +66,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         key = (process.family, process.arguments)
         symbols[key] = AutomatonSymbol(len(automata), locations, process.scope)
         automata.append(automaton_of(process, locations, parts, resolver, findings))
+        ranks.append(process.priority)
         edges += len(automata[-1].edges)
         if edges > MAX_EDGES:
             fix = "narrow the types of parameters and selections"
@@ -104,8 +106,18 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         signals,
         tuple(findings.found.values()),
         names,
+        _priorities(parts, ranks),
         has_split_edges=bool(diagonals.places) or parts.are_split,
     )
+
+
+def _priorities(parts: Parts, automata: Sequence[int]) -> Priorities | None:
+    levels, above = parts.levels, 1 + max(automata)
+    if len({*levels.values()}) <= 1 and above == 1:
+        return None
+    default = above * levels.get(None, 0)
+    channels = (above * levels.get(c, levels.get(None, 0)) for c in range(len(parts.channels)))
+    return Priorities(tuple(automata), default, tuple(channels))
 
 
 def _with_constants(

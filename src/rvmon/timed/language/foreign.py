@@ -36,10 +36,6 @@ _RATES: Reason = (
     "all clocks run all the time: reset one where it would be stopped",
 )
 _TEXTS: Reason = ("texts are not supported", "use numbers")
-_PRIORITIES: Reason = (
-    "priorities are not supported: a step would depend on which others the clocks forbid",
-    "order the steps by guards on variables, or by committed locations",
-)
 
 _DECLARING: dict[str, Reason] = {
     "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
@@ -53,7 +49,6 @@ _DECLARING: dict[str, Reason] = {
 }
 _COMPUTING: dict[str, Reason] = {
     **_DECLARING,
-    "priority": _PRIORITIES,
     **dict.fromkeys(("break", "continue", "switch"), _JUMPS),
 }
 _UPDATING: dict[str, Reason] = {
@@ -104,8 +99,6 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
         return "a constant without a type", f"write const int {old[1]} = {old[2]}"
     if _FRACTION.match(text, start):
         return _FRACTIONS
-    if rule == "system" and found in ("<", ">"):
-        return _PRIORITIES
     if found in ("=", ":=") and rule in ("updates", "declarations"):
         return "an assignment is no value", "write one assignment after the other"
     if found == "'":

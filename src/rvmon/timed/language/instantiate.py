@@ -35,6 +35,7 @@ class Process:
     arguments: tuple[int, ...]
     template: automaton_syntax.Template
     scope: Scope
+    priority: int
 
 
 def processes_of(
@@ -53,20 +54,26 @@ def processes_of(
     system = document.system
     if system is None:
         system = tuple(
-            syntax.Name(name, family.span) for name, family in families.items() if name not in used
+            (syntax.Name(name, family.span), 0)
+            for name, family in families.items()
+            if name not in used
         )
     processes: list[Process] = []
-    for name in system:
+    for name, priority in system:
         with findings.collect():
             if name.name not in families:
                 fix = did_you_mean(name.name, list(families))
                 raise model_error("TA002", f"no automaton `{name.name}`", name.span, fix)
-            processes += _instances(families[name.name], families, top, resolver)
+            processes += _instances(families[name.name], families, top, resolver, priority)
     return processes
 
 
 def _instances(
-    family: Family, families: Mapping[str, Family], top: Scope, resolver: Resolver
+    family: Family,
+    families: Mapping[str, Family],
+    top: Scope,
+    resolver: Resolver,
+    priority: int,
 ) -> Iterator[Process]:
     """One process for each choice of the parameters' values."""
     _refuse_circle(family, families)
@@ -85,7 +92,7 @@ def _instances(
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
         scope.prefix = f"{family.name}{listed}."
-        yield Process(family.name, arguments, template, scope)
+        yield Process(family.name, arguments, template, scope, priority)
 
 
 def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:

@@ -321,4 +321,13 @@ class FunctionText:
     span: Span
 
 
-Declared = Declaration | TypeDefinition | FunctionText
+@dataclass(frozen=True, slots=True)
+class PrioritiesText:
+    """`chan priority a, b < default`: channels of one priority together, from the lowest."""
+
+    levels: tuple[tuple[Expression, ...], ...]
+    span: Span
+
+
+Named = Declaration | TypeDefinition | FunctionText
+Declared = Named | PrioritiesText

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from lark import Token, Tree, v_args
@@ -64,8 +64,9 @@ class SyntaxBuilder(QueryBuilder):
             raise model_error("TA001", "this is no unit of time", self._span(meta), fix)
         return Tree("unit", [number * TICKS_PER_UNIT[unit]])
 
-    def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
-        return Tree("system_line", [self._name(i) for i in items if i.type == "NAME"])
+    def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[tuple[syntax.Name, int]]:
+        ranked = enumerate(_levels(item for item in items if item.type in ("NAME", "LESS")))
+        return Tree("system_line", [(self._name(n), rank) for rank, names in ranked for n in names])
 
     def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
         return (
@@ -177,6 +178,9 @@ class SyntaxBuilder(QueryBuilder):
 
     def values(self, meta: Meta, items: Sequence[Any]) -> syntax.Values:
         return syntax.Values(tuple(items), self._span(meta))
+
+    def priorities(self, meta: Meta, items: Sequence[Any]) -> syntax.PrioritiesText:
+        return syntax.PrioritiesText(tuple(map(tuple, _levels(items))), self._span(meta))
 
     def typedef(self, meta: Meta, items: Sequence[Any]) -> syntax.TypeDefinition:
         kind, name, *sizes = items
@@ -296,6 +300,17 @@ class SyntaxBuilder(QueryBuilder):
 
     def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
         return syntax.Call(str(items[0]), items[1], self._span(meta))
+
+
+def _levels(items: Iterable[Any]) -> list[list[Any]]:
+    """What stands between the signs `<`."""
+    levels: list[list[Any]] = [[]]
+    for item in items:
+        if item == "<":
+            levels.append([])
+        else:
+            levels[-1].append(item)
+    return levels
 
 
 def _all(items: Sequence[Any], kind: Any) -> tuple[Any, ...]:

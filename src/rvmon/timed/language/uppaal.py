@@ -96,7 +96,7 @@ def _system(
     root: Element, findings: Findings
 ) -> tuple[
     tuple[automaton_syntax.Instance, ...],
-    tuple[tuple[syntax.Declared, ...], tuple[syntax.Name, ...] | None],
+    tuple[tuple[syntax.Declared, ...], tuple[tuple[syntax.Name, int], ...] | None],
 ]:
     first = _part(root.first("instantiation"), "instances", findings, ())
     element = root.first("system")

@@ -6,6 +6,7 @@ tuples of `Network`. Arrays are spread over neighbouring indices.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from rvmon.diagnostics import Diagnostic, Span
@@ -90,6 +91,26 @@ class Automaton:
     edges: tuple[Edge, ...]
     initial: int
     span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Priorities:
+    """Which steps keep back which others, where both can be taken: those of lower rank.
+
+    Attributes:
+        automata: a number for each; of the automata that take part the highest counts.
+        internal: the number of steps without a channel.
+        channels: a number for each; all these are multiples of what is above those of automata.
+    """
+
+    automata: tuple[int, ...]
+    internal: int
+    channels: tuple[int, ...]
+
+    def rank(self, channel: int | None, automata: Iterable[int]) -> int:
+        """That of a step on a channel, or without one: its channel first, then its automata."""
+        level = self.internal if channel is None else self.channels[channel]
+        return level + max(self.automata[one] for one in automata)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +203,7 @@ class Network:
         signals: what specifications may call by name, read off locations and variables.
         warnings: what is odd about it but no error.
         names: what queries may refer to.
+        priorities: of steps; `None` if all are equal.
         has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
             under `or`.
     """
@@ -197,6 +219,7 @@ class Network:
     signals: tuple[Signal, ...]
     warnings: tuple[Diagnostic, ...] = field(compare=False)
     names: Names = field(compare=False, repr=False)
+    priorities: Priorities | None = None
     has_split_edges: bool = field(default=False, compare=False)
 
     @property

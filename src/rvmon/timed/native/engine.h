@@ -76,6 +76,23 @@ typedef struct {
     uint32_t node, parent, link, flags;
 } step;
 
+/* Clock y less clock x is at most b: what must not hold, or one of several bounds of that. */
+typedef struct {
+    int32_t x, y;
+    bound b;
+} denied;
+
+typedef struct {
+    uint32_t first, count;
+    int32_t rank;
+} denial;
+
+typedef struct {
+    denial *rows;
+    denied *atoms;
+    uint32_t count, room, atom_count, atom_room;
+} denials;
+
 /* Where moves start and where the one at hand leads. */
 typedef struct walk {
     int32_t *places, *values, *target, *changed;
@@ -83,7 +100,9 @@ typedef struct walk {
     int32_t *resets; /* clock, value */
     int32_t reset_count;
     int32_t *chosen, *group, *first, *pick;
-    int32_t *skipped, *skip, skipped_count; /* edges whose guard fails, and at which of its atoms */
+    denials skipped, blockers; /* guards of receivers left out; what moves of some priority need */
+    uint32_t blocker_count, *against, against_room, against_count, *skip, skip_room;
+    bound *here; /* what the invariant says */
     int32_t variant; /* among the ways in which the same edges move together */
     uint8_t *committed;
     bool delays;

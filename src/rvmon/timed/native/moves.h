@@ -2,13 +2,11 @@
  *
  * All guards are read before a move; the sender's updates come first, then those of receivers in the
  * order of the automata; while some location is committed, a committed one is left; a broadcast takes
- * along every automaton that can receive. */
+ * along every automaton that can receive; a move waits for those of higher priority. */
 #ifndef RVMON_ZONES_MOVES_H
 #define RVMON_ZONES_MOVES_H
 
-#include "states.h"
-
-typedef bool (*sink)(engine *h, walk *w, const int32_t *edges, int n);
+#include "variants.h"
 
 static bool able(engine *h, const int32_t *edge, const int32_t *places, int32_t *values)
 {
@@ -85,51 +83,6 @@ static bool may_delay(engine *h, const int32_t *places, int32_t *values)
     return true;
 }
 
-/* What the updates of a move make of its source, in `target`, `changed` and `resets`. */
-static bool apply(engine *h, walk *w, const int32_t *edges, int n)
-{
-    int k;
-    (void)memcpy(w->target, w->places, (size_t)h->automaton_count * sizeof *w->target);
-    (void)memcpy(w->changed, w->values, (size_t)h->variable_count * sizeof *w->changed);
-    w->reset_count = 0;
-    for (k = 0; k < n; k++) {
-        const int32_t *edge = edge_at(h, edges[k]);
-        if (edge[EDGE_UPDATE] >= 0) {
-            h->sets = w;
-            (void)evaluate(h, edge[EDGE_UPDATE], w->places, w->changed);
-            h->sets = NULL;
-            if (h->failed || !runs(h)) {
-                return false;
-            }
-        }
-        w->target[edge[EDGE_AUTOMATON]] = edge[EDGE_TARGET];
-    }
-    return true;
-}
-
-/* The guards of edges that move together, and that of none that is skipped for its clocks. */
-static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges, int n)
-{
-    int k;
-    for (k = 0; k < n; k++) {
-        const int32_t *edge = edge_at(h, edges[k]);
-        if (!cut_atoms(h, z, edge[EDGE_ATOM], edge[EDGE_ATOMS], w->places, w->values)) {
-            return false;
-        }
-    }
-    for (k = 0; k < w->skipped_count; k++) {
-        const int32_t atom = edge_at(h, w->skipped[k])[EDGE_ATOM] + w->skip[k];
-        int x;
-        int y;
-        bound b;
-        if (!atom_at(h, h->atoms + (ptrdiff_t)atom * ATOM_SIZE, w->places, w->values, &x, &y, &b)
-            || !constrain(z, h->dim, y, x, 1 - b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* The edges that may receive, as groups of one automaton each; how many groups. */
 static int receivers(engine *h, walk *w, int32_t sender)
 {
@@ -170,27 +123,6 @@ static int ways(const engine *h, const walk *w, int g)
     return w->first[g + 1] - w->first[g] + 1;
 }
 
-/* One move for each choice of the atoms that keep back what is skipped. */
-static bool each_variant(engine *h, walk *w, int n, sink take)
-{
-    int i = 0;
-    w->variant = 0;
-    (void)memset(w->skip, 0, (size_t)w->skipped_count * sizeof *w->skip);
-    while (i >= 0) {
-        if (h->failed || !take(h, w, w->chosen, n)) {
-            return false;
-        }
-        w->variant++;
-        i = w->skipped_count - 1;
-        while ((i >= 0) && (++w->skip[i] == edge_at(h, w->skipped[i])[EDGE_ATOMS])) {
-            w->skip[i--] = 0;
-        }
-    }
-    w->skipped_count = 0;
-    w->variant = 0;
-    return true;
-}
-
 /* A sender and one edge of each automaton that can receive, in all ways. */
 static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
 {
@@ -199,7 +131,7 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
     while ((g >= 0) && !h->failed) {
         bool ok = !committed || w->committed[edge_at(h, sender)[EDGE_AUTOMATON]];
         int n = 0;
-        w->skipped_count = 0;
+        drop_denials(&w->skipped);
         w->chosen[n++] = sender;
         for (g = 0; g < groups; g++) {
             int k = w->first[g] + w->pick[g];
@@ -209,10 +141,13 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
                 continue;
             }
             for (k = w->first[g]; k < w->first[g + 1]; k++) {
-                w->skipped[w->skipped_count++] = w->group[k];
+                if (!begin_denial(h, &w->skipped, 0)
+                    || !deny_guard(h, w, &w->skipped, edge_at(h, w->group[k]))) {
+                    return false;
+                }
             }
         }
-        if (ok && !each_variant(h, w, n, take)) {
+        if (ok && !each_variant(h, w, w->chosen, n, take)) {
             return false;
         }
         g = groups - 1;
@@ -220,6 +155,7 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
             w->pick[g--] = 0;
         }
     }
+    drop_denials(&w->skipped);
     return !h->failed;
 }
 
@@ -241,7 +177,7 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
                 int32_t both[2];
                 both[0] = sender;
                 both[1] = place[LOC_EDGE] + m;
-                if (!take(h, w, both, 2)) {
+                if (!each_variant(h, w, both, 2, take)) {
                     return false;
                 }
             }
@@ -254,13 +190,12 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
 }
 
 /* Give all moves from where a walk is to `take`, until that says no; broadcasts come last. */
-static bool each_move(engine *h, walk *w, sink take)
+static bool each_way(engine *h, walk *w, sink take)
 {
     bool committed = false;
     int pass;
     int a;
-    w->skipped_count = 0;
-    w->variant = 0;
+    drop_denials(&w->skipped);
     for (a = 0; a < h->automaton_count; a++) {
         w->committed[a] = place_of(h, w->places, a)[LOC_KIND] == KIND_COMMITTED;
         committed = committed || w->committed[a];
@@ -280,7 +215,7 @@ static bool each_move(engine *h, walk *w, sink take)
                     continue;
                 }
                 if (able(h, edge, w->places, w->values)) {
-                    on = alone ? take(h, w, &number, 1)
+                    on = alone ? each_variant(h, w, &number, 1, take)
                                : (all ? broadcast(h, w, number, committed, take)
                                       : pairs(h, w, number, committed, take));
                 }
@@ -291,6 +226,28 @@ static bool each_move(engine *h, walk *w, sink take)
         }
     }
     return true;
+}
+
+/* The same, without moves for which one of higher priority can be taken. */
+static bool each_move(engine *h, walk *w, sink take)
+{
+    drop_denials(&w->blockers);
+    w->blocker_count = 0;
+    if (plan_count(h->plan, AT_RANKS) > 0) {
+        const int bounds = invariant_of(h, w->places, w->values);
+        int i;
+        for (i = 0; i < h->dim; i++) {
+            w->here[i] = UNBOUNDED;
+        }
+        for (i = 0; i < bounds; i++) {
+            w->here[h->tightest[i]] = h->tightest_bound[i];
+        }
+        if ((bounds < 0) || !each_way(h, w, note_blocker)) {
+            return false;
+        }
+        w->blocker_count = w->blockers.count;
+    }
+    return each_way(h, w, take);
 }
 
 #endif

@@ -7,7 +7,7 @@
 const uint8_t plan_widths[SECTIONS] = {
     4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
     LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
-    WAY_SIZE, 1,
+    WAY_SIZE, 1, 1,
 };
 
 /* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
@@ -288,6 +288,25 @@ static bool places_fit(const checker *c)
     return true;
 }
 
+/* Priorities of all automata, of no channel and of all channels, of which two can be added. */
+static bool ranks_fit(const checker *c)
+{
+    const int32_t count = rows(c, AT_RANKS);
+    const int32_t *edge = plan_rows(c->plan, AT_EDGES);
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        if ((plan_rows(c->plan, AT_RANKS)[i] < 0) || (plan_rows(c->plan, AT_RANKS)[i] > INT32_MAX / 2)) {
+            return false;
+        }
+    }
+    for (i = 0; (count > 0) && (i < rows(c, AT_EDGES)); i++, edge += EDGE_SIZE) {
+        if (!within((int64_t)rows(c, AT_AUTOMATA) + 1, edge[EDGE_STOP], count)) {
+            return false;
+        }
+    }
+    return (count == 0) || (count > rows(c, AT_AUTOMATA));
+}
+
 /* Rows of the tree refer to rows before them, plain ones to alternatives. */
 static bool tree_fits(const checker *c)
 {
@@ -371,7 +390,7 @@ static bool parts_fit(checker *c)
     return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
            && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
            && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c)
-           && ways_fit(c);
+           && ways_fit(c) && ranks_fit(c);
 }
 
 plan_state plan_check(const int32_t *plan, size_t count)

@@ -50,6 +50,7 @@ enum {
     AT_PIECES,    /* alternatives of plain rows of the tree */
     AT_WAYS,      /* of each alternative inside: as below */
     AT_ARCS,      /* where they lead */
+    AT_RANKS,     /* priorities, if there are any: of automata, of no channel, of channels */
     SECTIONS
 };
 

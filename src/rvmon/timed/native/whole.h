@@ -54,13 +54,12 @@ static void make_walk(engine *h, walk *w)
     w->first = block(h, places, sizeof *w->first);
     w->pick = block(h, places, sizeof *w->pick);
     w->committed = block(h, places, sizeof *w->committed);
-    w->skipped = block(h, (size_t)h->edge_count, sizeof *w->skipped);
-    w->skip = block(h, (size_t)h->edge_count, sizeof *w->skip);
+    w->here = block(h, (size_t)h->dim, sizeof *w->here);
 }
 
 static void free_walk(walk *w)
 {
-    void *all[14];
+    void *all[19];
     size_t i;
     all[0] = w->places;
     all[1] = w->values;
@@ -74,8 +73,13 @@ static void free_walk(walk *w)
     all[9] = w->first;
     all[10] = w->pick;
     all[11] = w->committed;
-    all[12] = w->skipped;
-    all[13] = w->skip;
+    all[12] = w->here;
+    all[13] = w->against;
+    all[14] = w->skip;
+    all[15] = w->skipped.rows;
+    all[16] = w->skipped.atoms;
+    all[17] = w->blockers.rows;
+    all[18] = w->blockers.atoms;
     for (i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }

@@ -6,9 +6,10 @@ checker gives is checked by other code than found it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 
 from rvmon.errors import ModelError
 from rvmon.timed.model.evaluate import Frame, evaluator, runner, slot_evaluator
@@ -17,7 +18,7 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     ClockOp,
 )
-from rvmon.timed.model.network import Edge, Guard, Network
+from rvmon.timed.model.network import Edge, Guard, Network, Priorities
 from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.runs.run import Action, Run
 
@@ -33,6 +34,10 @@ class Configuration:
 
 class InvalidRunError(AssertionError):
     """A run breaks a rule of the network."""
+
+
+class _FailedUpdateError(InvalidRunError):
+    """What is taken has no value."""
 
 
 def initial_configuration(network: Network) -> Configuration:
@@ -65,6 +70,57 @@ def act(network: Network, now: Configuration, action: Action) -> Configuration:
     Raises:
         InvalidRunError: they cannot be taken, or not like this.
     """
+    after = _behind(network, now, action)
+    if network.priorities is not None:
+        own = _rank(network.priorities, now, action)
+        for other in every_action(network, now):
+            if _rank(network.priorities, now, other) > own and _is_possible(network, now, other):
+                raise InvalidRunError("a step of higher priority can be taken")
+    return after
+
+
+def _is_possible(network: Network, now: Configuration, action: Action) -> bool:
+    """Whether edges can be taken together, priorities apart."""
+    try:
+        _behind(network, now, action)
+    except _FailedUpdateError:
+        return True
+    except InvalidRunError:
+        return False
+    return True
+
+
+def _rank(priorities: Priorities, now: Configuration, action: Action) -> int:
+    edge = action.edges[0][1]
+    channel = None if edge.sync is None else channel_index(now, edge)
+    return priorities.rank(channel, (automaton for automaton, _ in action.edges))
+
+
+def every_action(network: Network, now: Configuration) -> Iterator[Action]:
+    """Every choice of edges that could be an action, whether or not the other rules allow it."""
+    edges = list(_ready_edges(network, now))
+    for sender, first in edges:
+        if first.sync is None:
+            yield Action(((sender, first),))
+        elif first.sync.sends:
+            channel = channel_index(now, first)
+            choices: list[list[tuple[int, Edge] | None]] = []
+            for index in range(len(network.automata)):
+                able: list[tuple[int, Edge] | None] = [
+                    (other, edge)
+                    for other, edge in edges
+                    if other == index != sender
+                    and edge.sync is not None
+                    and not edge.sync.sends
+                    and channel_index(now, edge) == channel
+                ]
+                choices.append([*able, None])
+            for chosen in product(*choices):
+                yield Action(((sender, first), *(other for other in chosen if other is not None)))
+
+
+def _behind(network: Network, now: Configuration, action: Action) -> Configuration:
+    """Where edges lead that are taken together, priorities apart."""
     movers = [automaton for automaton, _ in action.edges]
     for automaton, edge in action.edges:
         if edge not in network.automata[automaton].edges:
@@ -220,7 +276,7 @@ def _update(network: Network, now: Configuration, action: Action) -> Configurati
         try:
             runner(edge.updates)(now.locations, frame)
         except ModelError as error:
-            raise InvalidRunError(str(error)) from error
+            raise _FailedUpdateError(str(error)) from error
     for clock, value in frame.clocks.items():
         clocks[clock] = Fraction(value)
     return Configuration(tuple(locations), frame.variables(), tuple(clocks))

@@ -4,7 +4,8 @@ How chance decides: each automaton draws one of the moves that it begins and tha
 or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
 which it is possible, or, if that has no end, from an exponential distribution behind its beginning.
 Weights that add up to less than 1 leave the rest to doing nothing this time. The automaton with the
-shortest delay moves, and all draw anew.
+shortest delay moves, and all draw anew. A move that several windows make possible, as where one of
+higher priority comes between, is drawn from all of them.
 
 Source: David, Larsen, Legay, Mikučionis, Wang, Time for Statistical Model Checking of Real-Time
 Systems, CAV 2011 (races between components; weights among the moves of one).
@@ -13,6 +14,7 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from math import ceil, inf, prod
 from random import Random
 
@@ -97,18 +99,20 @@ def _draw(
 ) -> tuple[Move, int] | None:
     """A move and its delay in grid steps; `None` if none is possible any more."""
     longest = _longest(state, clocks)
-    begun: dict[int, list[tuple[Move, tuple[int, float]]]] = {}
+    begun: dict[int, dict[tuple[int, ...], _Choice]] = {}
     for move in space.moves(state):
         window = _move_window(move, clocks, longest)
         if window is not None:
-            begun.setdefault(move.edges[0].automaton, []).append((move, window))
+            own = begun.setdefault(move.edges[0].automaton, {})
+            own.setdefault(tuple(map(id, move.edges)), _Choice(move)).add(*window)
     draws: list[tuple[int, float, Move]] = []
     while begun and not draws:
-        for possible in begun.values():
-            weights = [prod(edge.edge.weight for edge in move.edges) for move, _ in possible]
+        for choices in begun.values():
+            possible = [*choices.values()]
+            weights = [prod(edge.edge.weight for edge in one.move.edges) for one in possible]
             if random.random() < sum(weights):
-                ((move, window),) = random.choices(possible, weights)
-                draws.append((_delay(window, random, mean_wait), random.random(), move))
+                (one,) = random.choices(possible, weights)
+                draws.append((one.delay(random, mean_wait), random.random(), one.move))
     if not draws:
         return None
     delay, _, move = min(draws, key=lambda draw: draw[:2])
@@ -117,11 +121,33 @@ def _draw(
     return move, delay
 
 
-def _delay(window: tuple[int, float], random: Random, mean_wait: float) -> int:
-    low, high = window
-    if high == inf:
-        return low + int(random.expovariate(1 / mean_wait))
-    return random.randint(low, int(high))
+@dataclass(slots=True)
+class _Choice:
+    """A move in all its variants, which are one to chance, and when it is possible."""
+
+    move: Move
+    windows: list[tuple[int, float]] = field(default_factory=list)
+
+    def add(self, low: int, high: float) -> None:
+        """Add the delays from `low` to `high`."""
+        apart = [one for one in self.windows if one[1] < low or high < one[0]]
+        meeting = [one for one in self.windows if one not in apart]
+        low, high = min([low, *(a for a, _ in meeting)]), max([high, *(b for _, b in meeting)])
+        self.windows = sorted([*apart, (low, high)])
+
+    def delay(self, random: Random, mean_wait: float) -> int:
+        """A delay: uniformly from all windows, or if the last has no end exponentially in them."""
+        counts = [b - a + 1 for a, b in self.windows]
+        drawn = (
+            int(random.expovariate(1 / mean_wait))
+            if counts[-1] == inf
+            else random.randrange(int(sum(counts)))
+        )
+        place = 0
+        while drawn >= counts[place]:
+            drawn -= int(counts[place])
+            place += 1
+        return self.windows[place][0] + drawn
 
 
 def _longest(state: State, clocks: list[int]) -> float:

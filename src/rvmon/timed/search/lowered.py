@@ -78,7 +78,7 @@ class Plan:
             self._grow(sought.nested)
         automata, locations, edges = self._automata()
         self._refuse_too_large(len(self.inside))
-        variables = (*network.variables, *network.locals)
+        variables, ranks = (*network.variables, *network.locals), network.priorities
         sections = [
             (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
             (3, automata),
@@ -95,6 +95,7 @@ class Plan:
             (3, self._pieces),
             (4, _way_rows(states)),
             (1, [arc for state in states for arc in state.arcs]),
+            (1, [] if ranks is None else [*ranks.automata, ranks.internal, *ranks.channels]),
         ]
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
         choose = list(Policy).index(sought.choose)

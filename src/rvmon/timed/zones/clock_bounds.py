@@ -88,6 +88,11 @@ def location_bounds(
                     if clock not in gone and number > here.get(clock, -1):
                         here[clock] = number
                         changed = True
+    if network.priorities is not None:  # who cannot be taken keeps nobody back
+        for own in bounds:
+            both = joined((own, ClockBounds(own.upper, own.lower)))
+            own.lower.update(both.lower)
+            own.upper.update(both.upper)
     return bounds
 
 

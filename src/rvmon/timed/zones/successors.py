@@ -3,7 +3,7 @@
 The rules: all guards are read before the step; the sender's update comes first, then the receivers'
 in the order of the automata; while some location is committed, only steps in which a committed
 location is left are taken; a broadcast takes along every automaton that can receive, which clocks
-may decide.
+may decide; a step waits for those of higher priority that can be taken.
 """
 
 from __future__ import annotations
@@ -92,13 +92,49 @@ class Space:
     def moves(self, state: State) -> list[Move]:
         """All steps from a state whose guards on variables hold."""
         if state.moves is None:
+            enabled = list(_enabled(state))
             state.moves = [
                 move
-                for edges, target, kept_back in _enabled(state)
-                for variant, without in enumerate(product(*kept_back))
-                if (move := self._move(state, edges, target, variant, without)) is not None
+                for edges, target, kept_back in enabled
+                for move in self._variants(state, edges, target, kept_back)
             ]
+            if self.network.priorities is not None:
+                state.moves = list(self._first(state, enabled, state.moves))
         return state.moves
+
+    def _variants(
+        self,
+        state: State,
+        edges: tuple[CompiledEdge, ...],
+        target: tuple[int, ...],
+        kept_back: Iterable[Sequence[Atom]],
+    ) -> Iterator[Move]:
+        """A move for each choice of the bounds that fail."""
+        for variant, without in enumerate(product(*kept_back)):
+            move = self._move(state, edges, target, variant, without)
+            if move is not None:
+                yield move
+
+    def _first(
+        self, state: State, enabled: Iterable[Enabled], moves: Iterable[Move]
+    ) -> Iterator[Move]:
+        """The moves, kept back where those of higher rank can be taken."""
+        blockers = [
+            (self._rank(m.edges, state), needs)
+            for m in moves
+            if (needs := _needs(state, m)) is not None
+        ]
+        for edges, target, kept_back in enabled:
+            rank = self._rank(edges, state)
+            above = dict.fromkeys(needs for other, needs in blockers if other > rank)
+            denied = [[negated(atom) for atom in needs] for needs in above]
+            yield from self._variants(state, edges, target, [*kept_back, *denied])
+
+    def _rank(self, edges: tuple[CompiledEdge, ...], state: State) -> int:
+        assert self.network.priorities is not None  # noqa: S101 - asked of such networks only
+        channel = edges[0].channel
+        number = None if channel is None else channel(state.vector.locations, state.values)
+        return self.network.priorities.rank(number, (edge.automaton for edge in edges))
 
     def _move(
         self,
@@ -229,6 +265,20 @@ def _new_state(vector: Vector, values: tuple[int, ...]) -> State:
     delays = not (vector.stops_time or any(_is_enabled(c, vector, values) for c in vector.urgent))
     invariant = tuple(sorted(tightest.items()))
     return State(vector, values, delays, invariant, vector.uppers, vector.lowers)
+
+
+def _needs(state: State, move: Move) -> tuple[Atom, ...] | None:
+    """The bounds under which a move can be taken, or fails; `None` if it never can."""
+    if move.failure is not None:
+        return move.guard
+    needs, here, set_now = list(move.guard), dict(state.invariant), dict(move.resets)
+    for clock, bound in move.target.invariant:
+        if clock in set_now:
+            if set_now[clock] > bound:
+                return None
+        elif bound < here.get(clock, inf):
+            needs.append((0, clock, bound))
+    return tuple(needs)
 
 
 def _is_enabled(candidate: Candidate, vector: Vector, values: tuple[int, ...]) -> bool:

@@ -386,3 +386,19 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
     """Words as signs: UTAP's grammar has `imply` beside `or`, from the left, and `and` above."""
     network = loads_network("bool p, q, r, s int[0,3] v automaton A { location l start l }")
     assert query_on(network, f"E<> ({text})").formula == query_on(network, f"E<> ({bound})").formula
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("chan a chan priority a < a", "a second priority"),
+        ("chan a, b chan priority a < b", "without `default`"),
+        ("chan a chan priority a < default chan priority default", "a second list"),
+        ("int[0,1] a chan priority a < default", "no channel"),
+        ("int[0,1] i chan a[2] chan priority a[i] < default", "no channel"),
+        ("chan priority a < default", "no name `a`"),
+    ],
+)
+def test_priorities_that_have_no_meaning_are_refused(text, message):
+    """Each channel has one place, and so has `default`."""
+    assert message in one(f"{text} automaton A {{ location l start l }}").message

@@ -2,7 +2,11 @@
 
 import pytest
 
+from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
+from rvmon.timed.runs.run import Window
+from rvmon.timed.runs.statistics import sample
 from rvmon.timed.search.verify import verify
 
 
@@ -173,3 +177,81 @@ def test_arrays_of_channels_and_variables():
     """
     assert holds(text, "A[] (A.b imply B.got == 2)") is True
     assert holds(text, "A[] (A.b imply list[who] == 0)") is True
+
+
+RANKED = """
+clock x
+broadcast chan low, high
+chan priority low < default < high
+automaton A {
+  location a  location b  location c  location d invariant x <= 3
+  start a
+  edge a -> b on low!
+  edge a -> c when x >= 2 on high!
+  edge a -> d when x <= 1
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "answer"),
+    [
+        ("E<> A.b and x > 1", True),
+        ("E<> A.d", True),
+        # From 2 on `high` can be taken, up to 1 the edge without a channel: `low` between only.
+        ("Pr[<=9; 20]([] not (A.b and x <= 1))", True),
+    ],
+)
+def test_a_step_waits_for_those_of_higher_priority(query, answer):
+    """What is possible at an instant by guards keeps back what is lower, and only then."""
+    network = loads_network(RANKED)
+    if query.startswith("Pr"):
+        assert sample(network, query_on(network, query)).value == answer
+    else:
+        assert verify(network, query).holds is answer
+
+
+def test_channels_count_before_automata():
+    """P is above Q, and goes first unless the channel of Q's step is above steps without one."""
+    text = """
+    broadcast chan c
+    {ranks}
+    automaton Q {{ location q  location r  start q  edge q -> r {on} }}
+    automaton P {{ location p  location s  start p  edge p -> s }}
+    system Q < P
+    """
+    first = "E<> Q.r and P.p"
+    assert not holds(text.format(ranks="", on=""), first)
+    assert not holds(text.format(ranks="", on="on c!"), first)
+    assert holds(text.format(ranks="chan priority default < c", on="on c!"), first)
+    assert not holds(text.format(ranks="chan priority c < default", on="on c!"), first)
+
+
+def test_what_cannot_be_entered_keeps_nothing_back():
+    """A step of high priority needs the invariant behind it, now or with other values."""
+    text = """
+    clock x
+    int[0,9] v
+    broadcast chan high
+    chan priority default < high
+    automaton A {
+      location a  location b invariant x <= v  location c
+      start a
+      edge a -> b on high! do v = 2
+      edge a -> c
+    }
+    """
+    run = verify(loads_network(text), "E<> A.c").run
+    assert run.steps[0].window == Window(2, None, low_strict=True)
+
+
+def test_what_fails_keeps_back_and_is_told():
+    """A step of high priority whose update has no value is an error, not a way for others."""
+    text = """
+    int[0,1] v
+    broadcast chan high
+    chan priority default < high
+    automaton A { location a  location b  start a  edge a -> a on high! do v = v + 1  edge a -> b }
+    """
+    with pytest.raises(ModelError, match="outside"):
+        holds(text, "E<> A.b")

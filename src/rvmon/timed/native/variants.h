@@ -1,0 +1,262 @@
+/* What a move makes of its source, and what keeps it back: receivers that it leaves out, and moves of
+ * higher priority. Of each of these some bound must fail: one variant of the move for each choice. */
+#ifndef RVMON_ZONES_VARIANTS_H
+#define RVMON_ZONES_VARIANTS_H
+
+#include "states.h"
+
+typedef bool (*sink)(engine *h, walk *w, const int32_t *edges, int n);
+
+/* What the updates of a move make of its source, in `target`, `changed` and `resets`. */
+static bool apply(engine *h, walk *w, const int32_t *edges, int n)
+{
+    int k;
+    (void)memcpy(w->target, w->places, (size_t)h->automaton_count * sizeof *w->target);
+    (void)memcpy(w->changed, w->values, (size_t)h->variable_count * sizeof *w->changed);
+    w->reset_count = 0;
+    for (k = 0; k < n; k++) {
+        const int32_t *edge = edge_at(h, edges[k]);
+        if (edge[EDGE_UPDATE] >= 0) {
+            h->sets = w;
+            (void)evaluate(h, edge[EDGE_UPDATE], w->places, w->changed);
+            h->sets = NULL;
+            if (h->failed || !runs(h)) {
+                return false;
+            }
+        }
+        w->target[edge[EDGE_AUTOMATON]] = edge[EDGE_TARGET];
+    }
+    return true;
+}
+
+/* --- what keeps moves back ----------------------------------------------------------------------- */
+
+static bool begin_denial(engine *h, denials *to, int32_t rank)
+{
+    if (!ROOM(h, to->rows, to->room, (uint64_t)to->count + 1)) {
+        return false;
+    }
+    to->rows[to->count++] = (denial){to->atom_count, 0, rank};
+    return true;
+}
+
+static bool deny(engine *h, denials *to, int x, int y, bound b)
+{
+    if (!ROOM(h, to->atoms, to->atom_room, (uint64_t)to->atom_count + 1)) {
+        return false;
+    }
+    to->atoms[to->atom_count++] = (denied){x, y, b};
+    to->rows[to->count - 1].count++;
+    return true;
+}
+
+static bool deny_guard(engine *h, walk *w, denials *to, const int32_t *edge)
+{
+    int32_t k;
+    for (k = 0; k < edge[EDGE_ATOMS]; k++) {
+        int x;
+        int y;
+        bound b;
+        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (edge[EDGE_ATOM] + k), w->places,
+                     w->values, &x, &y, &b)
+            || !deny(h, to, x, y, b)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void drop_denial(denials *from)
+{
+    from->atom_count = from->rows[--from->count].first;
+}
+
+static void drop_denials(denials *from)
+{
+    from->count = 0;
+    from->atom_count = 0;
+}
+
+/* What keeps the move at hand back, by its place in `against`; those left out come first. */
+static denied *denied_by(const walk *w, uint32_t k, uint32_t *count)
+{
+    const uint32_t skipped = w->skipped.count;
+    const denials *from = (k < skipped) ? &w->skipped : &w->blockers;
+    const denial *row = from->rows + ((k < skipped) ? k : w->against[k - skipped]);
+    *count = row->count;
+    return from->atoms + row->first;
+}
+
+/* The guards of edges that move together, and for what keeps them back a bound that fails. */
+static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges, int n)
+{
+    uint32_t k;
+    int i;
+    for (i = 0; i < n; i++) {
+        const int32_t *edge = edge_at(h, edges[i]);
+        if (!cut_atoms(h, z, edge[EDGE_ATOM], edge[EDGE_ATOMS], w->places, w->values)) {
+            return false;
+        }
+    }
+    for (k = 0; k < w->against_count; k++) {
+        uint32_t count;
+        const denied one = denied_by(w, k, &count)[w->skip[k]];
+        if (!constrain(z, h->dim, one.y, one.x, negated(one.b))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* --- priorities ---------------------------------------------------------------------------------- */
+
+/* That of a move: by its channel, then by the highest of its automata. */
+static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
+{
+    const int32_t *ranks = plan_rows(h->plan, AT_RANKS);
+    const int32_t *first = edge_at(h, edges[0]);
+    int64_t channel = -1;
+    int32_t own = 0;
+    int k;
+    if (first[EDGE_CHANNEL] != -1) {
+        channel = first[EDGE_FIRST];
+        if (first[EDGE_STOP] - first[EDGE_FIRST] > 1) {
+            channel = evaluate(h, first[EDGE_CHANNEL], w->places, w->values);
+        }
+        if ((channel < first[EDGE_FIRST]) || (channel >= first[EDGE_STOP])) {
+            h->failed = true;
+            return 0;
+        }
+    }
+    for (k = 0; k < n; k++) {
+        const int32_t one = ranks[edge_at(h, edges[k])[EDGE_AUTOMATON]];
+        own = (one > own) ? one : own;
+    }
+    return ranks[h->automaton_count + 1 + channel] + own;
+}
+
+/* The bounds under which an invariant behind a move holds, where it did not before; false if it
+ * does not hold, or failed. */
+static bool deny_invariant(engine *h, walk *w)
+{
+    const int bounds = invariant_of(h, w->target, w->changed);
+    int c;
+    int i;
+    for (c = 1; c < h->dim; c++) {
+        int j = 0;
+        for (i = 0; (i < bounds) && (h->tightest[i] != c); i++) {
+        }
+        if (i >= bounds) {
+            continue;
+        }
+        while ((j < w->reset_count) && (w->resets[2 * j] != c)) {
+            j++;
+        }
+        if (j < w->reset_count) {
+            if (2 * (bound)w->resets[2 * j + 1] + 1 > h->tightest_bound[i]) {
+                return false;
+            }
+        } else if ((h->tightest_bound[i] < w->here[c])
+                   && !deny(h, &w->blockers, 0, c, h->tightest_bound[i])) {
+            return false;
+        }
+    }
+    return bounds >= 0;
+}
+
+/* Note when a move can be taken, as what keeps back those of lower priority. */
+static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
+{
+    uint32_t k;
+    int i;
+    labour(h);
+    if (!begin_denial(h, &w->blockers, rank_of(h, w, edges, n))) {
+        return false;
+    }
+    for (i = 0; i < n; i++) {
+        if (!deny_guard(h, w, &w->blockers, edge_at(h, edges[i]))) {
+            return false;
+        }
+    }
+    for (k = 0; k < w->against_count; k++) {
+        uint32_t count;
+        const denied one = denied_by(w, k, &count)[w->skip[k]];
+        if (!deny(h, &w->blockers, one.y, one.x, negated(one.b))) {
+            return false;
+        }
+    }
+    if (!apply(h, w, edges, n)) {
+        const bool is_numbers = h->failed; /* told where the move itself is taken */
+        h->failed = false;
+        return is_numbers;
+    }
+    if (!invariant_data_holds(h, w->target, w->changed) || !deny_invariant(h, w)) {
+        drop_denial(&w->blockers);
+    }
+    return runs(h) && !h->failed;
+}
+
+static bool is_same(const walk *w, const denial *one, const denial *other)
+{
+    return (one->count == other->count)
+           && (memcmp(w->blockers.atoms + one->first, w->blockers.atoms + other->first,
+                      one->count * sizeof(denied))
+               == 0);
+}
+
+/* What keeps a move back: the blockers of higher rank, each once; false if one always does. */
+static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
+{
+    const int32_t rank = (w->blocker_count > 0) ? rank_of(h, w, edges, n) : 0;
+    uint32_t had = 0;
+    uint32_t k;
+    uint32_t j;
+    for (k = 0; k < w->blocker_count; k++) {
+        const denial *one = w->blockers.rows + k;
+        if (one->rank <= rank) {
+            continue;
+        }
+        if (one->count == 0) {
+            return false;
+        }
+        for (j = 0; (j < had) && !is_same(w, one, w->blockers.rows + w->against[j]); j++) {
+        }
+        if (j == had) {
+            if (!ROOM(h, w->against, w->against_room, (uint64_t)had + 1)) {
+                return false;
+            }
+            w->against[had++] = k;
+        }
+    }
+    w->against_count = w->skipped.count + had;
+    return ROOM(h, w->skip, w->skip_room, (uint64_t)w->against_count + 1);
+}
+
+/* A move in all its variants. */
+static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink take)
+{
+    int64_t i = 0;
+    if (!find_blockers(h, w, edges, n)) {
+        return runs(h) && !h->failed;
+    }
+    w->variant = 0;
+    (void)memset(w->skip, 0, (size_t)w->against_count * sizeof *w->skip);
+    while (i >= 0) {
+        if (h->failed || !take(h, w, edges, n)) {
+            return false;
+        }
+        w->variant++;
+        for (i = (int64_t)w->against_count - 1; i >= 0; i--) {
+            uint32_t count;
+            (void)denied_by(w, (uint32_t)i, &count);
+            if (++w->skip[i] < count) {
+                break;
+            }
+            w->skip[i] = 0;
+        }
+    }
+    w->variant = 0;
+    return true;
+}
+
+#endif
