@@ -55,6 +55,14 @@ class Cells:
         says = None if self.says is None else self.says[start:stop]
         return replace(self, values=self.values[start:stop], says=says)
 
+    def spread(self, rows: NDArray[np.intp], count: int) -> Cells:
+        """The same at some of more rows; the others say nothing."""
+        import numpy as np
+
+        values = np.zeros(count, self.values.dtype)
+        values[rows] = self.values
+        return Cells(values, _spread(self.says, rows, count), self.labels)
+
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
         """What rows say as samples have it; `NO_UPDATE` itself: nothing."""
         values = self.values[start:stop].tolist()
@@ -84,6 +92,11 @@ class Occurrences:
         """Some of the rows."""
         fields = {name: one.cut(start, stop) for name, one in self.fields.items()}
         return Occurrences(self.says[start:stop], fields)
+
+    def spread(self, rows: NDArray[np.intp], count: int) -> Occurrences:
+        """As `Cells.spread`."""
+        fields = {name: one.spread(rows, count) for name, one in self.fields.items()}
+        return Occurrences(_spread(self.says, rows, count), fields)
 
     def unknown_at(self, times: NDArray[np.int64]) -> NDArray[np.int64]:
         """The instants at which it may occur."""
@@ -162,3 +175,40 @@ class Batch:
         if until is None or not len(self.times) or self.times[-1] <= until:
             return self
         return self.cut(0, int(self.times.searchsorted(until, "right")))
+
+
+def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
+    """Rows of several sources by time, each saying nothing where it has no row.
+
+    Args:
+        batches: with ascending instants.
+        first: the number of its first row.
+
+    Returns:
+        `None` if a name is in two of them, or an instant twice in one: these are merged as samples.
+    """
+    import numpy as np
+
+    names = [name for one in batches for name in (*one.signals, *one.events)]
+    is_twice = any((one.times[1:] == one.times[:-1]).any() for one in batches)
+    if is_twice or len(names) > len({*names}):
+        return None
+    times = np.unique(np.concatenate([one.times for one in batches]))
+    signals: dict[str, Cells] = {}
+    events: dict[str, Occurrences] = {}
+    for one in batches:
+        rows = times.searchsorted(one.times)
+        signals |= {name: cells.spread(rows, len(times)) for name, cells in one.signals.items()}
+        events |= {name: own.spread(rows, len(times)) for name, own in one.events.items()}
+    return Batch(times, signals, events, first)
+
+
+def _spread(
+    says: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
+) -> NDArray[np.uint8]:
+    """What rows say, in more rows, of which the others say nothing."""
+    import numpy as np
+
+    made = np.full(count, NO_UPDATE, np.uint8)
+    made[rows] = YES if says is None else says
+    return made

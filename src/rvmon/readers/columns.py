@@ -112,9 +112,9 @@ class TableRecording:
         """The columns that stand for nothing."""
         return list(self.ignored)
 
-    def samples(self) -> Iterator[Sample]:
-        """As going through it."""
-        return iter(self)
+    def parts(self) -> Iterator[Batch | Sample]:
+        """As `pieces`."""
+        return self.pieces()
 
     def doubts(self) -> list[Health]:
         """What is odd about its stamps."""

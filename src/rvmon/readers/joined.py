@@ -8,14 +8,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from heapq import merge
 from itertools import takewhile
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rvmon.errors import TraceError
+from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.places import name_of, named_errors
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Outage, Recording, Sample
 from rvmon.trace.schema import BY_NAME, Schema
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
+
+_FEW = 64
+"""Fewer rows are joined one by one."""
 
 
 class File(Recording, Protocol):
@@ -33,8 +40,8 @@ class File(Recording, Protocol):
     def outages(self) -> Sequence[Outage]:
         """What it lost."""
 
-    def samples(self) -> Iterator[Sample]:
-        """Its samples, of which there may be none."""
+    def parts(self) -> Iterator[Batch | Sample]:
+        """It in order, rows as columns where it has such; there may be none."""
 
     def doubts(self) -> list[Health]:
         """What is odd about it."""
@@ -85,28 +92,101 @@ class Joined:
         self.ignored = sum((file.ignored for file in files), Counter[str]())
         self.outages = sorted(_outages_of(files), key=lambda one: one.since)
 
-    def read_rows(self) -> Iterator[Row]:
-        """Number, ticks and values of each sample.
+    def blocks(self) -> Iterator[Batch | list[Row]]:
+        """The rows in order of time: as columns what lies between the ends of batches of files.
 
         Raises:
             TraceError: with file and line.
         """
-        samples = merge(*map(_samples_of, self._files), key=lambda one: one.t)
-        return ((number, one.t, one.values) for number, one in enumerate(samples, 1))
+        from rvmon.readers.batch import outer_join
+
+        number = 1
+        heads = [one for one in map(_Head, self._files) if one.is_there]
+        while heads:
+            until = min(one.last for one in heads)
+            before = [own for one in heads if (own := one.take_before(until)) is not None]
+            count = sum(len(one.times) for one in before)
+            joined = outer_join(before, number) if count >= _FEW else None
+            rows = [] if joined is not None else [*merge(*map(_merged_rows, before), key=_instant)]
+            rows += [sample for one in heads for sample in one.take_at(until)]
+            if joined is not None:
+                yield joined
+                number += len(joined.times)
+            yield [(number + place, one.t, one.values) for place, one in enumerate(rows)]
+            number += len(rows)
+            heads = [one for one in heads if one.is_there]
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order; errors are those of `blocks`."""
+        return self.rows.pieces(self.blocks())
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged; errors are those of `read_rows`."""
-        return self.rows.samples(self.read_rows())
+        """Samples in order of time, equal stamps merged; errors are those of `blocks`."""
+        for piece in self.pieces():
+            yield from (piece,) if isinstance(piece, Sample) else _merged_rows(piece)
 
     def stamp_doubts(self) -> list[Health]:
         """What is odd about each file."""
         return [one for file in self._files for one in (*file.rows.doubts(), *file.doubts())]
 
 
-def _samples_of(part: File) -> Iterator[Sample]:
-    """The samples of a file, of which there need be none: a topic may be silent."""
-    with named_errors(part.path):
-        yield from part.samples()
+class _Head:
+    """Where the reading of a file stands: a batch of which some rows are taken, or a sample."""
+
+    def __init__(self, file: File) -> None:
+        self._path, self._parts = file.path, file.parts()
+        self.is_there = True
+        self._read_on()
+
+    def _read_on(self) -> None:
+        with named_errors(self._path):
+            self._part = next(self._parts, None)
+        self.is_there = self._part is not None
+
+    @property
+    def last(self) -> int:
+        """The last instant that is at hand, ticks."""
+        part = self._part
+        assert part is not None, "it is there"  # noqa: S101
+        return part.t if isinstance(part, Sample) else int(part.times[-1])
+
+    def take_before(self, until: int) -> Batch | None:
+        """The rows of a batch before an instant, if there are any."""
+        part = self._part
+        if part is None or isinstance(part, Sample):
+            return None
+        count = int(part.times.searchsorted(until))
+        self._part = part.cut(count, len(part.times))
+        return part.cut(0, count) if count else None
+
+    def take_at(self, until: int) -> Iterator[Sample]:
+        """What there is at an instant."""
+        while self.is_there and self._first == until:
+            part = self._part
+            if isinstance(part, Sample):
+                yield part
+            elif part is not None:
+                count = int(part.times.searchsorted(until, "right"))
+                yield from _merged_rows(part.cut(0, count))
+                self._part = part.cut(count, len(part.times))
+                if count < len(part.times):
+                    return
+            self._read_on()
+
+    @property
+    def _first(self) -> int:
+        part = self._part
+        assert part is not None, "it is there"  # noqa: S101
+        return part.t if isinstance(part, Sample) else int(part.times[0])
+
+
+def _merged_rows(batch: Batch) -> Iterator[Sample]:
+    """The rows of a file, which has noted itself where two values of an instant differ."""
+    return coalesce(batch.rows(0, len(batch.times)), batch.events, Conflicts())
+
+
+def _instant(sample: Sample) -> int:
+    return sample.t
 
 
 def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:

@@ -148,13 +148,11 @@ class FileRecording:
 
     def samples(self) -> Iterator[Sample]:
         """The same, of which there may be none; its errors do not name the file."""
-        return self.rows.samples(self._each_row())
+        return self.rows.samples(self._each_row()) if self._joined is None else iter(self._joined)
 
     def _each_row(self) -> Iterator[Row]:
         if self._messages is not None:
             yield from self._messages.rows(ordered=self._ordered)
-        elif self._joined is not None:
-            yield from self._joined.read_rows()
         elif self._format == "jsonl" and not can_be_read_again(self.path):
             from rvmon.readers.jsonl_rows import jsonl_samples
 
@@ -171,16 +169,17 @@ class FileRecording:
         Raises:
             TraceError: with file and line.
         """
-        of_columns = (
-            self._messages is None and self._joined is None and can_be_read_again(self.path)
-        )
-        if not (of_columns and self._ordered):
-            yield from self
-            return
         with named_errors(self.path):
-            yield from self.rows.pieces(self._batches())
+            yield from self.parts()
             if not self.rows.count:
                 raise TraceError("holds no sample")
+
+    def parts(self) -> Iterator[Batch | Sample]:
+        """The same, of which there may be none; its errors do not name the file."""
+        if self._joined is not None:
+            return self._joined.pieces()
+        of_columns = self._messages is None and can_be_read_again(self.path)
+        return self.rows.pieces(self._batches()) if of_columns and self._ordered else self.samples()
 
     def _batches(self) -> Iterator[Batch | Iterator[Row]]:
         if self._format == "parquet":

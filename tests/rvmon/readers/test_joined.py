@@ -7,6 +7,7 @@ import pytest
 import rvmon
 from rvmon.cli import main
 from rvmon.errors import MissingNameError
+from rvmon.readers import line_chunks
 
 SPEC = """
 spec flight
@@ -32,13 +33,14 @@ COLUMNS = {
 }
 
 
-def written(folder, rng):
+def written(folder, rng, most=40):
     """A log as a file per topic, and the same in one file whose rows leave out what is not said."""
     files, whole = {}, []
     for topic in dict.fromkeys(topic for topic, _ in COLUMNS.values()):
         names = [name for name, (own, _) in COLUMNS.items() if own == topic]
         lines = [",".join(["t", *(name.removeprefix("status.") for name in names)])]
-        for step in sorted(rng.sample(range(40), rng.randint(0, 25))):
+        draw = rng.sample if rng.random() < 0.7 else rng.choices  # with instants that come again
+        for step in sorted(draw(range(most), k=rng.randint(0, most // 2))):
             cells = {name: COLUMNS[name][1](rng) if rng.random() < 0.9 else "" for name in names}
             lines.append(",".join([f"{step / 10}", *cells.values()]))
             whole.append((step, cells))
@@ -57,14 +59,20 @@ def attempts(report):
     return [(one.name, one.verdict, one.triggered, one.decided) for one in report.attempts]
 
 
-@pytest.mark.parametrize("seed", range(15))
-def test_joined_files_give_what_one_file_with_empty_cells_gives(tmp_path, seed):
-    """Nothing of one file is carried into the rows of another."""
-    files, whole, count = written(tmp_path, random.Random(seed))
+@pytest.mark.parametrize("seed", range(24))
+def test_joined_files_give_what_one_file_with_empty_cells_gives(tmp_path, seed, monkeypatch):
+    """Nothing of one file is carried into the rows of another, row by row or in blocks."""
+    rng = random.Random(seed)
+    monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([300, 3_000, 1 << 20]))
+    files, whole, count = written(tmp_path, rng, 40 if seed < 8 else 1_500)
     if not count:
         return
     spec = rvmon.loads(SPEC)
-    assert attempts(spec.evaluate(files)) == attempts(spec.evaluate(whole))
+    joined, one = spec.evaluate(files), spec.evaluate(whole)
+    assert attempts(joined) == attempts(one)
+    assert joined.health == one.health
+    late = rvmon.loads("max delay 1 ms\n" + SPEC)
+    assert attempts(late.evaluate(files)) == attempts(late.evaluate(whole))
 
 
 def test_late_rows_of_a_file_are_put_in_order_under_max_delay(tmp_path):
