@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ __all__ = ["handover_network"]
 MODEL_FILE = "handover.ta"
 
 
+@cache
 def handover_network() -> Network:
     """Read the network of robot, workflow, gaze, location, pressure and sensors."""
     from rvmon.timed.language.load import loads_network

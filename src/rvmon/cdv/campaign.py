@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
@@ -14,9 +15,11 @@ from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
 from rvmon.coverage.model import Model, Subject
 from rvmon.errors import UnknownNameError
+from rvmon.session import load
 from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:
+    from rvmon.coverage.monitor import SpecCoverage
     from rvmon.timed.model.network import Network
 
 
@@ -110,7 +113,7 @@ Strategy = Callable[[int, int], Sequence[Test]]
 """Makes tests from `(count, seed)`: the same arguments, the same tests."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Robot:
     """A system under test, and what judges it.
 
@@ -128,6 +131,16 @@ class Robot:
     coverage: Sequence[str | Path] = ()
     title: str = ""
     spec_name: str = ""
+
+    @cached_property
+    def coverages(self) -> list[SpecCoverage]:
+        """The coverage models of its specifications, `spec` first; their files are read once.
+
+        Raises:
+            RvmonError: one of the files is wrong.
+        """
+        specs = [*([] if self.spec is None else [self.spec]), *self.coverage]
+        return [load(path).coverage_model for path in specs]
 
 
 @dataclass(frozen=True, slots=True)

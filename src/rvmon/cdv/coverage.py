@@ -16,14 +16,12 @@ from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
-from rvmon.session import load
 from rvmon.spec.checked.goals import BinKind
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign, Robot
     from rvmon.cdv.plan import Played, Results
-    from rvmon.coverage.monitor import SpecCoverage
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,16 +48,6 @@ LCOV, COBERTURA = "code.lcov", "cobertura.xml"
 """The same of the code alone, beside it."""
 
 
-def spec_coverages(robot: Robot) -> list[SpecCoverage]:
-    """The coverage models of a robot's specifications: its requirements', and the further ones.
-
-    Raises:
-        RvmonError: one of the files is wrong.
-    """
-    specs = [*([] if robot.spec is None else [robot.spec]), *robot.coverage]
-    return [load(path).coverage_model for path in specs]
-
-
 def coverage_model(campaign: Campaign, robot: str) -> Model:
     """All that the tests of a robot are to show.
 
@@ -67,7 +55,7 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
         RvmonError: two of its specifications call something the same.
     """
     groups = measured_groups(campaign)
-    for one in spec_coverages(campaign.robots[robot]):
+    for one in campaign.robots[robot].coverages:
         groups += one.model.groups.values()
     try:
         return model_of(groups)

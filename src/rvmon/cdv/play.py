@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code import Code
 from rvmon.cdv.code_coverage import Meter, hits_of_states
-from rvmon.cdv.coverage import spec_coverages
 from rvmon.cdv.plan import Job, Outcome, Plan, Played, Results
 from rvmon.cdv.resume import Unfinished
 from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
@@ -87,7 +86,7 @@ class Judge(NamedTuple):
 
 def judge_of(robot: Robot) -> Judge:
     """The requirements of a robot and its coverage models, ready to watch runs."""
-    judge = Judge(None if robot.spec is None else load(robot.spec), spec_coverages(robot))
+    judge = Judge(None if robot.spec is None else load(robot.spec), robot.coverages)
     Checker(*judge)  # what is compiled now is not compiled again in each process
     return judge
 

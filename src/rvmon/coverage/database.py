@@ -89,13 +89,11 @@ class Database:
         Raises:
             CoverageError: an item is in no model, or the file cannot be written.
         """
-        known = self._items.places
-        if any((group, item) not in known for group, items in hits.items() for item in items):
-            self._items = _Items(self._stored())  # declared since, perhaps by another process
+        items = self._with((group, item) for group, items in hits.items() for item in items)
         with readable_errors(self._path):
-            entry = entry_of(test, hits, self._items.places)
+            entry = entry_of(test, hits, items.places)
         with transaction(self._tables, self._path):
-            write_entries(self._tables, [entry], self._items.ids)
+            write_entries(self._tables, [entry], items.ids)
 
     def explain(self, group: str, item: str, reason: str) -> None:
         """Add why an item is not covered; holes are shown with it.
@@ -104,7 +102,7 @@ class Database:
             CoverageError: there is no such item, or the file cannot be written.
         """
         with transaction(self._tables, self._path):
-            self._explain(_Items(self._stored()), {(group, item): [reason]})
+            self._explain(self._with([(group, item)]), {(group, item): [reason]})
 
     def exclude(self, group: str, item: str, reason: str) -> None:
         """Say that an item cannot be hit, and why: it is no goal any more, and a hit is an error.
@@ -113,8 +111,7 @@ class Database:
             CoverageError: there is no such item, or the file cannot be written.
         """
         with transaction(self._tables, self._path):
-            items = _Items(self._stored())
-            self._explain(items, {(group, item): [reason]}, "unreachable")
+            self._explain(self._with([(group, item)]), {(group, item): [reason]}, "unreachable")
 
     def merge(self, other: Database) -> None:
         """Add all that another database holds.
@@ -169,6 +166,12 @@ class Database:
     def _stored(self) -> Stored:
         with readable_errors(self._path):
             return read_groups(self._tables, self._path)
+
+    def _with(self, named: Iterable[tuple[str, str]]) -> _Items:
+        """The items as they were last read, or now if they lack one of those that are named."""
+        if any(one not in self._items.places for one in named):
+            self._items = _Items(self._stored())  # declared since, perhaps by another process
+        return self._items
 
     def _explain(
         self,

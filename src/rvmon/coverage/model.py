@@ -151,6 +151,10 @@ class Hit:
     count: int
     first: int | None = None
 
+    def __reduce__(self) -> tuple[type[Hit], tuple[int, int | None]]:
+        # Thousands of tests bring a hundred each from other processes.
+        return Hit, (self.count, self.first)
+
 
 Hits = Mapping[str, Mapping[str, Hit]]
 """By group and item; what was not hit is left out. A group or item that is no part of the model is
