@@ -1,19 +1,21 @@
-r"""Kill processes that have others work for them, at random instants: what lives on or is torn?
+r"""Kill processes at random points: what lives on, is torn or lost, or told again otherwise?
 
-    python -m benchmarks.kills --kills 50 --seed 1
+    python -m benchmarks.kills --kills 200 --only "rvmon run --resume" mqtt
 
-Each kind of parent is killed so often by SIGKILL and by SIGTERM, in turn. Prints how many of its
-processes live 2 s later, how many files are half written, how many bear a name that says that they
-are not finished, and how the parents ended. `rvmon watch --state`, `rvmon run --resume` and a
-campaign are begun again after each kill, until they come to an end: what they write is compared
-with what they write undisturbed, but for the seconds that it took. Exits 1 if something lives, is
-half written, lost or changed. Needs Linux's /proc.
+Parents that have others work for them are killed by SIGKILL and by SIGTERM, in turn: how many of
+their processes live 2 s later, how many files are half written or bear a name that says that they
+are not finished? Runs that are kept (`rvmon watch --state`, a program with a `DurableMonitor`,
+`rvmon run --resume`, shards, a campaign) are begun again after each kill until they end:
+what they write is compared with what they write undisturbed. A watch of a live door, which is not
+kept, must not have passed over a message in silence, or told a verdict twice. Exits 1 if something
+is wrong. Needs Linux's /proc.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import random
 import re
@@ -25,11 +27,16 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
-from tests.tools import killed_watch
+from tests.tools import killed_doors, killed_watch
+from tests.tools.forked import Forked
 
+import handover.cli
+from rvmon import cli
 from rvmon.cache import read_kept
 from rvmon.writing import SUFFIX
 
@@ -62,11 +69,15 @@ PARENTS = {
 WATCH = "rvmon watch --state"
 """It is killed again and again until it has judged its lines."""
 
+_JUDGE = "rvmon run s.rv . --out out/v.csv --resume"
+
 RESUMED = {
-    "rvmon run --resume": "rvmon run s.rv . --jobs 2 --resume --out out/v.csv",
-    "handover run, resumed": "handover.cli run --tests 40 --legacy --jobs 2 --out out",
+    "rvmon run --resume": [_JUDGE],
+    "rvmon run --jobs 2 --resume": [f"{_JUDGE} --jobs 2"],
+    "rvmon run --shard": [f"{_JUDGE} --shard 1/2", f"{_JUDGE} --shard 2/2", _JUDGE],
+    "handover run, resumed": ["handover run --tests 40 --legacy --jobs 2 --out out"],
 }
-"""Ended again and again, with all that they began, until they come to an end."""
+"""Commands that are ended again and again, with all that they began, until they come to an end."""
 
 SECONDS = re.compile(rb'("seconds": ?|simulated in |\bin )[\d.]+|"spent": ?[\d.]+')
 
@@ -211,80 +222,115 @@ def _written(folder: Path) -> dict[str, bytes]:
     }
 
 
-def _resumed(words: list[str], folder: Path, kills: int, dice: random.Random) -> str:
-    """Run a command undisturbed, then another way to the same; what is to be told."""
-    out = folder / "out"
-    options = {"cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    began = time.monotonic()
-    subprocess.run(words, check=False, **options)
-    took = time.monotonic() - began
-    known = _written(out)
-    shutil.rmtree(out)
-    out.mkdir()
-    done = on_the_way = finished = 0
-    while done < kills:
-        with subprocess.Popen(words, start_new_session=True, **options) as process:
-            try:
-                process.wait(dice.uniform(0.1, took))
-                finished += 1
-            except subprocess.TimeoutExpired:
-                done += 1
-                os.killpg(process.pid, signal.SIGKILL)
-        left = [path for path in out.rglob("*") if path.suffix in (".journal", ".unfinished")]
-        on_the_way += bool(left)
-        if not left and _written(out) != known and _written(out):
-            return f"DIFFERS after {done} kills"
-        if not left:
-            shutil.rmtree(out)
-            out.mkdir()
-    subprocess.run(words, check=False, **options)
-    same = "same" if _written(out) == known else "DIFFERS"
-    return f"{done} kills, {on_the_way} left something, {finished} came to an end: {same}"
+def _main(words: str) -> object:
+    program, *arguments = words.split(" ")
+    return {"rvmon": cli.main, "handover": handover.cli.main}[program](arguments)
+
+
+def _kept(out: Path) -> int:
+    """So many bytes are kept of what is not finished."""
+    size = 0
+    for path in out.rglob("*"):
+        with suppress(FileNotFoundError):  # it is finished just now
+            size += path.stat().st_size * (path.suffix in (".journal", ".unfinished"))
+    return size
+
+
+def resumed(commands: Sequence[str], folder: Path, kills: int, seed: int) -> Counter[str]:
+    """Run commands undisturbed, then killed whenever more than before is kept; again, if need be.
+
+    Each kill interrupts something: what was kept had grown by a random size since it was begun.
+    """
+    dice, found, out = random.Random(seed), Counter[str](), folder / "out"
+    full = [0] * len(commands)
+    known: dict[str, bytes] | None = None
+    while known is None or found["kills"] < kills:
+        out.mkdir()
+        for place, words in enumerate(commands):
+            is_over = False
+            while not is_over:
+                before = _kept(out)
+                grown = dice.uniform(1, full[place] / 5) if known else math.inf
+
+                def is_time(place: int = place, least: float = before + grown) -> bool:
+                    now = _kept(out)
+                    full[place] = max(full[place], now)
+                    return now > least
+
+                process = Forked(partial(_main, words), folder, folder / "told")
+                is_over = not process.kill_when(is_time)
+                found["kills"] += not is_over
+                found["half written"] += sum(map(_is_half_written, _files(out)))
+        known = known or _written(out)
+        found["runs to the end"] += 1
+        found["changed runs"] += _written(out) != known
+        found["left behind"] += _kept(out) > 0
+        shutil.rmtree(out)
+    return found
+
+
+def _judged_and_resumed(kind: str, folder: Path, kills: int, seed: int) -> Counter[str]:
+    _write_recordings(folder, 200, 2000, random.Random(seed))
+    return resumed(RESUMED[kind], folder, kills, seed)
+
+
+def _kept_watch(kind: str, folder: Path, kills: int, seed: int) -> Counter[str]:
+    """Verdicts of lines, told by lives that are killed, beside those of one that is not."""
+    killed_watch.written(folder, seed, 40 * kills)
+    expected = killed_watch.whole(folder)
+    run = partial(cli.main, killed_watch.WATCH.split(" "))
+    if kind != WATCH:
+        run = partial(killed_watch.program, folder)
+    found, done = killed_watch.killed(folder, kills, seed, run)
+    return Counter(
+        {
+            "kills": done,
+            "verdicts": len(expected),
+            "lost": len(expected.keys() - found.keys()),
+            "of nobody": len(found.keys() - expected.keys()),
+            "changed": sum(found[n] != expected[n] for n in found.keys() & expected),
+        }
+    )
+
+
+def _parents(kind: str, folder: Path, kills: int, seed: int) -> Counter[str]:
+    rng = random.Random(f"{seed} {kind}")
+    inputs(folder)
+    trial = Trial(PARENTS[kind], folder)
+    for number in range(kills):
+        trial.kill(number, rng.uniform(0, trial.span))
+    return trial.found
+
+
+KINDS: dict[str, Callable[[str, Path, int, int], Counter[str]]] = {
+    **dict.fromkeys(PARENTS, _parents),
+    **dict.fromkeys(RESUMED, _judged_and_resumed),
+    **dict.fromkeys((WATCH, "DurableMonitor"), _kept_watch),
+    **dict.fromkeys(killed_doors.DOORS, killed_doors.killed),
+}
+
+WRONG = (
+    *("survivors", "half written", "changed runs", "left behind"),
+    *("lost", "of nobody", "changed", "told twice", "left out", "ended by itself"),
+)
+"""Ends of what must not be counted."""
 
 
 def main(argv: Sequence[str]) -> int:
     """Kill, count and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--kills", type=int, default=50, help="of each kind of parent")
+    parser.add_argument("--kills", type=int, default=50, help="of each kind")
     parser.add_argument("--seed", type=int, default=1)
-    labels = [*PARENTS, *RESUMED, WATCH]
-    parser.add_argument("--only", choices=labels, nargs="+", default=labels, metavar="KIND")
+    parser.add_argument("--only", choices=KINDS, nargs="+", default=[*KINDS], metavar="KIND")
     options = parser.parse_args(argv)
     bad = 0
-    for label, parent in PARENTS.items():
-        if label not in options.only:
-            continue
-        rng = random.Random(f"{options.seed} {label}")
+    for kind in options.only:
         with tempfile.TemporaryDirectory() as folder:
-            inputs(Path(folder))
-            trial = Trial(parent, Path(folder))
-            for number in range(options.kills):
-                trial.kill(number, rng.uniform(0, trial.span))
-        print(f"{label}: {options.kills} kills within {trial.span:.1f} s", flush=True)
-        for what, count in sorted(trial.found.items()):
-            print(f"  {what}: {count}", flush=True)
-            bad += count * what.endswith(("survivors", "half written"))
-    for what in RESUMED:
-        if what not in options.only:
-            continue
-        dice = random.Random(options.seed)
-        with tempfile.TemporaryDirectory() as name:
-            out = Path(name) / "out"
-            out.mkdir()
-            _write_recordings(Path(name), 200, 2000, dice)
-            told = _resumed(_words(RESUMED[what]), Path(name), options.kills, dice)
-        bad += "DIFFERS" in told
-        print(f"{what}: {told}", flush=True)
-    if WATCH in options.only:
-        with tempfile.TemporaryDirectory() as folder:
-            killed_watch.written(Path(folder), options.seed, 40 * options.kills)
-            expected = killed_watch.whole(Path(folder))
-            found, done = killed_watch.killed(Path(folder), options.kills, options.seed)
-        lost, other = expected.keys() - found.keys(), found.keys() - expected.keys()
-        changed = sum(found[number] != expected[number] for number in found.keys() & expected)
-        print(f"{WATCH}: {done} kills, {len(expected):,} verdicts")
-        print(f"  lost: {len(lost)}, changed: {changed}, of nobody: {len(other)}")
-        bad += len(lost) + changed + len(other)
+            found = KINDS[kind](kind, Path(folder), options.kills, options.seed)
+        print(f"{kind}: {options.kills} kills", flush=True)
+        for what, count in sorted(found.items()):
+            print(f"  {what}: {count:,}", flush=True)
+            bad += count * what.endswith(WRONG)
     return 1 if bad else 0
 
 

@@ -1,20 +1,26 @@
-"""A watch that is killed at random points and started again: are its verdicts those of one run?"""
+"""A run that is kept, whose process is killed at random points: are its verdicts those of one?"""
 
 from __future__ import annotations
 
 import json
 import random
-import subprocess
-import sys
-import time
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import redirect_stderr, redirect_stdout
+import signal
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
+from rvmon import loads
+from rvmon.adapters.json_objects import decoded_object
 from rvmon.cli import main
-from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.errors import TraceError
+from rvmon.live import DurableMonitor, Judgement
+from rvmon.readers.jsonl_rows import read_object
+from rvmon.trace.time import NEVER, TICKS_PER_SECOND
+from rvmon.verdict.attempt import Attempt
+from tests.tools.forked import Forked
 
 SPEC = """
 spec kept
@@ -75,16 +81,6 @@ def told(lines: Iterable[str], known: Verdicts) -> Verdicts:
     return known
 
 
-def watch(folder: Path, state: str, out: str) -> subprocess.Popen[bytes]:
-    """Begin to watch the lines."""
-    words = [sys.executable, "-m", "rvmon", "watch", "kept.rv", "lines.jsonl"]
-    words += ["--state", state, "--format", "json"]
-    with (folder / out).open("wb") as file:
-        return subprocess.Popen(  # noqa: S603
-            words, cwd=folder, stdout=file, stderr=subprocess.DEVNULL
-        )
-
-
 def whole(folder: Path) -> Verdicts:
     """What it tells that nobody kills, in this process."""
     files = (str(folder / name) for name in ("kept.rv", "lines.jsonl", "whole.state"))
@@ -98,20 +94,40 @@ def whole(folder: Path) -> Verdicts:
     return told((folder / "whole.out").read_text().splitlines(keepends=True), {})
 
 
-def killed(folder: Path, kills: int, seed: int) -> tuple[Verdicts, int]:
+WATCH = "watch kept.rv lines.jsonl --state killed.state --format json"
+
+
+def program(folder: Path) -> None:
+    """What a program does that has its samples kept, instead of `rvmon watch --state`."""
+    spec = loads(SPEC)
+
+    def tell(number: int, attempt: Attempt) -> None:
+        told = {"number": number, **Judgement("", 1, attempt).to_dict()}
+        print(json.dumps(told), flush=True)
+
+    monitor = DurableMonitor(
+        spec, folder / "killed.state", tell, every=50, keep=1000, settle="next"
+    )
+    lines = [one for one in (folder / "lines.jsonl").read_bytes().splitlines() if one.strip()]
+    for line in lines[monitor.taken :]:
+        try:
+            t, values = read_object(decoded_object(line), spec.schema, Counter())
+        except TraceError:
+            monitor.miss()
+            continue
+        with suppress(TraceError):
+            monitor.step_ns(t, values)
+    monitor.save()
+
+
+def killed(folder: Path, kills: int, seed: int, run: Callable[[], object]) -> tuple[Verdicts, int]:
     """What it tells in all where it is killed, and how often it was before it came to the end."""
     rng, found, done = random.Random(seed), Verdicts(), 0
     each = max(1, (folder / "whole.out").stat().st_size // (kills + 1))
     while True:
-        process = watch(folder, "killed.state", "killed.out")
-        after = rng.randrange(1, 2 * each) if done < kills else -1
-        while after > 0 and process.poll() is None:
-            if (folder / "killed.out").stat().st_size >= after:
-                process.kill()
-                done += 1
-                break
-            time.sleep(0.001)
-        process.wait()
-        told((folder / "killed.out").read_text().splitlines(keepends=True), found)
-        if process.returncode >= 0:
+        process = Forked(run, folder, folder / "killed.out")
+        after = rng.randrange(1, 2 * each) if done < kills else NEVER
+        done += process.kill_behind(after)
+        told(process.lines(), found)
+        if process.code != -signal.SIGKILL:
             return found, done
