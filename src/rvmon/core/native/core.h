@@ -201,6 +201,7 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user);
  * can hang something on a piece, and is told by `let_go` when that serves no more. */
 typedef struct rv_piece rv_piece;
 const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count); /* a position, then truths */
+int32_t rv_piece_room(const rv_piece *piece);                         /* words that it can have */
 rv_piece *rv_piece_next(const rv_piece *piece);
 void **rv_piece_held(rv_piece *piece, int32_t which);                 /* of who reads it: 0 or 1 */
 

@@ -87,6 +87,7 @@ typedef struct {
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
+    int32_t asked;             /* so many were before the position that was asked for last */
     bool begun;                /* the value before all of them */
 } changes;
 

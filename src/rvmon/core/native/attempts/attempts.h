@@ -13,7 +13,7 @@ typedef struct {
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
-bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due);
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due, bool *slides);
 int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before);
 int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
 int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,

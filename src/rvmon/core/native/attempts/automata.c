@@ -85,14 +85,16 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
     return moved;
 }
 
-/* Whether a token that came from a step at `t` would stay where it is if the letter stays; `due` is when
- * the next region of its ages begins. */
-bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due)
+/* Whether a token that came from a step at `t` would stay where it is if the letter stays, or `slides`:
+ * but for clocks that each tick starts again. `due` is when the next region of the other ages begins. */
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due, bool *slides)
 {
     const int64_t next = t + a->step;
     const int32_t width = a->widths[k->location];
+    int64_t anchors[CLOCKS_MOST];
     int32_t row = row_of(a, k, t, due);
     int64_t until;
+    bool slid = false;
     const int32_t *sources;
     int32_t number;
     int32_t c;
@@ -108,9 +110,18 @@ bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t 
     }
     sources = &a->sources[number * a->clocks];
     for (c = 0; c < width; c++) {
-        if ((sources[c] < 0) || (k->clocks[sources[c]] != k->clocks[c])) {
+        anchors[c] = (sources[c] < 0) ? next : k->clocks[sources[c]];
+        if ((sources[c] < 0) && (k->clocks[c] == t) && (a->step == 1)) {
+            slid = true;
+        } else if (anchors[c] != k->clocks[c]) {
             return false;
+        } else {
+            /* It is as it was. */
         }
+    }
+    if (slid) {
+        *due = next_cut(a, k, t, anchors);
+        *slides = true;
     }
     return true;
 }

@@ -47,7 +47,7 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
         const bool moved = step_token(a, k, g->t, letter);
         if (k->location <= PASSED) {
             due = g->t;
-        } else if (!rests(a, k, g->t, letter, &due) && moved) {
+        } else if (!rests(a, k, g->t, letter, &due, &g->j->slides) && moved) {
             set_restless(g->r, g->index);
             due = g->t + 1;
         } else {

@@ -116,6 +116,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     queued *made;
     int64_t clock = 0;
     int64_t due;
+    bool slides = false;
     queued x;
     token k;
     k.location = g.a->initial;
@@ -146,7 +147,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         r->home->monitor->spoilt = true;
         return false;
     }
-    if (!rests(g.a, &k, t, g.j->letter, &due)) {
+    if (!rests(g.a, &k, t, g.j->letter, &due, &slides) || slides) {
         set_restless(r, index);
         due = t + 1;
     }

@@ -131,7 +131,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
 }
 
 /* Store the truth of a node, and tell the judges that it is linked with. */
-static void store(run *r, int32_t place, uint8_t value, int64_t t)
+static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
     const uint8_t was = r->truth[place];
@@ -202,7 +202,7 @@ void blank_out(run *r, int64_t t)
 }
 
 /* Store another truth of a node; what depends on it is to be worked out. */
-static void change(run *r, int32_t place, uint8_t value, int64_t t)
+static inline void change(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const list parents = r->part->nodes[place].parents[r->at.phase];
     const int32_t *parent = LIST(PLAN(r), parents);

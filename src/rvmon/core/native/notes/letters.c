@@ -18,6 +18,11 @@ const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count)
     return piece->words;
 }
 
+int32_t rv_piece_room(const rv_piece *piece)
+{
+    return LETTERS_IN_PIECE * piece->stride;
+}
+
 rv_piece *rv_piece_next(const rv_piece *piece)
 {
     return piece->next;

@@ -179,18 +179,20 @@ truth_times truth_times_of(const run *r, int32_t node, bool before)
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
-    const int32_t *end = node + nodes.count;
     int64_t *to = words;
-    while (node < end) {
-        uint64_t word = 0;
-        int32_t shift;
-        for (shift = 0; (shift < 2 * TRUTHS_IN_WORD) && (node < end); shift += 2) {
-            const logged_node *was = before ? moved_last(r, *node) : NULL;
-            word |= (uint64_t)((was != NULL) ? was->truth : r->truth[*node]) << shift;
-            node++;
+    uint64_t word = 0;
+    uint32_t shift = 0;
+    int32_t i;
+    for (i = 0; i < nodes.count; i++) {
+        const logged_node *was = before ? moved_last(r, node[i]) : NULL;
+        word |= (uint64_t)((was != NULL) ? was->truth : r->truth[node[i]]) << shift;
+        shift += 2;
+        if ((shift == 2 * TRUTHS_IN_WORD) || (i + 1 == nodes.count)) {
+            (void)memcpy(to, &word, sizeof word);
+            to++;
+            word = 0;
+            shift = 0;
         }
-        (void)memcpy(to, &word, sizeof word);
-        to++;
     }
 }
 

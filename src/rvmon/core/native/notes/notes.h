@@ -32,13 +32,13 @@ void tell_open(rv_monitor *m, bool begins);
 void forget_notes(rv_monitor *m, int64_t words, int32_t spans);
 
 /* Truths in a word, two bits each. */
-#define TRUTHS_IN_WORD 32
+#define TRUTHS_IN_WORD 32U
 /* Letters in a piece. */
 #define LETTERS_IN_PIECE 64
 
 static inline int32_t words_for(int32_t nodes)
 {
-    return (nodes + TRUTHS_IN_WORD - 1) / TRUTHS_IN_WORD;
+    return (int32_t)(((uint32_t)nodes + TRUTHS_IN_WORD - 1U) / TRUTHS_IN_WORD);
 }
 
 static inline int64_t *entry_of(const truths *ring, int32_t i, int32_t words)

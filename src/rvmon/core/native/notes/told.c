@@ -168,8 +168,12 @@ void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t
     before_decision *was = &m->before;
     was->location = location;
     was->width = a->widths[location];
-    if (was->width > 0) {
+    if (was->width == 1) { /* as mostly */
+        was->clocks[0] = clocks[0];
+    } else if (was->width > 1) {
         (void)memcpy(was->clocks, clocks, (size_t)was->width * sizeof *clocks);
+    } else {
+        /* It has none. */
     }
 }
 

@@ -10,7 +10,7 @@ enum { TAKEN, LEFT, FAILED };
 
 /* Take a sample of plain values that is in order; if it is left nothing happened. No code in Python
  * runs in here, so that no other call of its thread can come in between. */
-static int take(monitor *c, int64_t t, PyObject *values, bool looked)
+static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
 {
     int code = RV_FINISHED;
     bool laid;
@@ -63,7 +63,7 @@ static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssi
 }
 
 /* Take a sample quickly, and give out what it decided; NULL without an error if it is left. */
-static PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
+static inline PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
 {
     PyObject *made = NULL;
     Py_BEGIN_CRITICAL_SECTION(c);
@@ -292,6 +292,7 @@ static void monitor_dealloc(PyObject *self)
     PyMem_Free(c->captured);
     free(c->plan);
     Py_XDECREF(c->data);
+    Py_XDECREF(c->nothing);
     PyObject_GC_Del(self);
     Py_DECREF(type);
 }

@@ -15,9 +15,10 @@ typedef struct {
 typedef struct {
     int64_t *words;            /* NULL: there is none; behind them the state of the propositions */
     PyObject *pieces;          /* letters; NULL: they do not matter */
-    PyObject *last;
+    PyObject *last;            /* bytes, of which the first `last_count` words are its last letters */
+    int32_t last_count;
     int32_t count;
-    int32_t state_count;    /* 0: nobody asks */
+    int32_t state_count;       /* 0: nobody asks */
 } note_copy;
 
 /* The fields that are objects; from REASON on those that are worked out late. */
@@ -35,6 +36,7 @@ typedef struct {
     long long triggered;
     long long origin;          /* the first instant of the run */
     char in_doubt;
+    bool is_worked_out;        /* whether a field from NOTED on may be set */
 } attempt_record;
 
 /* What the values of a signal or field are. */
@@ -105,6 +107,7 @@ typedef struct {
     PyObject *verdicts;
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
+    PyObject *nothing;         /* the tuple of no attempts */
     PyObject *many;            /* makes a sequence of records that makes attempts as they are read; or None */
     note_cache notes;
     int64_t keep;              /* so many records of each kind are kept; -1: all */
@@ -148,13 +151,13 @@ struct figures {
 void note_dropped(void *user, void *held);
 void free_dropped(note_cache *cache);
 PyObject *bytes_of_words(const int64_t *words, int64_t count);
-bool letters_of(const rv_note *note, PyObject **pieces, PyObject **last);
+PyObject *letters_of(const rv_note *note);
 bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *record);
 void free_note(note_copy *note);
 PyObject *noted_with(const note_copy *note, PyObject *values);
 
 /* ---- module_record.c */
-void hide_record(PyObject *self);
+attempt_record *new_record(PyTypeObject *type);
 PyObject *record_type(PyObject *module);
 bool is_record(PyTypeObject *type);
 

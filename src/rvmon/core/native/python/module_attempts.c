@@ -99,11 +99,10 @@ static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_nu
 {
     const int32_t count = (captured == NULL) ? 0 : c->captured[told->requirement];
     const int64_t began = rv_times_of(c->m).began;
-    attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
+    attempt_record *made = new_record(c->attempt);
     if (made == NULL) {
         return NULL;
     }
-    hide_record((PyObject *)made);
     made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
     made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
     made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
@@ -159,28 +158,12 @@ void gather_records(const monitor *c, int64_t first, bool open, gathering *g)
     }
 }
 
-/* Have records be dropped that are too many, all being given out. */
-static void trim_given(monitor *c)
+/* Give out the records up to so many. */
+static PyObject *attempts_up_to(monitor *c, int64_t count)
 {
-    if ((c->keep >= 0) && rv_trim(c->m)) {
-        const rv_record *records;
-        c->given = rv_records(c->m, &records);
-        free_dropped(&c->notes);
-    }
-}
-
-/* The attempts that were decided since the last time. */
-PyObject *decided_since(monitor *c)
-{
-    const rv_record *records;
-    const int64_t count = rv_records(c->m, &records);
     const int64_t first = c->given;
     PyObject *made;
     gathering g;
-    if (count == first) {
-        trim_given(c);
-        return PyTuple_New(0); /* always the same one */
-    }
     c->given = count;
     if ((count - first > MOST_AT_ONCE) && (c->many != Py_None)) {
         PyObject *raw = records_from(c, first);
@@ -193,7 +176,19 @@ PyObject *decided_since(monitor *c)
         gather_records(c, first, false, &g);
         made = attempts_of(&g);
     }
-    trim_given(c);
+    return made;
+}
+
+/* The attempts that were decided since the last time; records that are too many are dropped then. */
+PyObject *decided_since(monitor *c)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    PyObject *made = (count == c->given) ? Py_NewRef(c->nothing) : attempts_up_to(c, count);
+    if ((c->keep >= 0) && rv_trim(c->m)) {
+        c->given = rv_records(c->m, &records);
+        free_dropped(&c->notes);
+    }
     return made;
 }
 

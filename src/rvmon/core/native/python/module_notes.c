@@ -1,9 +1,9 @@
 /* How module.c gives out notes.
  *
  * What is given out outlives the monitor: nothing of it is the core's memory. An attempt has a copy of
- * its words, which become bytes when someone asks. A piece of letters, which attempts share, becomes bytes
- * once it is full, and hangs on to them; of the last one there are bytes for each length at which it was
- * asked for. */
+ * its words, which become bytes when someone asks. A piece of letters hangs on to bytes, which attempts
+ * share: of a full one they are its letters; of one that grows there is room for all that it can have, and
+ * behind that a word says how many are written. An attempt knows how many of them are its own. */
 #include "python/module.h"
 
 /* A piece is gone, which may be while other threads of Python run. */
@@ -36,13 +36,14 @@ PyObject *bytes_of_words(const int64_t *words, int64_t count)
     return PyBytes_FromStringAndSize((const char *)words, (Py_ssize_t)count * (Py_ssize_t)sizeof *words);
 }
 
-/* The first words of a piece; it hangs on to them. */
-static PyObject *bytes_of_piece(rv_piece *piece, int32_t count)
+/* The letters of a full piece; it hangs on to them. */
+static PyObject *bytes_of_full(rv_piece *piece)
 {
     PyObject **held = (PyObject **)rv_piece_held(piece, 0);
-    if ((*held == NULL) || (PyBytes_Size(*held) != (Py_ssize_t)count * (Py_ssize_t)sizeof(int64_t))) {
-        int32_t all;
-        PyObject *made = bytes_of_words(rv_piece_words(piece, &all), count);
+    int32_t count;
+    const int64_t *words = rv_piece_words(piece, &count);
+    if ((*held == NULL) || (PyBytes_Size(*held) != (Py_ssize_t)count * (Py_ssize_t)sizeof *words)) {
+        PyObject *made = bytes_of_words(words, count);
         if (made == NULL) {
             return NULL;
         }
@@ -50,6 +51,40 @@ static PyObject *bytes_of_piece(rv_piece *piece, int32_t count)
         *held = made;
     }
     return Py_NewRef(*held);
+}
+
+/* Bytes of which the first words are the first ones of a piece, which hangs on to them. */
+static PyObject *bytes_from(rv_piece *piece, int32_t count)
+{
+    PyObject **held = (PyObject **)rv_piece_held(piece, 0);
+    const int32_t room = rv_piece_room(piece);
+    const Py_ssize_t size = ((Py_ssize_t)room + 1) * (Py_ssize_t)sizeof(int64_t);
+    int32_t all;
+    const int64_t *words = rv_piece_words(piece, &all);
+    int64_t *to;
+    if (*held == NULL) {
+        *held = PyBytes_FromStringAndSize(NULL, size);
+        if (*held == NULL) {
+            return NULL;
+        }
+        ((int64_t *)(void *)PyBytes_AsString(*held))[room] = 0;
+    }
+    if (PyBytes_Size(*held) == size) {
+        to = (int64_t *)(void *)PyBytes_AsString(*held);
+        for (; to[room] < count; to[room]++) {
+            to[to[room]] = words[to[room]];
+        }
+    }
+    return Py_NewRef(*held);
+}
+
+/* The first words of some bytes. */
+static PyObject *first_words(PyObject *bytes, int32_t count)
+{
+    if (PyBytes_Size(bytes) == (Py_ssize_t)count * (Py_ssize_t)sizeof(int64_t)) {
+        return Py_NewRef(bytes);
+    }
+    return bytes_of_words((const int64_t *)(const void *)PyBytes_AsString(bytes), count);
 }
 
 /* The pieces of a note but for the last one, as a tuple, on which that one hangs. */
@@ -61,12 +96,10 @@ static PyObject *pieces_of(const rv_note *note)
     rv_piece *one = note->first;
     Py_ssize_t count = 0;
     Py_ssize_t i;
-    int32_t words;
     if (note->first == note->last) {
         return PyTuple_New(0);
     }
-    (void)rv_piece_words(note->first, &words);
-    first = bytes_of_piece(note->first, words);
+    first = bytes_of_full(note->first);
     if (first == NULL) {
         return NULL;
     }
@@ -82,9 +115,7 @@ static PyObject *pieces_of(const rv_note *note)
     made = PyTuple_New(count);
     one = note->first;
     for (i = 0; (made != NULL) && (i < count); i++) {
-        PyObject *own;
-        (void)rv_piece_words(one, &words);
-        own = bytes_of_piece(one, words);
+        PyObject *own = bytes_of_full(one);
         if ((own == NULL) || (PyTuple_SetItem(made, i, own) < 0)) {
             Py_CLEAR(made);
         }
@@ -97,17 +128,28 @@ static PyObject *pieces_of(const rv_note *note)
     return made;
 }
 
-/* The letters of a note: all pieces but for the last one, that one; both None if there are none. */
-bool letters_of(const rv_note *note, PyObject **pieces, PyObject **last)
+/* The letters of a note: all pieces but for the last one, and that one; both None if there are none. */
+PyObject *letters_of(const rv_note *note)
 {
+    PyObject *pieces;
+    PyObject *all;
+    PyObject *last = NULL;
+    PyObject *made = NULL;
     if (note->first == NULL) {
-        *pieces = Py_NewRef(Py_None);
-        *last = Py_NewRef(Py_None);
-        return true;
+        return PyTuple_Pack(2, Py_None, Py_None);
     }
-    *pieces = pieces_of(note);
-    *last = bytes_of_piece(note->last, note->last_count);
-    return (*pieces != NULL) && (*last != NULL);
+    pieces = pieces_of(note);
+    all = bytes_from(note->last, note->last_count);
+    if (all != NULL) {
+        last = first_words(all, note->last_count);
+    }
+    if ((pieces != NULL) && (last != NULL)) {
+        made = PyTuple_Pack(2, pieces, last);
+    }
+    Py_XDECREF(pieces);
+    Py_XDECREF(all);
+    Py_XDECREF(last);
+    return made;
 }
 
 /* Copy the note of a record; false with an error. */
@@ -129,7 +171,13 @@ bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *record)
         (void)memcpy(&to->words[note.count], note.state,
                      (size_t)note.state_count * sizeof *to->words);
     }
-    return (note.first == NULL) || letters_of(&note, &to->pieces, &to->last);
+    if (note.first == NULL) {
+        return true;
+    }
+    to->pieces = pieces_of(&note);
+    to->last = bytes_from(note.last, note.last_count);
+    to->last_count = note.last_count;
+    return (to->pieces != NULL) && (to->last != NULL);
 }
 
 void free_note(note_copy *note)
@@ -146,6 +194,7 @@ PyObject *noted_with(const note_copy *note, PyObject *values)
 {
     PyObject *words;
     PyObject *state;
+    PyObject *last;
     PyObject *made = NULL;
     if (note->words == NULL) {
         return Py_NewRef(values);
@@ -153,13 +202,14 @@ PyObject *noted_with(const note_copy *note, PyObject *values)
     words = bytes_of_words(note->words, note->count);
     state = (note->state_count > 0)
         ? bytes_of_words(&note->words[note->count], note->state_count) : Py_NewRef(Py_None);
-    if ((words != NULL) && (state != NULL)) {
+    last = (note->last != NULL) ? first_words(note->last, note->last_count) : Py_NewRef(Py_None);
+    if ((words != NULL) && (state != NULL) && (last != NULL)) {
         made = PyTuple_Pack(5, values, words, state,
-                            (note->pieces != NULL) ? note->pieces : Py_None,
-                            (note->last != NULL) ? note->last : Py_None);
+                            (note->pieces != NULL) ? note->pieces : Py_None, last);
     }
     Py_XDECREF(words);
     Py_XDECREF(state);
+    Py_XDECREF(last);
     return made;
 }
 

@@ -93,8 +93,9 @@ PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
                          &c->decisions, &c->details, &c->many)) {
         c->owner = Py_NewRef(args);
+        c->nothing = PyTuple_New(0);
         c->keep = -1;
-        if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
+        if ((c->nothing != NULL) && open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
             && is_record(c->attempt) && find_captured(c) && set_absent(c, absent)) {
             return (PyObject *)c;
         }

@@ -10,20 +10,28 @@ static bool is_collected(PyTypeObject *type)
     return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
 }
 
-/* Hide a record that was just made from the collector, whose time it would take for nothing. */
-void hide_record(PyObject *self)
+/* A record without fields, of which the collector does not know, whose time it would take for nothing;
+ * NULL with an error. */
+attempt_record *new_record(PyTypeObject *type)
 {
-    if (is_collected(Py_TYPE(self))) {
-        PyObject_GC_UnTrack(self);
+    attempt_record *made;
+    if (!is_collected(type)) {
+        return (attempt_record *)PyType_GenericAlloc(type, 0);
     }
+    made = (attempt_record *)_PyObject_GC_New(type);
+    if (made != NULL) {
+        (void)memset(made->objects, 0, sizeof *made - offsetof(attempt_record, objects));
+    }
+    return made;
 }
 
 static void record_dealloc(PyObject *self)
 {
     attempt_record *own = (attempt_record *)self;
     PyTypeObject *type = Py_TYPE(self);
+    const int32_t count = own->is_worked_out ? OBJECTS : NOTED;
     int32_t i;
-    for (i = 0; i < OBJECTS; i++) {
+    for (i = 0; i < count; i++) {
         Py_XDECREF(own->objects[i]);
     }
     Py_XDECREF(own->values);
@@ -56,6 +64,7 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     attempt_record *own = (attempt_record *)self;
     PyObject *was = own->objects[NOTED];
     (void)unused;
+    own->is_worked_out = true;
     own->objects[NOTED] = (value != NULL) ? Py_NewRef(value) : NULL;
     Py_XDECREF(was);
     Py_CLEAR(own->values);
@@ -87,8 +96,10 @@ static PyObject *get_late(PyObject *self, void *place)
 
 static int set_late(PyObject *self, PyObject *value, void *place)
 {
-    PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
+    attempt_record *own = (attempt_record *)self;
+    PyObject **field = &own->objects[(uintptr_t)place];
     PyObject *was = *field;
+    own->is_worked_out = true;
     *field = (value != NULL) ? Py_NewRef(value) : NULL;
     Py_XDECREF(was);
     return 0;

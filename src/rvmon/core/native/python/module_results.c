@@ -69,14 +69,7 @@ static PyObject *spans_of(const monitor *c)
     int32_t i;
     rv_note note;
     for (i = 0; (made != NULL) && rv_span(c->m, i, &note); i++) {
-        PyObject *pieces = NULL;
-        PyObject *last = NULL;
-        PyObject *both = NULL;
-        if (letters_of(&note, &pieces, &last)) {
-            both = PyTuple_Pack(2, pieces, last);
-        }
-        Py_XDECREF(pieces);
-        Py_XDECREF(last);
+        PyObject *both = letters_of(&note);
         if ((both == NULL) || (PyList_Append(made, both) < 0)) {
             Py_CLEAR(made);
         }

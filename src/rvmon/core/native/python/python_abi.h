@@ -207,6 +207,7 @@ PyObject *PyModuleDef_Init(PyModuleDef *);
 
 PyObject *PyType_FromModuleAndSpec(PyObject *, PyType_Spec *, PyObject *);
 PyObject *PyType_GenericAlloc(PyTypeObject *, Py_ssize_t);
+PyObject *_PyObject_GC_New(PyTypeObject *);
 unsigned long PyType_GetFlags(PyTypeObject *);
 void *PyType_GetSlot(PyTypeObject *, int);
 int PyType_IsSubtype(PyTypeObject *, PyTypeObject *);

@@ -36,13 +36,14 @@ bool grow_records(rv_monitor *m, int64_t wanted)
     return true;
 }
 
-void keep_record(rv_monitor *m, const rv_record *record)
+/* One record more; NULL: there is no room. */
+rv_record *next_record(rv_monitor *m)
 {
     if ((m->record_count == m->record_room) && !grow_records(m, m->record_count + 1)) {
-        return;
+        return NULL;
     }
-    m->records[m->record_count] = *record;
     m->record_count++;
+    return &m->records[m->record_count - 1];
 }
 
 /* Tell of an attempt that has its number. */
@@ -51,7 +52,8 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
 {
     const judge_plan *judged = &r->part->judges[index];
     const bool apart = r->part->plan->captured > 0;
-    rv_record record;
+    int64_t captured = -1;
+    rv_record *record;
     if ((verdict == RV_PASS) && !x->sure) {
         margin_vanished(r->home->monitor, x->record);
         return; /* it was met, triggered or not */
@@ -67,21 +69,26 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
         j->failed += (verdict == RV_FAIL) ? 1U : 0U;
         j->inconclusive += (verdict == RV_INCONCLUSIVE) ? 1U : 0U;
     }
-    (void)memset(&record, 0, sizeof record);
-    record.requirement = judged->requirement;
-    record.number = number;
-    record.triggered = x->triggered;
-    record.decided = t;
-    record.note = note;
-    record.verdict = verdict;
-    record.decision = decision;
-    record.in_doubt = x->sure ? 0 : 1;
-    record.captured = apart
-        ? keep_captured(r->home->monitor, r->captured, r->part->plan->captured) : -1;
-    if (apart && (record.captured < 0)) {
-        return; /* it would say other values */
+    if (apart) {
+        captured = keep_captured(r->home->monitor, r->captured, r->part->plan->captured);
+        if (captured < 0) {
+            return; /* it would say other values */
+        }
     }
-    keep_record(r->home->monitor, &record);
+    record = next_record(r->home->monitor);
+    if (record == NULL) {
+        return;
+    }
+    (void)memset(record, 0, sizeof *record);
+    record->requirement = judged->requirement;
+    record->number = number;
+    record->triggered = x->triggered;
+    record->decided = t;
+    record->captured = captured;
+    record->note = note;
+    record->verdict = verdict;
+    record->decision = decision;
+    record->in_doubt = x->sure ? 0 : 1;
 }
 
 /* Whether a record stands before another: by decision, requirement, number. */

@@ -6,7 +6,7 @@
 
 /* ---- records.c */
 bool grow_records(rv_monitor *m, int64_t wanted);
-void keep_record(rv_monitor *m, const rv_record *record);
+rv_record *next_record(rv_monitor *m);
 int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count);
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
             uint8_t decision, int64_t t, int64_t note);

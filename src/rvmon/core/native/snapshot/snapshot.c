@@ -86,8 +86,12 @@ static void carry_records(carrier *c, rv_monitor *m)
             }
         }
         if (c->reading && !is_lost(c)) {
+            rv_record *made;
             check_note(c, parts[one.requirement], &one);
-            keep_record(m, &one);
+            made = next_record(m);
+            if (made != NULL) {
+                *made = one;
+            }
         }
     }
     m->sorted = c->reading ? m->record_count : m->sorted;

@@ -38,7 +38,7 @@ static const operator_plan *window_at(const chaining *g, int32_t level)
 /* The first position from which a window reaches one. */
 static int64_t reached_from(const chaining *g, int64_t position, int64_t distance)
 {
-    const changes *stamps = &g->c->stamps;
+    changes *stamps = &g->c->stamps;
     int32_t i;
     if (!g->sparse || (distance == 0)) {
         return moved(position, -distance);
@@ -210,16 +210,16 @@ void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
 }
 
 /* The value of the chain at a position, and the stamp as of which it is known. */
-static bool known_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp)
+static bool known_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
-    const changes *stamps = &g->c->stamps;
+    changes *stamps = &g->c->stamps;
     int64_t position = at;
     int64_t over = INT64_MIN;
     bool value = false;
     int32_t level;
     for (level = g->depth; level >= 1; level--) {
         const operator_plan *n = window_at(g, level);
-        const changes *given = &w->levels[level - 1];
+        changes *given = &w->levels[level - 1];
         int64_t first = moved(position, n->low);
         const int32_t i = changes_until(given, first);
         bool decides = value_behind(given, i) == (n->turned == 0);
@@ -248,7 +248,7 @@ static bool known_of(const chaining *g, const chain_reading *w, int64_t at, int6
 }
 
 /* The first position from one on at which a value is so; NEVER_KNOWN: none if the letter stays. */
-static int64_t first_from(const changes *c, int64_t position, bool wanted)
+static int64_t first_from(changes *c, int64_t position, bool wanted)
 {
     const int32_t i = changes_until(c, position);
     if (value_behind(c, i) == wanted) {
@@ -258,7 +258,7 @@ static int64_t first_from(const changes *c, int64_t position, bool wanted)
 }
 
 /* The first position from one on at which what is kept up is false. */
-int64_t first_failure(const chaining *g, const chain_reading *w, int64_t position)
+int64_t first_failure(const chaining *g, chain_reading *w, int64_t position)
 {
     int64_t at = position;
     for (;;) {
@@ -273,7 +273,7 @@ int64_t first_failure(const chaining *g, const chain_reading *w, int64_t positio
 }
 
 /* The last position before one at which the windows matter. */
-static int64_t last_mattering(const chaining *g, const chain_reading *w, int64_t behind)
+static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behind)
 {
     const int32_t i = changes_until(&w->excused, behind - 1);
     int64_t end = behind;
@@ -291,7 +291,7 @@ static int64_t last_mattering(const chaining *g, const chain_reading *w, int64_t
 }
 
 /* The stamp as of which all is known of what is kept up from one position to before another. */
-int64_t known_between(const chaining *g, const chain_reading *w, int64_t first,
+int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
                              int64_t behind)
 {
     const int64_t last = last_mattering(g, w, behind);
@@ -304,7 +304,7 @@ int64_t known_between(const chaining *g, const chain_reading *w, int64_t first,
 
 /* The value of the whole formula, which may keep the chain up until something ends that, and the stamp
  * as of which it is known. */
-bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp)
+bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     int64_t position = at;
     int64_t ends;

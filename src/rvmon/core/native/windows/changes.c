@@ -66,21 +66,40 @@ void clear_changes(changes *c, bool value)
     c->begun = value;
 }
 
-/* How many changes there are before a position, or up to it. Which half is next nobody can foretell: so
- * the steps are chosen without a branch. */
-int32_t changes_until(const changes *c, int64_t position)
+/* So many changes are looked at one by one from where it was asked last; beyond, halves are. */
+#define NEAR 4
+
+/* How many changes there are up to a position: mostly all, or hardly more than when it was asked last.
+ * Which half is next nobody can foretell: so these steps are chosen without a branch. */
+int32_t changes_until(changes *c, int64_t position)
 {
-    int32_t low = 0;
+    int32_t low = (c->asked < c->count) ? c->asked : 0;
     int32_t left = c->count;
-    if (left == 0) {
-        return 0;
+    int32_t i;
+    if ((left == 0) || (change_at(c, left - 1) <= position)) {
+        return left;
+    }
+    if ((low > 0) && (change_at(c, low - 1) > position)) {
+        left = low;
+        low = 0;
+    } else {
+        for (i = 0; i < NEAR; i++) {
+            if (change_at(c, low) > position) { /* the last one is */
+                c->asked = low;
+                return low;
+            }
+            low++;
+        }
+        left -= low;
     }
     while (left > 1) {
         const int32_t half = left / 2;
         low += (change_at(c, low + half - 1) <= position) ? half : 0;
         left -= half;
     }
-    return low + ((change_at(c, low) <= position) ? 1 : 0);
+    low += ((left > 0) && (change_at(c, low) <= position)) ? 1 : 0;
+    c->asked = low;
+    return low;
 }
 
 bool value_behind(const changes *c, int32_t count)
@@ -94,6 +113,7 @@ void drop_changes(changes *c, int64_t position)
     while ((c->count > 0) && (change_at(c, 0) < position)) {
         c->head = (c->head + 1) & (c->room - 1);
         c->count--;
+        c->asked -= (c->asked > 0) ? 1 : 0;
         c->begun = !c->begun;
     }
 }

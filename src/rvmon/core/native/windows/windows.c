@@ -251,7 +251,7 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
 bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
     chaining g = chaining_of(r, index);
-    const chain_reading *w;
+    chain_reading *w;
     int64_t position;
     int64_t last;
     if ((g.c == NULL) || (g.f.form->left < 0) || (x->location == FAILED) || g.f.monitor->spoilt) {

@@ -41,7 +41,7 @@ void add_change(rv_monitor *m, changes *c, int64_t position);
 void copy_changes(rv_monitor *m, changes *made, const changes *c);
 bool changes_agree(const changes *a, const changes *b);
 void clear_changes(changes *c, bool value);
-int32_t changes_until(const changes *c, int64_t position);
+int32_t changes_until(changes *c, int64_t position);
 bool value_behind(const changes *c, int32_t count);
 void drop_changes(changes *c, int64_t position);
 
@@ -50,9 +50,9 @@ void begin_reading(const chaining *g, chain_reading *w, int64_t position, int32_
 void forget_before(const chaining *g, int64_t position);
 bool is_known(const uint8_t *letter);
 void note_letter(const chaining *g, int64_t position, const uint8_t *letter);
-int64_t first_failure(const chaining *g, const chain_reading *w, int64_t position);
-int64_t known_between(const chaining *g, const chain_reading *w, int64_t first, int64_t behind);
-bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp);
+int64_t first_failure(const chaining *g, chain_reading *w, int64_t position);
+int64_t known_between(const chaining *g, chain_reading *w, int64_t first, int64_t behind);
+bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp);
 
 /* ---- windows.c */
 chaining chaining_of(run *r, int32_t index);
