@@ -239,6 +239,8 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
 static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     run *r = m->homes[0].root;
+    const int32_t *read_first = m->plan.subscription_first;
+    const int32_t signals = m->plan.header->signals;
     const quick_signal *quick;
     int32_t i;
     if ((m->plan.header->gap == 0) && r->at.started) {
@@ -248,13 +250,13 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
     quick = quick_now(r);
     for (i = 0; i < count; i++) {
         const int32_t name = updates[i].name;
-        const int32_t first = m->plan.subscription_first[name];
-        if (first < m->plan.subscription_first[name + 1]) {
+        const int32_t first = read_first[name];
+        if (first < read_first[name + 1]) {
             incoming in;
             in.local = m->plan.subscriptions[first].local;
-            in.event = name >= m->plan.header->signals;
-            in.update = &updates[i];
-            if (in.event || (quick == NULL) || !take_quickly(r, quick, in.local, in.update)) {
+            in.event = name >= signals;
+            if (in.event || (quick == NULL) || !take_quickly(r, quick, in.local, &updates[i])) {
+                in.update = &updates[i];
                 take_update(r, t, &in);
             }
         }

@@ -33,7 +33,7 @@ int32_t class_of_letter(const run *r, int32_t index, bool better)
 }
 
 /* The row of a token at an instant, and until when it is the same if the token stays. */
-static int32_t row_of(const machine *a, const token *k, int64_t t, int64_t *until)
+static inline int32_t row_of(const machine *a, const token *k, int64_t t, int64_t *until)
 {
     const int32_t width = a->widths[k->location];
     const int32_t first = k->location * a->clocks;

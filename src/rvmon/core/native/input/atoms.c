@@ -23,22 +23,26 @@ static uint8_t compare_real(int32_t how, const rv_number *value, double constant
 /* More comparisons than so many are left alone where a value stays between two of their constants. */
 #define QUICK_MOST 4
 
-/* Whether comparisons with constants are all that reads a signal in the second phase. */
-static bool is_compared_only(const plan *all, const part *p, int32_t local)
+/* The kind of number of a signal of which comparisons with constants are all that reads it in the second
+ * phase, or its being true is; RV_UNKNOWN: of no other. */
+static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
 {
     const signal_plan *s = &p->signals[local];
     const list atoms = s->on_change[1];
+    int32_t op = ATOM_REAL;
     int32_t i;
-    if ((s->flags != 0) || (s->perishable >= 0) || (atoms.count > QUICK_MOST)) {
-        return false;
+    if ((s->flags != 0) || (s->perishable >= 0) || (atoms.count == 0) || (atoms.count > QUICK_MOST)) {
+        return RV_UNKNOWN;
     }
     for (i = 0; i < atoms.count; i++) {
         const atom_plan *a = &p->atoms[LIST(all, atoms)[i]];
-        if ((a->op != ATOM_REAL) || (a->momentary != 0) || (a->nodes[1].count != 1)) {
-            return false;
+        op = (i == 0) ? a->op : op;
+        if ((a->op != op) || ((op != ATOM_REAL) && (op != ATOM_SIGNAL)) || (a->momentary != 0)
+            || (a->nodes[1].count != 1)) {
+            return RV_UNKNOWN;
         }
     }
-    return true;
+    return (op == ATOM_REAL) ? RV_REAL : RV_WHOLE;
 }
 
 /* Find the signals of a part that can be taken quickly; false: memory is short. */
@@ -49,9 +53,10 @@ bool find_quick(arena *a, const plan *all, part *p)
     p->quick = arena_take(a, (size_t)(signals + 1) * sizeof *p->quick);
     for (local = 0; (p->quick != NULL) && (local < signals); local++) {
         const list atoms = p->signals[local].on_change[1];
+        const int32_t kind = kind_compared_only(all, p, local);
         quick_compare *made;
         int32_t i;
-        if ((atoms.count == 0) || !is_compared_only(all, p, local)) {
+        if (kind == RV_UNKNOWN) {
             continue;
         }
         made = arena_take(a, (size_t)atoms.count * sizeof *made);
@@ -61,14 +66,15 @@ bool find_quick(arena *a, const plan *all, part *p)
         for (i = 0; i < atoms.count; i++) {
             const int32_t atom = LIST(all, atoms)[i];
             const int32_t node = LIST(all, p->atoms[atom].nodes[1])[0];
-            made[i].constant = p->atoms[atom].constant;
+            made[i].constant = (kind == RV_REAL) ? p->atoms[atom].constant : 0.0;
             made[i].atom = atom;
             made[i].word = node >> 6;
             made[i].dirty = UINT64_C(1) << (node & 63);
-            made[i].holds_for = HOLDS_FOR[p->atoms[atom].compare];
+            made[i].holds_for = HOLDS_FOR[(kind == RV_REAL) ? p->atoms[atom].compare : CMP_NE];
         }
         p->quick[local].compares = made;
         p->quick[local].count = atoms.count;
+        p->quick[local].kind = kind;
     }
     return p->quick != NULL;
 }

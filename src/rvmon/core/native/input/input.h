@@ -60,23 +60,27 @@ static inline const quick_signal *quick_now(const run *r)
     return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick : NULL;
 }
 
-/* Take a real value of a signal that few comparisons read, without a branch for what nobody can foretell;
- * false: it is none of these. */
+/* Take a value of a signal that few comparisons with constants read, without a branch for what nobody can
+ * foretell; false: it is none of these. */
 static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
 {
+    const int32_t kind = quick[local].kind;
     const quick_compare *c = quick[local].compares;
-    const quick_compare *end;
+    const quick_compare *end = c + quick[local].count;
     rv_number *value = &r->value[local];
     uint64_t *dirty = r->dirty;
     uint64_t *words = r->dirty_words;
     uint8_t *atoms = r->atom;
     double x;
-    if ((c == NULL) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
+    if ((kind == RV_UNKNOWN) || (u->value.kind != kind) || (value->kind != kind)
+        || (u->says != RV_SAYS_YES)) {
         return false;
     }
-    x = u->value.as.real;
-    end = c + quick[local].count;
-    value->as.real = x;
+    if (u->value.as.whole == value->as.whole) {
+        return true; /* bit for bit */
+    }
+    x = (kind == RV_REAL) ? u->value.as.real : (double)u->value.as.whole;
+    value->as = u->value.as;
     for (; c < end; c++) {
         const int32_t word = c->word;
         const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> order_of(x, c->constant)) & 1));

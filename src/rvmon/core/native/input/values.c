@@ -67,7 +67,7 @@ static void learn_span(run *r, int32_t local)
     span *found = &r->spans[local];
     int32_t i;
     *found = NO_SPAN;
-    if ((r->part->quick[local].count > 0) || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
+    if (((quick_now(r) != NULL) && (r->part->quick[local].kind != RV_UNKNOWN)) || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
         return;
     }
     if (value->kind == RV_WHOLE) {

@@ -57,7 +57,7 @@ typedef struct {
     int32_t classes;
 } machine;
 
-/* A comparison of a real signal with a constant, which one leaf shows. */
+/* A comparison of a signal with a constant, which one leaf shows; a Boolean one is compared with 0. */
 typedef struct {
     double constant;
     uint64_t dirty;            /* its leaf, among those to be worked out */
@@ -69,7 +69,8 @@ typedef struct {
 /* A signal that a few of these read and nothing else, once all is born. */
 typedef struct {
     const quick_compare *compares;
-    int32_t count;             /* 0: it is none */
+    int32_t count;
+    int32_t kind;              /* of its values; RV_UNKNOWN: it is no such signal */
 } quick_signal;
 
 typedef struct {
