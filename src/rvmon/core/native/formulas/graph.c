@@ -135,7 +135,8 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
     const uint8_t was = r->truth[place];
-    int32_t i;
+    const link_plan *l = &PLAN(r)->links[n->links.first];
+    const link_plan *end = l + n->links.count;
     if (r->margins != NULL) {
         margins_mark_changed(r, r->part->plan->signals.count + r->part->plan->events.count + place);
     }
@@ -143,8 +144,7 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
     if (r->truth_log != NULL) {
         note_node(r, place, was, t);
     }
-    for (i = 0; i < n->links.count; i++) {
-        const link_plan *l = &PLAN(r)->links[n->links.first + i];
+    for (; l < end; l++) {
         judge *j;
         if (l->kind == LINK_WATCH) {
             call_watch(r, l->judge);

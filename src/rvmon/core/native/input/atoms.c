@@ -56,6 +56,7 @@ bool find_quick(arena *a, const plan *all, part *p)
         const int32_t kind = kind_compared_only(all, p, local);
         quick_compare *made;
         int32_t i;
+        int32_t k;
         if (kind == RV_UNKNOWN) {
             continue;
         }
@@ -70,7 +71,11 @@ bool find_quick(arena *a, const plan *all, part *p)
             made[i].atom = atom;
             made[i].word = node >> 6;
             made[i].dirty = UINT64_C(1) << (node & 63);
-            made[i].holds_for = HOLDS_FOR[(kind == RV_REAL) ? p->atoms[atom].compare : CMP_NE];
+            made[i].dirty_word = UINT64_C(1) << (made[i].word & 63);
+            for (k = IS_EQUAL; k <= IS_GREATER; k++) {
+                const int32_t how = (kind == RV_REAL) ? p->atoms[atom].compare : CMP_NE;
+                made[i].truths[k] = truth_if(((HOLDS_FOR[how] >> k) & 1) != 0);
+            }
         }
         p->quick[local].compares = made;
         p->quick[local].count = atoms.count;

@@ -83,10 +83,10 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
     value->as = u->value.as;
     for (; c < end; c++) {
         const int32_t word = c->word;
-        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> order_of(x, c->constant)) & 1));
-        const uint64_t other = (now != atoms[c->atom]) ? 1U : 0U;
-        dirty[word] |= c->dirty & (0U - other);
-        words[word >> 6] |= other << (word & 63);
+        const uint8_t now = c->truths[order_of(x, c->constant)];
+        const uint64_t other = (now != atoms[c->atom]) ? UINT64_MAX : 0U;
+        dirty[word] |= c->dirty & other;
+        words[word >> 6] |= c->dirty_word & other;
         atoms[c->atom] = now;
     }
     return true;

@@ -179,20 +179,24 @@ truth_times truth_times_of(const run *r, int32_t node, bool before)
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
+    const int32_t *end = node + nodes.count;
+    const uint8_t *truth = r->truth;
     int64_t *to = words;
     uint64_t word = 0;
     uint32_t shift = 0;
-    int32_t i;
-    for (i = 0; i < nodes.count; i++) {
-        const logged_node *was = before ? moved_last(r, node[i]) : NULL;
-        word |= (uint64_t)((was != NULL) ? was->truth : r->truth[node[i]]) << shift;
-        shift += 2;
-        if ((shift == 2 * TRUTHS_IN_WORD) || (i + 1 == nodes.count)) {
+    for (; node < end; node++) {
+        const logged_node *was = before ? moved_last(r, *node) : NULL;
+        if (shift == 2 * TRUTHS_IN_WORD) {
             (void)memcpy(to, &word, sizeof word);
             to++;
             word = 0;
             shift = 0;
         }
+        word |= (uint64_t)((was != NULL) ? was->truth : truth[*node]) << shift;
+        shift += 2;
+    }
+    if (shift > 0) {
+        (void)memcpy(to, &word, sizeof word);
     }
 }
 

@@ -60,10 +60,11 @@ typedef struct {
 /* A comparison of a signal with a constant, which one leaf shows; a Boolean one is compared with 0. */
 typedef struct {
     double constant;
-    uint64_t dirty;            /* its leaf, among those to be worked out */
+    uint64_t dirty;            /* its leaf, among those to be worked out, as a bit of a word */
+    uint64_t dirty_word;       /* that word, likewise */
     int32_t word;
     int32_t atom;
-    int32_t holds_for;         /* bits, see atoms.c */
+    uint8_t truths[3];         /* by how a value stands to the constant */
 } quick_compare;
 
 /* A signal that a few of these read and nothing else, once all is born. */
