@@ -16,6 +16,7 @@ import msgspec
 
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.jsonl_rows import decoded
+from rvmon.readers.messages.flatbuffer import FlatBuffers
 from rvmon.readers.messages.ros import BagMessages, refuse_fewer, ros_topic
 from rvmon.readers.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.readers.values import first_line, shorten
@@ -163,7 +164,14 @@ class _OtherMessages:
         if encoding == "protobuf" and language == "protobuf":
             decode = _protobuf(schema)
             return Topic(name, type_name, dict(_protobuf_leaves(decode(b"").DESCRIPTOR))), decode
-        known = "JSON, MessagePack, CBOR, Protocol Buffers, CDR and ROS 1"
+        if encoding == "flatbuffer" and language == "flatbuffer":
+            try:
+                buffers = FlatBuffers(schema.data, type_name)
+            except Exception as error:  # noqa: BLE001 - it may lead anywhere
+                fault = f"its binary schema cannot be read ({first_line(error)})"
+                return Topic(name, type_name, {}, fault), bytes
+            return Topic(name, type_name, buffers.leaves), buffers.decode
+        known = "JSON, MessagePack, CBOR, Protocol Buffers, FlatBuffers, CDR and ROS 1"
         fault = f"its messages are encoded as `{shorten(encoding)}`: there is {known}"
         return Topic(name, type_name, {}, fault), bytes
 

@@ -3,6 +3,7 @@
 import gc
 import json
 import random
+import struct
 
 import pytest
 from tests.tools.bags import (
@@ -16,9 +17,11 @@ from tests.tools.bags import (
     write_ros1,
     write_ros2,
 )
+from tests.tools.flatbuffers import message_of, packed, schema_of, write_flatbuffer_mcap
 
 import rvmon
 from rvmon.cli import main
+from rvmon.readers.messages.flatbuffer import FlatBuffers
 
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap_protobuf")
@@ -34,6 +37,7 @@ FORMATS = {
     "bz2.bag": lambda path, sent: write_ros1(path, sent, compression="bz2"),
     "lz4.bag": lambda path, sent: write_ros1(path, sent, compression="lz4"),
     "c.mcap": write_protobuf_mcap,
+    "f.mcap": write_flatbuffer_mcap,
 }
 """By the name of a recording."""
 
@@ -75,6 +79,57 @@ def test_a_deadline_runs_out_while_other_topics_go_on(tmp_path, name):
     spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then within 500 ms (not go)")
     assert spec.evaluate(path).verdicts["R"] == "P"
     assert spec.evaluate(path).end == START + 10**9
+
+
+def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
+    """What is not sent has its default; a table that is not sent is absent."""
+    pose, later = {"x": 1.5, "frame": "map"}, {"x": 0.0, "frame": "odom"}
+    sent = [
+        ("/arm", START, {"pose": pose, "ranges": [3.0, 0.5], "on": True}),
+        (
+            "/arm",
+            START + 10**9,
+            {"pose": later, "ranges": [2.0], "on": False},
+        ),
+    ]
+    path = write_flatbuffer_mcap(tmp_path / "a.mcap", sent)
+    spec = tmp_path / "a.rv"
+    spec.write_text(
+        "signal x, near : real\nsignal on : bool\nsignal frame : {map, odom}\nrequirement R\n"
+        "  always ((on -> x == 1.5 and near == 0.5) and (frame == odom -> x == 0 and near == 2))\n"
+    )
+    values = {"x": "pose.x", "near": "min(ranges)", "on": "on", "frame": "pose.frame"}
+    binding = tmp_path / "a.toml"
+    binding.write_text(
+        "".join(f'[bind.{name}]\ntopic = "/arm"\nvalue = "{own}"\n' for name, own in values.items())
+    )
+    report = rvmon.load(spec).evaluate(path, binding=binding)
+    assert report.verdicts["R"] == "P"
+    assert [one.t for one in samples_of(spec, path, binding)] == [START, START + 10**9]
+
+
+def samples_of(spec, path, binding):
+    """What a recording says under a binding."""
+    return list(rvmon.load(spec).recording(path, binding=binding))
+
+
+def test_damaged_flatbuffers_are_told(tmp_path):
+    """Whatever a byte is changed to, it is another message, or an error with the reason."""
+    rng = random.Random(5)
+    fields = {"x": 1.5, "name": "map", "inner": {"y": 2.0, "on": True}, "all": [1.0, 2.0]}
+    schema, message = schema_of("a.B", fields), packed(message_of(fields))
+    whole = FlatBuffers(schema, "a.B").decode(message)
+    assert whole | {"all": list(whole["all"])} == fields
+    told = set()
+    for _ in range(3_000):
+        both = [bytearray(schema), bytearray(message)]
+        hurt = both[rng.random() < 0.5]
+        hurt[rng.randrange(len(hurt))] = rng.choice([0, 1, 127, 255, rng.randrange(256)])
+        try:
+            FlatBuffers(bytes(both[0]), "a.B").decode(bytes(both[1]))
+        except (ValueError, IndexError, KeyError, struct.error) as error:
+            told.add(type(error))
+    assert len(told) > 1
 
 
 def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp_path):

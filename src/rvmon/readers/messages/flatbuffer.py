@@ -1,0 +1,216 @@
+"""Messages of FlatBuffers, read by the binary schema that an MCAP file holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from struct import Struct
+from typing import Any
+
+import numpy as np
+
+from rvmon.trace.schema import Kind
+
+_NUMBERS = {
+    number: (Struct(f"<{sign}"), np.dtype(f"<{sign}"))
+    for number, sign in enumerate("B?bBhHiIqQfd", 1)
+}
+"""How numbers of each base type are packed."""
+
+_BOOL, _REALS, _STRING, _VECTOR, _TABLE, _ARRAY = 2, (11, 12), 13, 14, 15, 17
+"""Base types of `reflection.fbs`, of which unions are not read."""
+
+_I32, _U32, _U16 = Struct("<i"), Struct("<I"), Struct("<H")
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A field of a table, or of a struct.
+
+    Attributes:
+        name: of it.
+        base: its type.
+        element: that of its elements, if it has such.
+        index: of the table that it, or an element, is.
+        count: of the elements of an array in a struct.
+        offset: where in a struct it is, or in the table of offsets.
+        default: of a number that is not sent.
+    """
+
+    name: str
+    base: int
+    element: int
+    index: int
+    count: int
+    offset: int
+    default: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Type:
+    """A table or a struct: its name, fields, and bytes, which only a struct has."""
+
+    name: str
+    fields: tuple[_Field, ...]
+    size: int
+
+
+class FlatBuffers:
+    """What decodes the messages of a schema.
+
+    Args:
+        schema: a `.bfbs`, as `flatc --binary --schema` makes it.
+        name: of the table that a message is.
+
+    Attributes:
+        leaves: the kinds of the fields, by their path.
+
+    Raises:
+        Exception: it is none; what struct raises.
+    """
+
+    def __init__(self, schema: bytes, name: str) -> None:
+        told = _Packed(schema)
+        root = told.start()
+        self._types = [told.type_at(place) for place in told.tables(root, 0)]
+        found = (one for one in self._types if one.name == name)
+        self._root = next(found, None) or told.type_at(told.follow(told.slot(root, 12)))
+        self.leaves: Mapping[str, Kind] = dict(self._leaves(self._root, "", ()))
+
+    def _leaves(self, of: _Type, prefix: str, above: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:
+        for field in of.fields:
+            is_several = field.base in (_VECTOR, _ARRAY)
+            kind = field.element if is_several else field.base
+            path = f"{prefix}{field.name}{'[]' * is_several}"
+            if kind == _TABLE and self._types[field.index].name not in above:
+                inner = self._types[field.index]
+                yield from self._leaves(inner, f"{path}.", (*above, of.name))
+            elif kind in _NUMBERS or kind == _STRING:
+                real = Kind.REAL if kind in _REALS else Kind.INT
+                yield path, {_BOOL: Kind.BOOL, _STRING: Kind.LABEL}.get(kind, real)
+
+    def decode(self, data: bytes) -> Mapping[str, Any]:
+        """The fields of a message, by name; what is not sent and has no default is absent.
+
+        Raises:
+            Exception: it is none; what struct raises.
+        """
+        message = _Packed(data)
+        return dict(self._values(message, message.start(), self._root))
+
+    def _values(self, packed: _Packed, at: int, of: _Type) -> Iterator[tuple[str, Any]]:
+        packed.spend(4)
+        for field in of.fields:
+            place = at + field.offset if of.size else packed.slot(at, field.offset)
+            if place:
+                value = self._value(packed, place, field)
+            else:
+                value = field.default if field.base in _NUMBERS else None
+            if value is not None:
+                yield field.name, value
+
+    def _value(self, packed: _Packed, at: int, field: _Field) -> Any:
+        if field.base in _NUMBERS:
+            return packed.number(_NUMBERS[field.base][0], at)
+        if field.base == _STRING:
+            return packed.text(packed.follow(at))
+        if field.base == _TABLE:
+            return self._table(packed, at, field.index)
+        if field.base == _ARRAY:
+            return self._several(packed, at, field.count, field)
+        if field.base == _VECTOR:
+            start = packed.follow(at)
+            return self._several(packed, start + 4, packed.number(_U32, start), field)
+        return None
+
+    def _table(self, packed: _Packed, at: int, index: int) -> Mapping[str, Any]:
+        of = self._types[index]
+        return dict(self._values(packed, at if of.size else packed.follow(at), of))
+
+    def _several(self, packed: _Packed, start: int, count: int, field: _Field) -> Any:
+        if field.element in _NUMBERS:
+            return np.frombuffer(packed.data, _NUMBERS[field.element][1], count, start)
+        size = self._types[field.index].size if field.element == _TABLE else 0
+        places = range(start, start + count * (size or 4), size or 4)
+        if field.element == _TABLE:
+            return [self._table(packed, at, field.index) for at in places]
+        if field.element == _STRING:
+            return [packed.text(packed.follow(at)) for at in places]
+        return None
+
+
+class _Packed:
+    """Bytes of a buffer: its numbers, texts and tables by their places."""
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        self._left = 16 * len(data)
+
+    def spend(self, count: int) -> None:
+        """Count what is read: texts and tables may be used again, but not over and over."""
+        self._left -= count
+        if self._left < 0:
+            raise ValueError("the same is read over and over")
+
+    def number(self, form: Struct, at: int) -> Any:
+        """A number."""
+        if at < 0:
+            raise ValueError("an offset leads out of it")
+        return form.unpack_from(self.data, at)[0]
+
+    def start(self) -> int:
+        """Where its root is."""
+        return self.follow(0)
+
+    def follow(self, at: int) -> int:
+        """Where an offset leads."""
+        return at + int(self.number(_U32, at))
+
+    def slot(self, table: int, offset: int) -> int:
+        """Where a table has a field; 0 if it has none."""
+        offsets = table - self.number(_I32, table)
+        if offset >= self.number(_U16, offsets):
+            return 0
+        there = int(self.number(_U16, offsets + offset))
+        return table + there if there else 0
+
+    def text(self, at: int) -> str:
+        """A text."""
+        count = self.number(_U32, at)
+        self.spend(4 + count)
+        return self.data[at + 4 : at + 4 + count].decode()
+
+    def tables(self, table: int, field: int) -> list[int]:
+        """The places of the tables in a vector."""
+        at = self.slot(table, 4 + 2 * field)
+        start = self.follow(at) if at else 0
+        count = self.number(_U32, start) if at else 0
+        return [self.follow(start + 4 + 4 * place) for place in range(count)]
+
+    def type_at(self, at: int) -> _Type:
+        """A table, or struct, that a schema describes; see `Object` of `reflection.fbs`."""
+        is_struct = self._of(at, 2, _NUMBERS[_BOOL][0], False)
+        fields = tuple(self._field_at(place) for place in self.tables(at, 1))
+        name = self.text(self.follow(self.slot(at, 4)))
+        return _Type(name, fields, self._of(at, 4, _I32, 0) if is_struct else 0)
+
+    def _field_at(self, at: int) -> _Field:
+        """See `Field` and `Type` of `reflection.fbs`."""
+        of = self.follow(self.slot(at, 6))
+        base, element = (self._of(of, number, _NUMBERS[3][0], 0) for number in (0, 1))
+        real = self._of(at, 5, _NUMBERS[12][0], 0.0)
+        whole = self._of(at, 4, _NUMBERS[9][0], 0)
+        default = real if base in _REALS else bool(whole) if base == _BOOL else whole
+        return _Field(
+            self.text(self.follow(self.slot(at, 4))),
+            base,
+            element,
+            self._of(of, 2, _I32, -1),
+            self._of(of, 3, _U16, 0),
+            self._of(at, 3, _U16, 0),
+            default,
+        )
+
+    def _of(self, table: int, field: int, form: Struct, default: Any) -> Any:
+        at = self.slot(table, 4 + 2 * field)
+        return self.number(form, at) if at else default
