@@ -1,13 +1,10 @@
 """Where peers and the law differ, each with a trace that shows it.
 
-    python -m benchmarks.peers.differences
-
 Every row is run on both sides; a peer that answers otherwise than written here has changed.
 """
 
 from __future__ import annotations
 
-import sys
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,7 +12,7 @@ from pathlib import Path
 
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import spelling
-from benchmarks.peers.environment import Environment, prepare
+from benchmarks.peers.environment import Environment
 from benchmarks.peers.positions import Question, answers, ask_oracle
 from benchmarks.peers.ways import Cell, Columns
 
@@ -134,13 +131,3 @@ def _cells(cells: Sequence[Cell]) -> str:
 
 def _escaped(text: str) -> str:
     return text.replace("|", "\\|")
-
-
-def main() -> int:
-    """Print the table."""
-    print("\n".join(table(prepare())))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

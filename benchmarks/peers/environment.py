@@ -1,7 +1,4 @@
-"""The peers' own environment: made once, beside the benchmarks, from the package index.
-
-python -m benchmarks.peers.environment
-"""
+"""The peers' own environment: made once, beside the benchmarks, from the package index."""
 
 from __future__ import annotations
 
@@ -62,16 +59,3 @@ def _install(python: Path, pin: str) -> str | None:
         return None
     errors = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
     return (errors or done.stderr.splitlines() or ["pip failed"])[-1]
-
-
-def main() -> None:
-    """Print what is there."""
-    environment = prepare()
-    for name, version in environment.versions.items():
-        print(f"{name} {version}")
-    for name, reason in environment.missing.items():
-        print(f"{name} did not install: {reason}")
-
-
-if __name__ == "__main__":
-    main()

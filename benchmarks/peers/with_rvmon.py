@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import gc
-import resource
 import time
-from pathlib import Path
 from typing import Any
 
 import rvmon
@@ -35,7 +32,8 @@ class Peer:
 
         Args:
             spec: the text; its requirements are answered for in order.
-            kind: `step` (every row whole), `changes` (what changed) or `evaluate` (columns).
+            kind: `step` (every row whole), `changes` (what changed) or `evaluate` (columns); of
+                robustness `stream`, `attempt` or `offline` (columns).
             columns: by name the value at each row.
             rows: their number.
             period: ticks from row to row.
@@ -43,13 +41,13 @@ class Peer:
         if spec != self._text:
             self._spec, self._text = rvmon.loads(spec), spec
         self._kind, self._period = kind, period
-        if kind == "evaluate":
+        if kind in ("evaluate", "offline"):
             import numpy as np
 
             self._columns = {"t_ns": np.arange(rows, dtype=np.int64) * period}
             self._columns |= {name: np.array(column[:rows]) for name, column in columns.items()}
             few = {name: column[:2] for name, column in self._columns.items()}
-            self._spec.evaluate(few, time="t_ns")
+            self._judge_columns(few)
             return {"rows": rows}
         names = list(columns)
         cells = zip(*(columns[name][:rows] for name in names), strict=True)
@@ -65,11 +63,17 @@ class Peer:
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows; the first row at which each requirement had failed."""
-        if self._kind == "evaluate":
+        if self._kind in ("evaluate", "offline"):
             began = time.process_time_ns()
-            report = self._spec.evaluate(self._columns, time="t_ns")
+            attempts = self._judge_columns(self._columns)
             spent = time.process_time_ns() - began
-            return {"cpu_ns": spent, "violated": self._violated(report.attempts)}
+            return {"cpu_ns": spent, "violated": self._violated(attempts)}
+        if self._kind in ("stream", "attempt"):
+            step = self._spec.robustness_monitor(streams=self._kind == "stream").step_ns
+            began = time.process_time_ns()
+            for t, row in self._rows:
+                step(t, row)
+            return {"cpu_ns": time.process_time_ns() - began, "violated": [None]}
         monitor = self._spec.monitor()
         step = monitor.step_ns
         failed: list[Any] = []
@@ -83,36 +87,12 @@ class Peer:
         spent = time.process_time_ns() - began
         return {"cpu_ns": spent, "violated": self._violated(failed)}
 
-    def hold_open(self, spec: str, attempts: int, samples: int, seconds: float) -> dict[str, Any]:
-        """Open so many attempts, then pass over samples that decide none.
-
-        Args:
-            spec: reads the event `asked` and the signals `answered` and `other`.
-            attempts: opened one per sample.
-            samples: measured after that.
-            seconds: which opening them may take; after that there are fewer.
-
-        Returns:
-            CPU ns of the measured samples, bytes of memory per open attempt.
-        """
-        monitor = rvmon.loads(spec).monitor()
-        monitor.step_ns(0, {"answered": False, "other": False})
-        gc.collect()
-        before = _resident()
-        latest = time.monotonic() + seconds
-        for t in range(1, attempts + 1):
-            monitor.step_ns(t, {"asked": True})
-            if t % 100 == 0 and time.monotonic() > latest:
-                return {"cpu_ns": 0, "bytes": 0, "open": t}
-        gc.collect()
-        grown = _resident() - before
-        rows = [(attempts + 1 + i, {"other": i % 2 == 0}) for i in range(samples)]
-        step = monitor.step_ns
-        began = time.process_time_ns()
-        for t, row in rows:
-            step(t, row)
-        spent = time.process_time_ns() - began
-        return {"cpu_ns": spent, "bytes": grown / attempts, "open": len(monitor.open)}
+    def _judge_columns(self, columns: dict[str, Any]) -> Any:
+        """The attempts; of robustness none, but its array is there."""
+        if self._kind == "evaluate":
+            return self._spec.evaluate(columns, time="t_ns").attempts
+        assert len(self._spec.robustness(columns, time="t_ns").streams["R1"])  # noqa: S101
+        return ()
 
     def _violated(self, attempts: Any) -> list[int | None]:
         """The row at which the failure was known: the first at or after its decision."""
@@ -123,9 +103,3 @@ class Peer:
                 row = -(-attempt.decided // self._period)
                 firsts[attempt.requirement] = row if first is None else min(first, row)
         return list(firsts.values())
-
-
-def _resident() -> int:
-    """Bytes of memory in use; Linux only."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * resource.getpagesize()

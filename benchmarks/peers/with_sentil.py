@@ -14,6 +14,7 @@ class Peer:
         self._sentil: Any = import_module("sentil")
         self._formulas: list[str] = []
         self._columns: dict[str, list[Any]] = {}
+        self._offline = False
 
     def judge(self, formula: str, kind: str, columns: dict[str, list[Any]]) -> dict[str, Any]:  # noqa: ARG002 - it has one semantics
         """The robustness at every tick; a window that the trace cuts short counts as it is."""
@@ -26,17 +27,20 @@ class Peer:
     def load(
         self,
         formulas: list[str],
-        kind: str,  # noqa: ARG002 - see `judge`
+        kind: str,
         columns: dict[str, list[Any]],
         rows: int,
     ) -> dict[str, Any]:
         """Keep what is to be passed over."""
         self._formulas = formulas
+        self._offline = kind.endswith("offline")
         self._columns = columns
         return {"rows": rows}
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows; the row at which each formula was found to be violated."""
+        if self._offline:
+            return self._pass_offline()
         passes = [self._pass_of(formula) for formula in self._formulas]
         firsts: list[int | None] = [None] * len(passes)
         spent = 0
@@ -47,6 +51,17 @@ class Peer:
                     firsts[number] = int(tick)
             spent += time.process_time_ns() - began
         return {"cpu_ns": spent, "violated": firsts}
+
+    def _pass_offline(self) -> dict[str, Any]:
+        """The robustness of all rows at once; of violations nothing is said."""
+        ticks = range(len(next(iter(self._columns.values()))))
+        named = {name: [float(cell) for cell in one] for name, one in self._columns.items()}
+        trace = self._sentil.Trace([float(tick) for tick in ticks], named)
+        parsed = [self._sentil.parse(formula) for formula in self._formulas]
+        began = time.process_time_ns()
+        for formula in parsed:
+            formula.robustness_signal(trace)
+        return {"cpu_ns": time.process_time_ns() - began, "violated": [None] * len(parsed)}
 
     def _pass_of(self, formula: str) -> tuple[Any, list[tuple[float, list[float]]]]:
         """How a monitor is given a row, and the rows in the order of its names."""

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks.agreement import Agreement, Referee
-from benchmarks.measure import Figure
 from benchmarks.peers.client import Peer
-from benchmarks.workload import Workload
+from benchmarks.timing.agreement import Agreement, Referee
+from benchmarks.timing.measure import Figure
+from benchmarks.timing.workload import Workload
 from tests.tools.build import once, p
 
 BOUND = 500

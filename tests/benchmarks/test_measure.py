@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from benchmarks.contenders import Pass
-from benchmarks.measure import Plan, measure
 from benchmarks.peers.client import PeerError
-from benchmarks.workload import Workload
+from benchmarks.timing.contenders import Pass
+from benchmarks.timing.measure import Plan, measure
+from benchmarks.timing.workload import Workload
 from tests.tools.build import p
 from tests.tools.common_fragment import UntranslatableError
 

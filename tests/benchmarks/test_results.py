@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from benchmarks.agreement import Agreement
-from benchmarks.attempts import OpenAttempts
-from benchmarks.measure import Figure, Result
-from benchmarks.results import Findings, render
+from benchmarks.page import Findings, render
+from benchmarks.timing.agreement import Agreement
+from benchmarks.timing.measure import Figure, Result
 
 OURS = Figure("rvmon step", 1000, 100.0, 90.0, 130.0, (999,))
 REELAY = Figure("reelay", 1000, 900.0, 880.0, 950.0, (999,))
 RESULT = Result("online", "AbsentAQ 10", "past", 1, 1000, 0.25, (OURS, REELAY))
 ALIKE = Agreement("reelay", "AbsentAQ 10", "past", equal=300, compared=300, false=20)
 FINDINGS = Findings(
-    "python -m benchmarks",
+    "python -m benchmarks.results",
     "a machine",
     {"rvmon": "0.1.0", "reelay": "1.0"},
     (RESULT,),
-    (),
     (ALIKE,),
 )
 
@@ -81,14 +79,10 @@ def test_tables() -> None:
     assert "| 1,000 | 25 % | 100 ns (90 ns–130 ns) | 900 ns (880 ns–950 ns), 50 rows |" in row
 
 
-def test_open_attempts() -> None:
-    """Open attempts are met only if time is constant and memory small."""
-    small = OpenAttempts(1, 100.0, 99.0, 101.0, 0.0)
-    large = OpenAttempts(100_000, 110.0, 99.0, 130.0, 20.0)
-    page = render(replace(FINDINGS, open_attempts=(small, large)))
-    assert "| 1.1× a sample, 20 bytes each | constant, ≤ 24 bytes | yes |" in page
-    page = render(replace(FINDINGS, open_attempts=(small, replace(large, size=130.0))))
-    assert "| 1.1× a sample, 130 bytes each | constant, ≤ 24 bytes | no |" in page
+def test_tables_of_other_sections() -> None:
+    """What is no race stands below a title of its own."""
+    page = render(replace(FINDINGS, tables=(("Whole files", ("| a |", "|---|")),)))
+    assert "## Whole files\n\n| a |\n|---|\n" in page
 
 
 def test_absent() -> None:

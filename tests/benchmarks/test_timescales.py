@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from benchmarks.peers.positions import Question, answers, ask_oracle
-from benchmarks.timescales import FAMILIES, Family, low_bound, trace
+from benchmarks.timing.timescales import FAMILIES, Family, low_bound, trace
 
 from rvmon.spec.checked.specification import TimeModel
 

@@ -1,7 +1,7 @@
 """A monitor that lives long: is its memory flat, are its steps short, are its verdicts right?
 
-    python -m benchmarks.soak --samples 100000000
-    python -m benchmarks.soak --samples 1000000000 --exported
+    python -m benchmarks.endurance soak --samples 100000000
+    python -m benchmarks.endurance soak --samples 1000000000 --exported
 
 A sample per millisecond, in a pattern of a second: attempts that overlap, keys that come again,
 NaN, a signal that becomes stale. How many attempts pass and fail in each second is known, and
@@ -18,7 +18,6 @@ import argparse
 import json
 import struct
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -223,7 +222,7 @@ def quantile(bins: Sequence[tuple[int, int]], share: float) -> int:
     raise AssertionError("there is no step")
 
 
-def main(words: list[str]) -> int:
+def main(words: Sequence[str]) -> int:
     """Feed, compare, print, and return 1 if a verdict is wrong."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
@@ -263,7 +262,3 @@ def main(words: list[str]) -> int:
     print(f"the end of time: {last.taken:,} samples are taken, then: {said}")
     print(f"  R1 {found}: {'as known' if whole else 'WRONG'}")
     return 1 if wrong or not whole else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -9,17 +9,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
-from benchmarks.ours import always_text, specification
 from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
 from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.environment import HOME, Environment
 from benchmarks.peers.native import LETTERS, Native, packed
-from benchmarks.workload import Workload
+from benchmarks.timing.workload import Workload, always_text, specification, text
 from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
 
-OURS = Path(__file__).parent / "peers" / "with_rvmon.py"
+OURS = Path(__file__).parents[1] / "peers" / "with_rvmon.py"
 """The module that asks our own monitors."""
 
 
@@ -101,13 +100,23 @@ class NativeReelay:
 
 STEPS = (("rvmon step", "step"), ("rvmon step, changes", "changes"))
 COLUMNS = (("rvmon evaluate", "evaluate"),)
+MARGINS = (
+    ("rvmon, each sample", "stream"),
+    ("rvmon, one attempt", "attempt"),
+    ("rvmon offline", "offline"),
+)
+"""Robustness: of each sample, of what is owed from the first one on, and of columns in memory."""
 
 
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
-    forms = {"batch": COLUMNS}.get(section, STEPS)
+    forms = {"batch": COLUMNS, "margins": MARGINS}.get(section, STEPS)
     for label, kind in forms:
-        yield our_worker(label, kind)
+        yield Worker(label, Peer(Path(sys.executable), OURS), _ours(kind))
+    if section == "margins":
+        for kind in ("", " offline") if "sentil" in environment.versions else ():
+            yield Worker(f"sentil{kind}", Peer(environment.python, "sentil"), _margins(kind))
+        return
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
         ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
@@ -121,23 +130,30 @@ def contenders(environment: Environment, native: Native, section: str) -> Iterat
         yield NativeReelay(native.binary)
 
 
-def our_worker(label: str, kind: str) -> Worker:
-    """One of `STEPS` or `COLUMNS`."""
-    return Worker(label, Peer(Path(sys.executable), OURS), _ours(kind))
-
-
 def _ours(kind: str) -> Request:
     def request(workload: Workload, rows: int) -> dict[str, Any]:
-        texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
         columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
-        text = specification(texts, columns)
-        return {
-            "spec": text,
-            "kind": kind,
-            "columns": columns,
-            "rows": rows,
-            "period": workload.period,
-        }
+        if workload.section == "margins":
+            spec = margin_text(workload)
+        else:
+            texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
+            spec = specification(texts, columns)
+        period = 1 if workload.section == "margins" else workload.period
+        return {"spec": spec, "kind": kind, "columns": columns, "rows": rows, "period": period}
+
+    return request
+
+
+def margin_text(workload: Workload) -> str:
+    """A formula as it is owed from the first sample on, a tick between two samples."""
+    owed = f"upon start\n  then {text(workload.formulas[0])}"
+    return specification([owed], workload.columns).replace("time held", "time sampled")
+
+
+def _margins(kind: str) -> Request:
+    def request(workload: Workload, rows: int) -> dict[str, Any]:
+        formulas = _translated(workload, dialects.SENTIL)
+        return _rows(workload, rows, formulas, f"discrete{kind}")
 
     return request
 

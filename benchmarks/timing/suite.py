@@ -5,11 +5,11 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 
-from benchmarks.workload import Workload
+from benchmarks.timing import timescales
+from benchmarks.timing.workload import Workload
 from tests.tools.build import always, compared, eventually, no, once, two
 from tests.tools.common_fragment import names_in
 
-from benchmarks import robot, timescales
 from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
 
 SIGNALS = 20
@@ -35,11 +35,6 @@ def families(rows: int, bounds: Sequence[int] = timescales.BOUNDS) -> Iterator[W
             name = f"{family.name} {high}"
             yield Workload("online", name, "past", (family.past(low, high),), columns)
             yield Workload("online", name, "future", (family.future(low, high),), columns)
-
-
-def robots(seconds: int) -> Iterator[Workload]:
-    """The robot's requirements."""
-    return robot.workloads(seconds)
 
 
 def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workload]:
@@ -91,7 +86,7 @@ def bounds(
         yield Workload("bound", f"bound {high}", "future", (future,), columns)
 
 
-def unsteady(rows: int) -> Iterator[Workload]:
+def unsteady(section: str, rows: int) -> Iterator[Workload]:
     """Forms that people write, over values that are drawn anew and cross at every row."""
     rng = random.Random("unsteady")
     x: list[bool | float] = [rng.uniform(0, 10) for _ in range(rows)]
@@ -109,7 +104,7 @@ def unsteady(rows: int) -> Iterator[Workload]:
             {"s": stop, "v": speed},
         ),
     ):
-        yield Workload("unsteady", name, "future", (formula,), columns, 1_000_000_000)
+        yield Workload(section, name, "future", (formula,), columns, 1_000_000_000)
 
 
 _FAILING = {

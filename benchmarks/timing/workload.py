@@ -1,8 +1,9 @@
-"""Formulas as specifications in our language, as a user would write them."""
+"""What is measured: formulas over a trace of rows; and how a user would write them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.spec.checked.formula import (
@@ -19,6 +20,44 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.print.printer import format_formula
+
+Column = Sequence[bool | float]
+
+
+@dataclass(frozen=True, slots=True)
+class Workload:
+    """Formulas to hold at every row, and the rows.
+
+    Attributes:
+        section: the table it belongs to.
+        name: the line of that table.
+        form: `past` or `future`: what the formulas speak of.
+        formulas: with bounds in rows.
+        columns: by name the value at each row.
+        period: ticks from row to row.
+    """
+
+    section: str
+    name: str
+    form: str
+    formulas: tuple[Formula, ...]
+    columns: Mapping[str, Column]
+    period: int = 1
+
+    @property
+    def rows(self) -> int:
+        """The length of the trace."""
+        return len(next(iter(self.columns.values())))
+
+    @property
+    def changing(self) -> float:
+        """The share of rows at which some column changes."""
+        columns = list(self.columns.values())
+        changed = sum(
+            any(column[row] != column[row - 1] for column in columns) for row in range(1, self.rows)
+        )
+        return changed / max(self.rows - 1, 1)
+
 
 _CALLED = (UnaryOp.RISE, UnaryOp.FALL, UnaryOp.HELD)
 

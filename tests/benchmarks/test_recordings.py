@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from benchmarks.files import measure_files
 from benchmarks.peers.environment import Environment
+from benchmarks.timing.measure import QUICK
+
+from benchmarks import recordings
 
 
 @pytest.mark.process
-def test_all_ways_find_the_same_failures(tmp_path: Path) -> None:
+def test_all_ways_find_the_same_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each way has a line, with a ratio as its failures are the first's; who is absent is named."""
+    monkeypatch.setattr(recordings, "SMALL", 3)
     absent = Environment(Path(sys.executable), {}, {"duckdb": "not on this index"})
-    lines = list(measure_files(30_000, 2, 1, absent, tmp_path))
+    size = replace(QUICK, file_rows=30_000, files=2, processes=1)
+    lines = list(recordings.files(size, absent, tmp_path))
     assert lines[-1] == "Not measured: DuckDB, 30,000 rows: not on this index."
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[2:-2]]
-    assert len(cells) == 13
-    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 8
+    assert len(cells) == 17
+    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 10
     assert not any("others" in failures for *_, failures in cells)
     assert any(failures not in ("0", "–") for *_, failures in cells)

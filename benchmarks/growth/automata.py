@@ -1,7 +1,5 @@
 """Automata of random formulas: how many close, how large they get, how long they take.
 
-    python -m benchmarks.automata --formulas 600 --depth 3
-
 Formulas are drawn until so many temporal operators are nested in each as was asked for; every other
 is owed from the start, the others `whenever p`. CPU times are of construction and reduction
 together; then of forecasts, ten at most for each automaton. Exits 1 if one takes longer
@@ -13,7 +11,6 @@ from __future__ import annotations
 import argparse
 import random
 import statistics
-import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -61,14 +58,8 @@ def nesting(part: Formula) -> int:
             return 0
 
 
-def main(argv: Sequence[str]) -> int:
+def measure(options: argparse.Namespace) -> int:
     """Draw, build, measure, print."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--formulas", type=int, default=600)
-    parser.add_argument("--depth", type=int, default=3)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--most", type=float, default=2.0, help="seconds for one formula")
-    options = parser.parse_args(argv)
     seconds: list[tuple[float, str]] = []
     sizes: list[tuple[Size, Size, Size]] = []
     refused: Counter[str] = Counter()
@@ -146,7 +137,3 @@ def _print_seconds(seconds: Sequence[tuple[float, str]]) -> None:
     }
     print("  CPU s:", ", ".join(f"{name} {value:.3f}" for name, value in shown.items()), end="")
     print(f", longest {ordered[-1][0]:.3f}: {ordered[-1][1]}")
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

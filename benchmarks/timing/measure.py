@@ -7,9 +7,9 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchmarks.contenders import Contender
 from benchmarks.peers.client import PeerError
-from benchmarks.workload import Workload
+from benchmarks.timing.contenders import Contender
+from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
 FEWEST_ROWS = 50
@@ -30,6 +30,66 @@ class Plan:
 
     repeats: int = 5
     seconds: float = 2.0
+
+
+LONGER = {"batch": 10, "many": 5}
+"""So many times as long is a pass, of what is judged as a whole or takes long to begin."""
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How much is measured.
+
+    Attributes:
+        rows: of the traces that are judged row by row.
+        columns: rows of what is judged in memory or by whole processes; and a tenth of them.
+        longest: rows of the traces on which deadlines grow.
+        bounds: of the Timescales families.
+        seconds: of the robot's stream.
+        counts: of monitors on one stream.
+        traces: damaged ones per agreement.
+        step_seconds: that a peer may step on one workload to be compared.
+        repeats: passes of each contender.
+        processes: of each program, beside a first one that does not count.
+        file_rows: of one large file.
+        files: of many.
+        pass_seconds: what one pass may take.
+    """
+
+    rows: int = 50_000
+    columns: int = 1_000_000
+    longest: int = 300_000
+    bounds: tuple[int, ...] = (10, 100, 1000)
+    seconds: int = 300
+    counts: tuple[int, ...] = (10, 100, 1000)
+    traces: int = 2
+    step_seconds: float = 90
+    repeats: int = 5
+    processes: int = 3
+    file_rows: int = 10_000_000
+    files: int = 1_000
+    pass_seconds: float = 0.1
+
+    def plan_of(self, section: str) -> Plan:
+        """Repeats and time of a pass."""
+        return Plan(self.repeats, self.pass_seconds * LONGER.get(section, 1))
+
+
+QUICK = Size(
+    rows=5_000,
+    columns=100_000,
+    longest=20_000,
+    bounds=(10, 1000),
+    seconds=60,
+    counts=(10, 100),
+    traces=1,
+    step_seconds=10,
+    repeats=3,
+    processes=2,
+    file_rows=1_000_000,
+    files=40,
+    pass_seconds=0.05,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +195,8 @@ def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
     rows = min(FEWEST_ROWS, workload.rows)
     while True:
         contender.prepare(workload, rows)
+        if rows <= FEWEST_ROWS:
+            contender.run()  # what the first pass makes ready is not measured
         spent = max(contender.run().cpu_ns, 1)
         fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
         if fitting <= rows or spent >= budget / 2:  # what each pass costs once weighs little

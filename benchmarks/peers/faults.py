@@ -1,7 +1,5 @@
 """The same faults put to rvmon and to other monitors, sample by sample: who says what?
 
-    python -m benchmarks.faults
-
 All are asked at each sample whether `x > 0.5` was so within the last second (mstlo, which has no
 past: whether it is within the next). Prints a table for each fault: `t: 1` is true at t, 0 false,
 `?` not known or not decided, NaN the answer itself; what is in brackets is the monitor's own text.
@@ -19,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.environment import prepare
+from benchmarks.peers.environment import Environment
 from benchmarks.peers.with_faults import resident_kib
 
 import rvmon
@@ -32,7 +30,7 @@ from rvmon.verdict.report import Report
 
 Samples = Sequence[tuple[float, Mapping[str, float]]]
 
-WORKER = Path(__file__).with_name("peers") / "with_faults.py"
+WORKER = Path(__file__).with_name("with_faults.py")
 
 PEERS = {
     "rtamt, discrete online": ("rtamt", "once[0:1](NAME > 0.5)"),
@@ -194,10 +192,9 @@ def keyed() -> tuple[float, int]:
     return spent, resident_kib() - before
 
 
-def main() -> None:
+def tables(environment: Environment) -> None:
     """Print the tables."""
     logging.disable()  # what `rvmon watch` says of each verdict
-    environment = prepare()
     there = {way: one for way, one in PEERS.items() if one[0] in environment.versions}
     for fault in FAULTS:
         fed = ", ".join(f"{t:g}: {next(iter(row.values())):g}" for t, row in fault.samples)
@@ -226,7 +223,3 @@ def _cost(seconds: float, kib: int) -> str:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("\n", " ") or "nothing"
-
-
-if __name__ == "__main__":
-    main()

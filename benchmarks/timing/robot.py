@@ -10,7 +10,7 @@ import math
 import random
 from collections.abc import Iterator
 
-from benchmarks.workload import Workload
+from benchmarks.timing.workload import Workload
 from tests.tools.build import always, compared, eventually, historically, no, two
 from tests.tools.common_fragment import names_in
 

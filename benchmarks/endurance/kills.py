@@ -1,6 +1,6 @@
 r"""Kill processes at random points: what lives on, is torn or lost, or told again otherwise?
 
-    python -m benchmarks.kills --kills 200 --only "rvmon run --resume" mqtt
+    python -m benchmarks.endurance kills --kills 200 --only "rvmon run --resume" mqtt
 
 Parents that have others work for them are killed by SIGKILL and by SIGTERM, in turn: how many of
 their processes live 2 s later, how many files are half written or bear a name that says that they
@@ -49,7 +49,7 @@ LONGEST_S = 4.0
 MARK = "RVMON_KILLS"
 """The variable by which processes are found again, whoever began them."""
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 
 SPEC = """spec kills
 signal p : bool
@@ -332,7 +332,3 @@ def main(argv: Sequence[str]) -> int:
             print(f"  {what}: {count:,}", flush=True)
             bad += count * what.endswith(WRONG)
     return 1 if bad else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

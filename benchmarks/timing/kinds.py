@@ -1,7 +1,5 @@
 """What a sample costs, by requirement: kinds that people write, published ones, nested windows.
 
-    python -m benchmarks.sample_cost [--rows 4000] [--time sampled] [--unknown 1] [WORD …]
-
 Kinds are demanded at every instant and upon an event that comes in 5 % of the samples, over values
 that are drawn anew and cross at every row, a second apart, of which `--unknown` per cent are NaN;
 then one for each of 1,000 keys that are all waiting. Published requirements stand in
@@ -18,7 +16,6 @@ import math
 import random
 import re
 import statistics
-import sys
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -30,7 +27,7 @@ from rvmon.trace.schema import Kind
 
 SECOND = 10**9
 PASSES = 3
-PUBLISHED = Path(__file__).with_name("published")
+PUBLISHED = Path(__file__).parents[1] / "published"
 _COMPARED = re.compile(r"[<>=]=? (\d+(?:\.\d+)?)(?! m?s)")
 
 Rows = Sequence[dict[str, Value]]
@@ -171,24 +168,21 @@ def lines(
             yield f"published: {file.stem} {name}", spec, own, name, 0
 
 
-def main(argv: Sequence[str]) -> int:
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What may be asked of the kinds."""
+    parser.add_argument("--rows", type=int, default=4000, help="of kinds")
+    parser.add_argument("--time", choices=("held", "sampled"), default="held", help="of kinds")
+    parser.add_argument("--unknown", type=float, default=0, help="per cent of the values of kinds")
+
+
+def measure(options: argparse.Namespace) -> int:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description="What a sample costs, by requirement.")
-    parser.add_argument("--rows", type=int, default=4000)
-    parser.add_argument("--time", choices=("held", "sampled"), default="held")
-    parser.add_argument("--unknown", type=float, default=0, help="per cent of the values")
-    parser.add_argument("words", nargs="*")
-    options = parser.parse_args(argv)
     print("| requirement | ns a sample |\n|---|---|")
     figures: list[float] = []
     for name, spec, rows, only, filled in lines(options.rows, options.time, options.unknown):
-        if not options.words or any(word in name for word in options.words):
+        if not options.kinds or any(word in name for word in options.kinds):
             figures.append(measured(spec, rows, [only] if only else None, filled))
             print(f"| {name} | {figures[-1]:,.0f} |", flush=True)
     print(f"{len(figures)} lines, median {statistics.median(figures):,.0f} ns", end="")
     print(f", most {max(figures):,.0f} ns")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

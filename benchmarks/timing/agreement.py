@@ -15,14 +15,13 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from benchmarks.measure import Figure
-from benchmarks.ours import always_text, specification
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, RTAMT_STEPPED, Contest, ask_peer
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.positions import Question, answers, ask_monitor
 from benchmarks.peers.ways import Cell
-from benchmarks.workload import Workload
+from benchmarks.timing.measure import Figure
+from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon import loads

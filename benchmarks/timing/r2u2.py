@@ -1,0 +1,139 @@
+"""R2U2's C monitor, built from a clone of its repository for the formulas of each workload.
+
+C2PO compiles the formulas as it does by itself, and R2U2's C gets the sizes that C2PO writes, and
+-O3. Its loop goes over bytes in memory. Each formula's verdict at each row is compared with ours:
+R2U2 says that one is false at the last row of its window, ours when it is over, one row later.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from benchmarks.peers.client import PeerError
+from benchmarks.peers.dialects import Dialect, spelling, translate
+from benchmarks.peers.positions import Question, answers, ask_monitor
+from benchmarks.timing.agreement import Agreement
+from benchmarks.timing.contenders import Pass
+from benchmarks.timing.workload import Workload
+from tests.tools.common_fragment import UntranslatableError
+
+from rvmon.spec.checked.formula import BinaryOp, UnaryOp
+from rvmon.spec.checked.specification import TimeModel
+
+LOOP = Path(__file__).parents[1] / "peers" / "r2u2_native" / "loop.c"
+COMPARED_ROWS = 2_000
+
+C2PO = Dialect(
+    "c2po",
+    lambda name: name,
+    None,
+    ("(!({0}))", "(({0}) && ({1}))", "(({0}) || ({1}))"),
+    {UnaryOp.EVENTUALLY: "(F{bound}({0}))", UnaryOp.ALWAYS: "(G{bound}({0}))"},
+    {BinaryOp.UNTIL: "(({0}) U{bound} ({1}))"},
+    lambda low, high: f"[{low},{high}]",
+    ever=False,
+)
+
+
+@dataclass(slots=True)
+class R2u2:
+    """A contender; what is built for one workload serves until there is another.
+
+    Attributes:
+        source: the clone.
+        folder: for what is built.
+        built_for: the name of the workload.
+    """
+
+    source: Path
+    label: str = "R2U2 C, memory"
+    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))
+    built_for: str = ""
+    sizes: tuple[str, ...] = ()
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Build it unless that is done, and write the rows.
+
+        Raises:
+            UntranslatableError: it cannot say a formula.
+            PeerError: it cannot be built.
+        """
+        if workload.form != "future":
+            raise UntranslatableError("only future forms are measured")
+        if self.built_for != workload.name:
+            try:
+                self._build(workload)
+            except subprocess.CalledProcessError as error:
+                raise PeerError((error.stderr or "it does not compile").splitlines()[-1]) from None
+            self.built_for = workload.name
+        columns = [column[:rows] for column in workload.columns.values()]
+        self.sizes = str(len(columns)), str(len(workload.formulas))
+        (self.folder / "rows").write_bytes(
+            bytes(bool(cell) for row in zip(*columns, strict=True) for cell in row)
+        )
+
+    def run(self) -> Pass:
+        """One pass in a process of its own; it measures its loop alone."""
+        own = self.folder
+        said = _run(own / "loop", own / "spec.bin", own / "rows", *self.sizes)
+        spent, *violated = map(int, said.split())
+        return Pass(spent, tuple(None if row < 0 else row + 1 for row in violated))
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def agreement(self, workload: Workload) -> Agreement:
+        """Whether all formulas have the same verdict at each of some rows."""
+        columns = {name: column[:COMPARED_ROWS] for name, column in workload.columns.items()}
+        path = self.folder / "rows.csv"
+        cells = zip(*columns.values(), strict=True)
+        path.write_text("".join(",".join(str(int(cell)) for cell in row) + "\n" for row in cells))
+        theirs: list[list[bool]] = [[] for _ in workload.formulas]
+        for line in _run(self.folder / "r2u2", self.folder / "spec.bin", path).splitlines():
+            number, _, said = line.partition(":")
+            row, _, truth = said.partition(",")
+            own = theirs[int(number)]  # of rows that are alike the last one is printed
+            own += [truth == "T"] * (int(row) + 1 - len(own))
+        equal = count = false = 0
+        for formula, other in zip(workload.formulas, theirs, strict=True):
+            question = Question(formula, columns, frozenset(), TimeModel.HELD)
+            for answer, verdict in zip(answers(question, ask_monitor), other, strict=False):
+                if answer is not None:
+                    count, equal, false = (
+                        count + 1,
+                        equal + (answer is verdict),
+                        false + (not answer),
+                    )
+        return Agreement("R2U2", workload.name, workload.form, equal, count, false)
+
+    def _build(self, workload: Workload) -> None:
+        names = list(workload.columns)
+        inputs = f"INPUT\n    {', '.join(map(spelling, names))}: bool;\n\nFTSPEC\n"
+        lines = "".join(f"    {translate(one, C2PO)};\n" for one in workload.formulas)
+        text, mapping, bounds = (
+            self.folder / name for name in ("formulas.c2po", "names.map", "bounds.h")
+        )
+        text.write_text(inputs + lines)
+        mapping.write_text("".join(f"{spelling(name)}:{i}\n" for i, name in enumerate(names)))
+        _run(
+            *(sys.executable, self.source / "compiler" / "c2po.py", "--quiet", "--spec", text),
+            *("--map", mapping, "--output", self.folder / "spec.bin", "--write-bounds", bounds),
+        )
+        # C2PO counts the signals that are read; all are loaded, and of nothing there is one.
+        tight = re.compile(r"(?<=R2U2_MAX_)(SIGNALS|ATOMICS|BZ_INSTRUCTIONS) \d+")
+        bounds.write_text(tight.sub(rf"\1 {len(names)}", bounds.read_text()))
+        code = self.source / "monitors" / "c" / "src"
+        parts = [path for path in sorted(code.rglob("*.c")) if path.parent.name != "cli"]
+        includes = [word for path in code.rglob("*/") for word in ("-I", path)]
+        flags = ["gcc", "-O3", "-w", "-std=gnu11", "-include", bounds, "-I", code, *includes]
+        _run(*flags, LOOP, *parts, "-o", self.folder / "loop", "-lm")
+        _run(*flags, *(code / "cli").glob("*.c"), *parts, "-o", self.folder / "r2u2", "-lm")
+
+
+def _run(*command: str | Path) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -1,0 +1,43 @@
+"""Each benchmark is a program that says what it does."""
+
+from __future__ import annotations
+
+import runpy
+
+import pytest
+from benchmarks.__main__ import BENCHMARKS, main
+from benchmarks.growth import cliffs
+from benchmarks.growth.large import inputs
+
+
+def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    """One line for each; what is none is refused with the list."""
+    assert main(["--help"]) == 0
+    listed = capsys.readouterr().out
+    assert all(f"  {name} " in listed for name in BENCHMARKS)
+    assert main(["nothing"]) == 2
+
+
+@pytest.mark.parametrize("name", BENCHMARKS)
+def test_each_helps(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`--help` is answered, and names the program."""
+    monkeypatch.setattr("sys.argv", ["it", "--help"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module(f"benchmarks.{name}", run_name="__main__", alter_sys=True)
+    assert ended.value.code == 0
+    assert len(capsys.readouterr().out.splitlines()) > 3
+
+
+def test_hard_streams_have_neighbours() -> None:
+    """Each stream and its neighbour are judged, and have a line."""
+    lines = list(cliffs.table(60, 1))
+    assert len(lines) == 2 + 15
+    assert all(line.count("|") == 8 for line in lines[2:])
+
+
+def test_inputs_have_names_of_their_own(tmp_path: object) -> None:
+    """`--only` can pick each."""
+    names = [name for name, _ in inputs(tmp_path)]  # type: ignore[arg-type]
+    assert len(names) == len(set(names)) > 20
