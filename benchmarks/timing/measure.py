@@ -195,8 +195,6 @@ def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
     rows = min(FEWEST_ROWS, workload.rows)
     while True:
         contender.prepare(workload, rows)
-        if rows <= FEWEST_ROWS:
-            contender.run()  # what the first pass makes ready is not measured
         spent = max(contender.run().cpu_ns, 1)
         fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
         if fitting <= rows or spent >= budget / 2:  # what each pass costs once weighs little
