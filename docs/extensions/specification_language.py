@@ -63,7 +63,9 @@ def operations() -> str:
 def windows() -> str:
     """What is measured over the last D, from its table."""
     rows = [
-        f"| `{one}` | {one.takes} | {one.doc} | {one.unknown} | {one.memory} |" for one in Measured
+        f"| `{one}` | {one.of.value}; {one.dimension.value} | {one.doc} | {one.unknown} "
+        f"| {one.memory} |"
+        for one in Measured
     ]
     heads = "| | takes; gives | | if something is unknown | memory |"
     return "\n".join((heads, "|---|---|---|---|---|", *rows))

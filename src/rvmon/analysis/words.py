@@ -143,20 +143,22 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 
 
 def _amount(formula: Amount, positive: bool) -> str:
-    operand, least = formula.operand, formula.least
     back = "so far" if formula.window is None else f"in the last {format_duration(formula.window)}"
-    if formula.value is not None and formula.limit is not None:
-        op = CompareOp.GT if formula.strict else CompareOp.GE
-        verb = (op if positive else op.denied).said
-        what = f"the {formula.measured} of {format_numeric(formula.value)} {back}"
-        if isinstance(formula.value, NumericLiteral):  # so many times 1
-            often = "how often" if formula.measured is Measured.SUM else "for how long"
-            what = f"{often} {_clause(operand, True)} {back}"
-        return f"{what} {verb} {format_numeric(formula.limit)}"
+    back = back if formula.most is None else f"at the last {formula.most} updates"
     known = "" if positive else "not "
-    if formula.measured is Measured.COUNT:
-        return f"{known}{least} times or more {back}, {_clause(operand, True)}"
-    return f"for {known}{format_duration(least)} or more {back}, {_clause(operand, True)}"
+    least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
+    if isinstance(least, int) and formula.value is None:
+        what = _clause(formula.counted or formula.operand, True)
+        if formula.measured is Measured.COUNT:
+            return f"{known}{least} times or more {back}, {what}"
+        return f"for {known}{format_duration(least)} or more {back}, {what}"
+    op = CompareOp.GT if formula.strict else CompareOp.GE
+    verb = (op if positive else op.denied).said
+    what = f"the {formula.measured} of {format_numeric(formula.value or formula.limit)} {back}"
+    if formula.value is None or isinstance(formula.value, NumericLiteral):  # so many times 1
+        often = "for how long" if formula.measured.of_time else "how often"
+        what = f"{often} {_clause(formula.counted or formula.operand, True)} {back}"
+    return f"{what} {verb} {format_numeric(formula.limit)}"
 
 
 def _by_entry(formula: Unary | Binary, positive: bool) -> str:

@@ -23,8 +23,9 @@ from rvmon.logic.state_formula import (
     Unborn,
     signals_of,
 )
-from rvmon.logic.state_graph import lasting
+from rvmon.logic.state_graph import begun_by, lasting
 from rvmon.spec.checked.formula import (
+    Amount,
     Captured,
     Compare,
     Constant,
@@ -55,15 +56,14 @@ class NodeOp(IntEnum):
     EVER = auto()
     EDGE = auto()
     STRETCH = auto()
-    AMOUNT = auto()
-    SUM = auto()
+    WINDOW = auto()
     PASSED = auto()
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
 """The nodes that remember a truth."""
 
-STRETCHED = (NodeOp.STRETCH, NodeOp.AMOUNT, NodeOp.SUM)
+STRETCHED = (NodeOp.STRETCH, NodeOp.WINDOW)
 """The nodes that remember stretches of time."""
 
 TIMED = (
@@ -72,8 +72,10 @@ TIMED = (
 )
 """The nodes that time alone can change."""
 
-_SUMS = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL)
-"""What adds up numbers, in the order of plan.h."""
+_FOLDS = {measured: number for number, measured in enumerate(Measured)}
+"""What members of a window come to, in the order of plan.h."""
+_TALLIED = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL, Measured.VARIANCE)
+_STRICT, _COUNTED = 16, 32
 
 _PLAIN = {
     StateOp.NOT: NodeOp.NOT,
@@ -92,7 +94,10 @@ class Node:
         op: what kind of node it is.
         operands: places of nodes; of a leaf and of what is not born, signals times 2, plus 1 if an
             update after the first value is asked for.
-        sum: of what adds up numbers, the number of its sum.
+        tally: of a window whose numbers are added up, the number of their sum.
+        most: of a window, how many members it has at most; 0: any number.
+        chosen: of a window, from which operand on they are asked of each occurrence.
+        since: of a window, the captured instant that it begins with; −1: another.
         reads: the atoms of which it reads the numbers, and not the truths alone.
     """
 
@@ -104,7 +109,10 @@ class Node:
     operands: Sequence[int] = ()
     slot: int = -1
     timer: int = -1
-    sum: int = 0
+    tally: int = 0
+    most: int = 0
+    chosen: int = 0
+    since: int = -1
     reads: tuple[int, ...] = ()
 
 
@@ -121,7 +129,7 @@ class Nodes:
         seen: how many remember a truth.
         edges: how many remember an instant.
         stretches: how many remember stretches of time.
-        sums: how many of these add up numbers.
+        tallies: how many of these add up numbers.
         timers: how many time alone can change.
         needed: those that matter once all is born and determined.
     """
@@ -137,10 +145,10 @@ class Nodes:
         self.seen = _count_slots(self.all, SEEN)
         self.edges = _count_slots(self.all, [NodeOp.EDGE])
         self.stretches = _count_slots(self.all, STRETCHED)
-        sums = [node for node in self.all if node.op is NodeOp.SUM]
-        for number, node in enumerate(sums):
-            node.sum = number
-        self.sums = len(sums)
+        tallied = [node for node in self.all if node.op is NodeOp.WINDOW and not node.tally]
+        for number, node in enumerate(tallied):
+            node.tally = number
+        self.tallies = len(tallied)
         timed = [node for node in self.all if node.op in TIMED]
         for number, node in enumerate(timed):
             node.timer = number
@@ -197,24 +205,31 @@ class Nodes:
                 high = NEVER if state.high is None else state.high
                 return Node(_since(state), low=state.low, high=high, operands=operands)
             case StateOp.AMOUNT:
-                return self._amount(state, operands)
+                return self._window(state, operands)
             case StateOp.PASSED if state.passed is not None:
                 return self._passed(state.passed, operands)
             case _:
                 return Node(_PLAIN[state.op], operands=operands)
 
-    def _amount(self, state: State, operands: Sequence[int]) -> Node:
+    def _window(self, state: State, operands: Sequence[int]) -> Node:
         amount = state.amount
         if amount is None:
             raise AssertionError("it says what is measured")
-        high = NEVER if amount.window is None else amount.window
-        if amount.value is None or amount.limit is None:
-            lasting = amount.measured is Measured.DURATION
-            return Node(NodeOp.AMOUNT, lasting, low=amount.least, high=high, operands=operands)
-        value, limit = self._atoms.itself(amount.value), self._atoms.itself(amount.limit)
-        kind = _SUMS.index(amount.measured) + len(_SUMS) * amount.strict
-        place = self._atoms.all[limit].left
-        return Node(NodeOp.SUM, value, kind, place, high, operands, reads=(value, limit))
+        value = -1 if amount.value is None else self._atoms.itself(amount.value)
+        limit = self._atoms.itself(amount.limit)
+        return Node(
+            NodeOp.WINDOW,
+            value,
+            _fold(amount),
+            self._atoms.all[limit].left,
+            NEVER if amount.window is None else amount.window,
+            operands,
+            tally=0 if amount.measured in _TALLIED else -1,
+            most=amount.most or 0,
+            chosen=len(operands) - len(amount.chosen),
+            since=self._names.captured.get(begun_by(state) or "", -1),
+            reads=(limit,) if value < 0 else (value, limit),
+        )
 
     def _passed(self, passed: Passed, operands: Sequence[int]) -> Node:
         after = self._atoms.itself(passed.after)
@@ -245,6 +260,12 @@ class Nodes:
                 return Node(NodeOp.LEAF, self._atoms.number(leaf), unborn, operands=births)
             case _:
                 return Node(NodeOp.LEAF, self._atoms.number(leaf), UNKNOWN)
+
+
+def _fold(amount: Amount) -> int:
+    """What members come to, with its marks."""
+    counted = amount.value is None and amount.counted is not None
+    return _FOLDS[amount.measured] + _STRICT * amount.strict + _COUNTED * counted
 
 
 def _since(state: State) -> NodeOp:

@@ -118,7 +118,7 @@ class Part:
             truths,
             *added(Section.WATCHES),
             *added(Section.GROUPS),
-            nodes.sums,
+            nodes.tallies,
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
@@ -163,7 +163,7 @@ class Part:
                 *sections.listed(node.operands),
                 *self._phased(*self._nodes.parents(place)),
                 *((links[0], len(links)) if links else (0, 0)),
-                node.sum,
+                *(node.tally, node.most, node.chosen, node.since, 0),
             )
 
     def _add_atoms(self) -> None:

@@ -15,10 +15,11 @@ from rvmon.core.sections import Sections
 from rvmon.logic.network_plan import plan_of
 from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State, StateOp
-from rvmon.logic.state_graph import Reach, graph_of, reach_of, varying
+from rvmon.logic.state_graph import Reach, begins_with_attempt, graph_of, reach_of, varying
+from rvmon.spec.checked.formula import NowValue
 from rvmon.spec.checked.specification import Mode
 
-_REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST = 1, 2, 4, 8
+_REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST, _CAPTURES_NOW = 1, 2, 4, 8, 16
 
 SHARED = (0, 0, -1, 0, 0, 0, -1, -1, *([0] * 10))
 """The fields of a part of which no requirement has captured values."""
@@ -56,7 +57,7 @@ class Unit:
         lists: Sequence[Sequence[int]] = (
             [programs.place(capture.value) for capture in self._requirement.captures],
             [number for number, atom in enumerate(atoms.all) if atom.captured],
-            [one for one in vary if one not in graph.stateful or _forgets(graph.nodes[one])],
+            [one for one in vary if one not in graph.stateful or self._forgets(graph.nodes[one])],
             vary,
             lapsed,
         )
@@ -70,9 +71,16 @@ class Unit:
         found = _REPLAYS if replays else 0
         found |= _FRESH if fresh else 0
         found |= _FORGETS if fresh and reach is not None and reach.begins else 0
+        reads_now = any(isinstance(one.value, NowValue) for one in self._requirement.captures)
+        found |= _CAPTURES_NOW if reads_now else 0
         return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
 
-    @property
+    def _forgets(self, state: State) -> bool:
+        """Whether a node that time changes remembers nothing, or begins with an attempt."""
+        begins = not self._replays and begins_with_attempt(state)
+        return state.op is StateOp.PASSED or begins
+
+    @cached_property
     def _replays(self) -> bool:
         """Whether a captured attempt has to look at what was before its values were."""
         if not self._requirement.captures:
@@ -129,11 +137,6 @@ class Unit:
         if doubted is not None and self._requirement.mode is Mode.UPON:
             return bits[doubted], known
         return known, known
-
-
-def _forgets(state: State) -> bool:
-    """Whether a node that time changes remembers nothing."""
-    return state.op is StateOp.PASSED
 
 
 def _consequent(rule: PlannedRule) -> Iterator[State]:

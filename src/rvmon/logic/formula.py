@@ -242,6 +242,9 @@ class Factory:
     def amount(self, amount: Amount, *args: State) -> State:
         """So much of the first of `args`; of constants too, for what was lost."""
         own = replace(amount, operand=ConstantLeaf(True), known=None, span=None)
+        own = replace(own, chosen=tuple(replace(one, span=None) for one in own.chosen))
+        if own.counted is not None:
+            own = replace(own, counted=ConstantLeaf(True))
         if args[0] is self.state_false and own.value is not None:
             own = replace(own, value=Zero(0))  # what it reads is no part of any formula
         return self._state(StateOp.AMOUNT, args, amount=own)

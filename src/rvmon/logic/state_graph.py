@@ -85,6 +85,36 @@ class Graph:
     remembers_captured: bool
 
 
+def begun_by(state: State) -> str | None:
+    """The captured instant before which a window has no members; `None`: there is none."""
+    if state.amount is None:
+        return None
+    begun = [part.passed for part in _members(state) if part.passed and part.passed.begins]
+    return begun[0].since if len(begun) == 1 else None
+
+
+def begins_with_attempt(state: State) -> bool:
+    """Whether a window has no members before an attempt, and nothing else of it is captured."""
+    if state.amount is None or begun_by(state) is None:
+        return False
+    limit = Compare(CompareOp.EQ, state.amount.limit, state.amount.limit)
+    others = [part for part in _members(state) if not (part.passed and part.passed.begins)]
+    others += [part for part in state.args[1:] if part.leaf != limit]
+    return not any(map(_reads_captured, _all_of(others)))
+
+
+def _members(state: State) -> Sequence[State]:
+    """What all has to be so where a window has a member."""
+    members = state.args[0]
+    return members.args if members.op is StateOp.AND else (members,)
+
+
+def _reads_captured(state: State) -> bool:
+    if state.passed is not None:
+        return state.passed.since is not None
+    return state.leaf is not None and bool(captured_names(state.leaf))
+
+
 def leaf_texts(
     roots: Sequence[State], determined: Collection[State]
 ) -> tuple[tuple[State, str], ...]:
@@ -203,7 +233,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
         elif varies.intersection(operands[place]):
             varies.add(place)
         if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT, StateOp.DOUBT):
-            remembers |= place in varies
+            remembers |= place in varies and not begins_with_attempt(state)
             stateful.append(place)
         elif isinstance(state.leaf, Elapsed) or state.op is StateOp.PASSED:
             stateful.append(place)

@@ -34,7 +34,6 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
-    Measured,
     Passed,
     ProbeAtom,
     SignalAtom,
@@ -174,12 +173,8 @@ class Reader(Reading[Four]):
 
     def _amount(self, formula: Amount) -> Four:
         """What is not born adds nothing; a limit, and what a mean is of, are born first."""
-        factory = self.factory
-        states = [self.four(part).read(FALSE) for part in formula.operands[:1]]
-        states += [self.four(part).read(UNKNOWN) for part in formula.operands[1:]]
-        value = factory.amount(formula, *states)
-        asked = formula.operands[formula.measured is not Measured.MEAN :]
-        return self._born_with(value, asked if formula.measured.of_numbers else ())
+        states = [self.four(part).read(FALSE) for part in formula.operands]
+        return self._born_with(self.factory.amount(formula, *states), formula.born_with)
 
     def _born_with(self, value: State, asked: Sequence[Formula]) -> Four:
         """What is unknown until the signals of comparisons are born, and is not born till then."""

@@ -17,7 +17,13 @@ def ticks(form):
     return [(float(t), one) for t, one in enumerate(form)]
 
 
+def drawn(*sums):
+    """What users withdraw at one instant."""
+    return {"withdrawn": [{"user": user, "sum": amount} for user, amount in sums]}
+
+
 BEATS = [{"beat": {"ms": ms}} for ms in (900, 400, 400, 900, 400, 400, 400, 900)]
+BEAT = {"beat": True}
 STILL = [{"north": 47.0, "east": 8.0}] * 3
 
 CASES = {
@@ -101,6 +107,79 @@ CASES = {
         "always integral(u * i) <= 5 Wh",
         [(0.0, {"u": 10.0, "i": 5.0}), (360.0, {"i": 0.0}), (500.0, {})],
         [(0.0, {"u": 10.0, "i": 5.0}), (361.0, {"i": 0.0})],
+    ),
+    "the last five probes are below 10 on the mean": (
+        "signal x : real",
+        "always mean(last(5, x)) < 10",
+        ticks([{"x": x} for x in (30.0, 0.0, 0.0, 0.0, 0.0, 12.0, 20.0)][1:]),
+        ticks([{"x": x} for x in (0.0, 0.0, 8.0, 12.0, 20.0, 12.0)]),
+    ),
+    "five of the last eight beats are fast, and the mode is switched": (
+        "event beat(ms: int), switched",
+        "upon beat and count(last(8, beat.ms < 500)) >= 5 then immediately switched",
+        [(t**2 / 3, {**one, "switched": t == 6}) for t, one in enumerate(BEATS[:7])],
+        [(t**2 / 3, one) for t, one in enumerate(BEATS)],
+    ),
+    "most of five probes agree": (
+        "signal a : bool",
+        "upon end then immediately count(last(5, a)) >= 3",
+        ticks([{"a": a} for a in (False, True, True, False, True)]),
+        ticks([{"a": a} for a in (True, True, False, False, True, False)]),
+    ),
+    "no user withdraws more than 500 in 31 days": (
+        "event withdrawn(user: int, sum: int)",
+        "upon withdrawn.user == u then immediately sum(withdrawn.sum, 744 h) <= 500 "
+        "for each u in withdrawn.user",
+        [(0.0, drawn((1, 300), (2, 300))), (86400.0 * 30, drawn((1, 100), (1, 100)))],
+        [(0.0, drawn((1, 300), (2, 300))), (86400.0 * 30, drawn((1, 100), (1, 101)))],
+    ),
+    "a user reaches at most two hosts in an hour": (
+        "event login(user: int, host: int)",
+        "upon login.user == u then immediately distinct(login.host, 1 h) <= 2 "
+        "for each u in login.user",
+        [
+            (t * 1900.0, {"login": {"user": u, "host": h}})
+            for t, (u, h) in enumerate([(1, 7), (2, 9), (1, 8), (1, 7), (1, 6), (1, 6)])
+        ],
+        [
+            (t * 1100.0, {"login": {"user": u, "host": h}})
+            for t, (u, h) in enumerate([(1, 7), (2, 9), (1, 8), (1, 6)])
+        ],
+    ),
+    "a burst has as many beats before its last as its head said": (
+        "event head(beats: int), beat, last",
+        "upon head then (not last) until (last and count(beat since trigger) >= n) "
+        "let n = head.beats",
+        ticks(
+            [{"beat": True}, {"head": {"beats": 2}}, {"beat": True}, {"beat": True, "last": True}]
+        ),
+        ticks([BEAT, {"head": {"beats": 2}}, BEAT, {"last": True}]),
+    ),
+    "a drone hovers: its position spreads little over the last four fixes": (
+        "signal z : real [m]",
+        "always variance(last(4, z)) <= 0.25 m^2",
+        ticks([{"z": z} for z in (0.0, 1.0, 0.0, 1.0, 0.5)]),
+        ticks([{"z": z} for z in (0.0, 1.0, 0.0, 1.0, 1.5)]),
+    ),
+    "a tank changes by at most 3 l in a minute": (
+        "signal level : real [L]",
+        "always (delta(level, 1 min) <= 3 L and delta(level, 1 min) >= -3 L)",
+        [(0.0, {"level": 5.0}), (30.0, {"level": 8.0}), (91.0, {"level": 9.0})],
+        [(0.0, {"level": 5.0}), (30.0, {"level": 8.0}), (59.0, {"level": 9.0})],
+    ),
+    "a door that was asked for opens in the time that it says, and stays so": (
+        "event asked(wait: real [s], stay: real [s]), opened\nsignal closed : bool",
+        "upon asked then (within (asked.wait) opened) and (for (asked.stay) not closed)",
+        [
+            (0.0, {"asked": {"wait": 2.0, "stay": 3.0}, "closed": False}),
+            (2.0, {"opened": True}),
+            (3.5, {"closed": True}),
+        ],
+        [
+            (0.0, {"asked": {"wait": 2.0, "stay": 3.0}, "closed": False}),
+            (2.0, {"opened": True}),
+            (3.0, {"closed": True}),
+        ],
     ),
     "at most 500 are withdrawn in 31 days": (
         "event withdrawn(sum: int)",
@@ -239,10 +318,15 @@ def test_sums_are_those_of_the_numbers_that_there_are():
 
 def test_a_sum_goes_on_from_a_snapshot():
     """At every sample, as if nothing had been."""
-    spec = rvmon.loads(
-        "spec s\nsignal x : real\nrequirement R1\n  always mean(x, 3 s) <= 2\n"
-        "requirement R2\n  always integral(x) <= 7 s\n"
+    owed = (
+        "mean(x, 3 s) <= 2",
+        "integral(x) <= 7 s",
+        "distinct(x, 3 s) <= 1",
+        "delta(x, 3 s) <= 1",
     )
+    owed += ("variance(last(2, x)) <= 1", "sum(last(2, x)) <= 3", "count(last(3, x > 2)) <= 1")
+    body = "".join(f"requirement R{n}\n  always {one}\n" for n, one in enumerate(owed))
+    spec = rvmon.loads(f"spec s\nsignal x : real\n{body}")
     samples = [(0.0, {"x": 1.0}), (1.0, {"x": None}), (2.5, {"x": 2.5}), (4.0, {"x": 1e300})]
     whole = spec.monitor()
     other = spec.monitor()
@@ -250,6 +334,31 @@ def test_a_sum_goes_on_from_a_snapshot():
         assert whole.step(t, sample) == other.step(t, sample)
         other = spec.restore(other.snapshot())
     assert whole.finish(9.0).verdicts == other.finish(9.0).verdicts
+
+
+def test_a_condition_that_is_lost_bounds_a_sum():
+    """What may have been added lies between 0 and all of it."""
+    spec = rvmon.loads(
+        "spec s\nsignal a : bool\nevent e(x: real)\nrequirement R\n"
+        "  always sum(if a then e.x else 0, 10 s) <= 5\n"
+    )
+    for last, verdict in ((2.0, "P"), (3.0, "I"), (6.0, "F")):
+        monitor = spec.monitor()
+        monitor.step(0.0, {"a": True, "e": {"x": last}})
+        monitor.step(1.0, {"a": None, "e": {"x": 3.0}})
+        assert monitor.finish(2.0).verdicts["R"].value == verdict
+
+
+def test_another_instant_of_the_trigger_may_be_captured_at_the_next_tick():
+    """Though nothing comes: what hangs on `now` in doubt is known no longer."""
+    spec = rvmon.loads(
+        "spec s\nsignal p : bool\nrequirement R\n  upon p then immediately now <= t0\n"
+        "  let t0 = now\n"
+    )
+    monitor = spec.monitor()
+    for t, p in ((1.0, False), (3.0, None), (7.0, False)):
+        monitor.step(t, {"p": p})
+    assert monitor.finish().verdicts["R"].value == "I"
 
 
 def test_a_loss_leaves_open_what_it_may_have_held():

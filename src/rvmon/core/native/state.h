@@ -67,7 +67,9 @@ enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPA
 /* Whether there are positions: surely; nobody knows; from the next one on. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
-/* Stretches of instants at which a `since` in bounds holds, or of which an amount is made, as a ring. */
+/* Stretches of instants at which a `since` in bounds holds, or which are members of a window (members.h),
+ * as a ring. Of a window, what is said of members stands in the first one of two, and in the second how
+ * many may be some, and how many are to come until it is known which the last ones are. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
@@ -77,7 +79,12 @@ typedef struct {
     bool right;
     bool growing;              /* whether the end of the last one is still to come */
     bool apart;                /* whether there is a second one, the unknown taken for the better */
-    int64_t total;             /* the positions in those of an amount */
+    int64_t total;             /* members that count */
+    int64_t lost;              /* members that are not known */
+    int64_t members;           /* all */
+    int32_t *slots;            /* the latest of equal members: distinct.c */
+    int32_t slot_room;
+    int32_t known_slots;       /* -1: the table is to be made anew */
 } stretches;
 
 typedef struct {
@@ -88,13 +95,14 @@ typedef struct {
 } edge;
 
 /* A sum of numbers, exactly: a number in two's complement of 32 bits a limb, the lowest worth
- * 2^-1088. The largest double times the longest duration, added up for as long, has bit 2240. */
+ * 2^-1088. The largest double times the longest duration, added up for as long, has bit 2240. Behind it
+ * stands the sum of squares, or the same with what may be a member. */
 #define SUM_LIMBS 71
+#define SQUARE_LIMBS 142
+#define TALLY_LIMBS (SUM_LIMBS + SQUARE_LIMBS)
 typedef struct {
-    int64_t lost;              /* members that are not known */
-    uint32_t limb[SUM_LIMBS];
-    uint32_t filling;
-} exact_sum;
+    uint32_t limb[TALLY_LIMBS];
+} tally;
 
 /* A node that notes tell of: since when it has its truth, and the last positions at which it was false
  * and true before; RV_NO_TIME: there is none. */
@@ -220,7 +228,7 @@ struct run {
     int32_t *chosen;           /* by event, the occurrence that a comparison looks at */
     stretches *past;
     edge *edges;
-    exact_sum *sums;
+    tally *tallies;
     timers wake;               /* nodes, then perishable signals */
     uint64_t *dirty;           /* nodes to be worked out, as bits */
     uint64_t *dirty_words;     /* words of that which are not 0, as bits */

@@ -8,12 +8,23 @@ from fractions import Fraction
 from math import ceil, floor
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.spec.check.quantities import Placed, arithmetic, compare, decided, node_of, spread
+from rvmon.spec.check.quantities import (
+    Placed,
+    arithmetic,
+    compare,
+    decided,
+    either,
+    node_of,
+    seconds_of,
+    spread,
+    ticks_of,
+)
 from rvmon.spec.check.scope import (
     Age,
     Ago,
     AmountOf,
     Beside,
+    Chosen,
     Extreme,
     Moment,
     Now,
@@ -40,68 +51,21 @@ from rvmon.spec.checked.formula import (
     Numeric,
     Probe,
     ProbeAtom,
+    SignalAtom,
     SignalValue,
     Unary,
     UnaryOp,
     itself,
     passed,
 )
+from rvmon.spec.checked.measured import Dimension
 from rvmon.spec.checked.names_read import names_in
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import names as name_rules
-from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
-from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
-from rvmon.units import parse_unit, product
-
-_SECOND = (("s", 1),)
-
-
-def ticks_of(value: Value, span: Span) -> int:
-    """A constant with a unit of time, exactly; 0 needs no unit.
-
-    Raises:
-        Refusal: it is no such constant, no whole number of ticks, negative, or too long.
-    """
-    if not isinstance(value, Quantity) or value.constant is None:
-        moves = isinstance(value, Quantity) and is_time(value)
-        raise Refusal((time_rules.moving if moves else time_rules.no_duration)(span))
-    if not is_time(value) and value.constant != 0:
-        raise Refusal(time_rules.no_duration(span, plain=not value.unit.symbol))
-    ticks: Fraction = value.constant * value.unit.factor * TICKS_PER_SECOND
-    if ticks.denominator != 1:
-        raise Refusal(time_rules.part_of_tick(span))
-    if ticks < 0:
-        raise Refusal(time_rules.negative(span))
-    if ticks >= TIME_LIMIT:
-        raise Refusal(time_rules.too_long(span))
-    return int(ticks)
-
-
-def is_time(value: Quantity) -> bool:
-    """Whether it has a unit of time."""
-    return value.unit.dimension == _SECOND
-
-
-def closed_interval(
-    low: int, high: int | None, *, low_open: bool, high_open: bool, span: Span
-) -> Interval:
-    """The closed interval of ticks with these ends.
-
-    Raises:
-        Refusal: no tick lies in it.
-
-    >>> from rvmon.diagnostics import Source
-    >>> closed_interval(2, 5, low_open=True, high_open=False, span=Span(Source("", ""), 0, 0))
-    Interval(low=3, high=5)
-    """
-    first = low + low_open
-    last = None if high is None else high - high_open
-    if last is not None and last < first:
-        raise Refusal(time_rules.empty(span))
-    return Interval(first, last)
-
+from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.units import PLAIN, Unit, parse_unit, product
 
 _EQUALITY = (CompareOp.EQ, CompareOp.NE)
 
@@ -193,39 +157,62 @@ def _counted(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formu
     least = floor(exact) + 1 if strict else ceil(exact)
     if least <= 0:
         return Constant(True, span)
-    return Amount(amount.measured, amount.operand, amount.window, least, span)
+    return _of(amount, Literal(least), span)
+
+
+def _of(amount: AmountOf, limit: Numeric, span: Span) -> Amount:
+    """What is measured beside a limit, but for numbers."""
+    return Amount(
+        *(amount.measured, amount.operand, amount.window, limit),
+        span=span,
+        most=amount.most,
+        counted=amount.counted,
+        chosen=amount.chosen,
+    )
 
 
 _SECONDS = parse_unit("s")
 
 
-def _added(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
-    """Numbers that are added up, beside any number that does not move between samples.
+def _unit_of(measured: Measured, unit: Unit) -> Unit:
+    """The unit of what is measured of numbers."""
+    match measured.dimension:
+        case Dimension.PLAIN:
+            return PLAIN
+        case Dimension.TIMES_TIME | Dimension.TIME:
+            return product(unit, _SECONDS)
+        case Dimension.SQUARE:
+            return product(unit, unit)
+        case Dimension.SAME:
+            return unit
 
-    A count beside one is a sum of as many 1, and a duration the integral of 1.
+
+def _added(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
+    """Members beside any number that does not move between samples.
+
+    A duration beside one is the integral of 1.
     """
     value, place = limit
     if value.node is not None and reads_field(value.node):
         raise Refusal(rules.limit_of_event(place))
-    added = amount.added or Quantity(constant=Fraction(1))
-    measured = {Measured.COUNT: Measured.SUM, Measured.DURATION: Measured.INTEGRAL}.get(
-        amount.measured, amount.measured
-    )
-    of_ticks = measured is Measured.INTEGRAL
-    unit = product(added.unit, _SECONDS) if of_ticks else added.unit
+    one = Quantity(constant=Fraction(1))
+    added = amount.added or one
+    unit = _unit_of(amount.measured, added.unit)
     if amount.share:
         window = Quantity(constant=Fraction(amount.window or 0, TICKS_PER_SECOND), unit=_SECONDS)
         limit = arithmetic(NumericOp.MUL, (limit, (window, place)), span), place
-    node = node_of((added, span))
-    beside = compare(
-        CompareOp.GE, (replace(added, node=node, constant=None, unit=unit), span), limit, span
-    )
+    if amount.measured is Measured.DURATION:
+        amount = replace(amount, measured=Measured.INTEGRAL, added=one)
+    whole = Quantity(SignalValue(""), unit=unit)
+    beside = compare(CompareOp.GE, (whole, span), limit, span)
     if not isinstance(beside, Compare):
         raise AssertionError("one side varies")
     bound = beside.right
-    known = None if isinstance(bound, Literal) else itself(bound, place)
-    return Amount(
-        *(measured, amount.operand, amount.window, 1, span, node, bound, strict, known),
+    return replace(
+        _of(amount, bound, span),
+        value=None if amount.added is None else node_of((amount.added, span)),
+        strict=strict,
+        known=None if isinstance(bound, Literal) else itself(bound, place),
     )
 
 
@@ -246,8 +233,17 @@ def _extreme(extreme: Extreme, op: CompareOp, limit: Placed, span: Span) -> Form
     every = (CompareOp.LT, CompareOp.LE) if extreme.greatest else (CompareOp.GT, CompareOp.GE)
 
     def over(how: CompareOp) -> Formula:
-        one = compare(how, (extreme.quantity, extreme.span), limit, span)
+        if how in every and (extreme.begun or extreme.updated):
+            return Unary(UnaryOp.NOT, over(how.denied), None, span)
+        one: Formula = compare(how, (extreme.quantity, extreme.span), limit, span)
+        if extreme.updated is not None:
+            counted = AmountOf(
+                Measured.COUNT, extreme.updated, None, most=extreme.most, counted=one
+            )
+            return _of(counted, Literal(1), span)
         whole = UnaryOp.HISTORICALLY if how in every else UnaryOp.ONCE
+        if extreme.begun is not None:
+            one = Binary(BinaryOp.AND, extreme.begun, one, None, span)
         return Unary(whole, one, Interval(0, extreme.window), span)
 
     if op not in _EQUALITY:
@@ -267,6 +263,46 @@ def alone(value: Beside, span: Span) -> Diagnostic:
             return rules.amount_alone(span)
         case Extreme() | Ago():
             return rules.extreme_alone(span)
+
+
+def formula_of(value: Value, span: Span) -> Formula:
+    """The value as a formula.
+
+    Raises:
+        Refusal: it is a number or label.
+    """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
+    match value:
+        case Quantity(node=SignalValue(name=name), truth=True):
+            return SignalAtom(name, span)
+        case Quantity(node=node, truth=True) if node is not None:
+            return Compare(CompareOp.EQ, node, Literal(True), span)
+        case Quantity(labels=labels):
+            raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
+        case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
+            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
+        case _:
+            return value
+
+
+def number_of(value: Value, span: Span) -> Quantity:
+    """The value as a number.
+
+    Raises:
+        Refusal: it is a formula or label.
+    """
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
+    match value:
+        case Quantity(truth=False, labels=()):
+            return value
+        case Quantity(truth=False):
+            raise Refusal(rules.label_use(span))
+        case Chosen():
+            raise Refusal(rules.choice_alone(span))
+        case _:
+            raise Refusal(rules.needs_number(span))
 
 
 def _comparable(value: Value, span: Span) -> Placed:
@@ -318,22 +354,6 @@ def _now(now: Now, op: CompareOp, limit: Value, place: Span, span: Span) -> Form
     else:
         begun = passed(now.since, seconds_of((value, place)), strict, span)
     return begun if late else Unary(UnaryOp.NOT, begun, None, span)
-
-
-def seconds_of(duration: Placed) -> Numeric:
-    """A duration of data, in seconds.
-
-    Raises:
-        Refusal: it is none.
-    """
-    value, place = duration
-    if value.constant is not None:
-        ticks_of(value, place)
-    whole = Quantity(SignalValue(""), unit=_SECONDS)
-    beside = compare(CompareOp.GE, (whole, place), duration, place)
-    if not isinstance(beside, Compare):
-        raise AssertionError("one side varies")
-    return beside.right
 
 
 def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.spec.check.comparisons import closed_interval, compared, moved, ticks_of
-from rvmon.spec.check.functions import applied, formula_of, number_of
-from rvmon.spec.check.quantities import arithmetic, spread
+from rvmon.spec.check.bounds import bound_of, bounded_infix, bounded_prefix
+from rvmon.spec.check.comparisons import compared, formula_of, moved, number_of
+from rvmon.spec.check.functions import applied
+from rvmon.spec.check.quantities import arithmetic, closed_interval, spread, ticks_of
 from rvmon.spec.check.scope import (
     EVERYWHERE,
     Chosen,
@@ -303,7 +304,7 @@ class Checker:
         if call.function.text in self.table.recursive:
             raise Reported
         closures = (Closure(arg, scope) for arg in call.args)
-        inner = Scope(dict(zip(parameters, closures, strict=True)))
+        inner = scope.inside(dict(zip(parameters, closures, strict=True)))
         return self.values((declared.body,), inner)[0]
 
     def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
@@ -320,10 +321,16 @@ class Checker:
     # Operators.
 
     def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
-        operand = self.value(prefix.operand, scope)
-        interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
+        present = prefix.op.entry.tense is Tense.PRESENT
+        operand = self.value(prefix.operand, scope if present else scope.later())
+        bound = bound_of(self, prefix.op, prefix.window, scope)
+        if bound is None:
+            interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
         if operand is None:
             raise Reported
+        if bound is not None:
+            owed = formula_of(operand, prefix.operand.span)
+            return bounded_prefix(prefix.op, owed, bound, prefix.span)
         return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
 
     def _interval_of(
@@ -340,9 +347,12 @@ class Checker:
         return self.interval(window, scope)
 
     def _infix(self, infix: Infix, scope: Scope) -> Formula:
-        operands = [self.value(side, scope) for side in (infix.left, infix.right)]
+        present = infix.op.entry.window is Window.NONE
+        inner = scope if present else scope.later()
+        operands = [self.value(side, inner) for side in (infix.left, infix.right)]
         interval = None
-        if infix.op.entry.window is not Window.NONE:
+        bound = bound_of(self, infix.op, infix.window, scope)
+        if bound is None and not present:
             interval = self.interval(infix.window, scope)
             from_now = infix.op.entry.window is Window.FROM_NOW
             if from_now and interval.low > 0 and infix.window is not None:
@@ -351,6 +361,8 @@ class Checker:
         if left is None or right is None:
             raise Reported
         sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
+        if bound is not None:
+            return bounded_infix(infix.op, *sides, bound, infix.span)
         return Binary(infix.op, *sides, interval, infix.span)
 
     def interval(self, window: WindowSyntax | None, scope: Scope) -> Interval:

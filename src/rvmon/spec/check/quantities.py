@@ -21,13 +21,17 @@ from rvmon.spec.checked.formula import (
     CompareOp,
     Constant,
     Formula,
+    Interval,
     Literal,
     Numeric,
+    SignalValue,
     Unary,
     UnaryOp,
 )
 from rvmon.spec.rules import Refusal
+from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
 
 Placed = tuple[Quantity, Span]
@@ -289,3 +293,67 @@ def either(condition: Formula, chosen: Formula, otherwise: Formula, span: Span) 
     both = Binary(BinaryOp.AND, chosen, otherwise, None, span)
     one = Binary(BinaryOp.OR, first, second, None, span)
     return Binary(BinaryOp.OR, one, both, None, span)
+
+
+_SECOND = (("s", 1),)
+
+
+def ticks_of(value: Value, span: Span) -> int:
+    """A constant with a unit of time, exactly; 0 needs no unit.
+
+    Raises:
+        Refusal: it is no such constant, no whole number of ticks, negative, or too long.
+    """
+    if not isinstance(value, Quantity) or value.constant is None:
+        moves = isinstance(value, Quantity) and is_time(value)
+        raise Refusal((time_rules.moving if moves else time_rules.no_duration)(span))
+    if not is_time(value) and value.constant != 0:
+        raise Refusal(time_rules.no_duration(span, plain=not value.unit.symbol))
+    ticks: Fraction = value.constant * value.unit.factor * TICKS_PER_SECOND
+    if ticks.denominator != 1:
+        raise Refusal(time_rules.part_of_tick(span))
+    if ticks < 0:
+        raise Refusal(time_rules.negative(span))
+    if ticks >= TIME_LIMIT:
+        raise Refusal(time_rules.too_long(span))
+    return int(ticks)
+
+
+def is_time(value: Quantity) -> bool:
+    """Whether it has a unit of time."""
+    return value.unit.dimension == _SECOND
+
+
+def closed_interval(
+    low: int, high: int | None, *, low_open: bool, high_open: bool, span: Span
+) -> Interval:
+    """The closed interval of ticks with these ends.
+
+    Raises:
+        Refusal: no tick lies in it.
+
+    >>> from rvmon.diagnostics import Source
+    >>> closed_interval(2, 5, low_open=True, high_open=False, span=Span(Source("", ""), 0, 0))
+    Interval(low=3, high=5)
+    """
+    first = low + low_open
+    last = None if high is None else high - high_open
+    if last is not None and last < first:
+        raise Refusal(time_rules.empty(span))
+    return Interval(first, last)
+
+
+def seconds_of(duration: Placed) -> Numeric:
+    """A duration of data, in seconds.
+
+    Raises:
+        Refusal: it is none.
+    """
+    value, place = duration
+    if value.constant is not None:
+        ticks_of(value, place)
+    whole = Quantity(SignalValue(""), unit=parse_unit("s"))
+    beside = compare(CompareOp.GE, (whole, place), duration, place)
+    if not isinstance(beside, Compare):
+        raise AssertionError("one side varies")
+    return beside.right

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from rvmon.diagnostics import Span
-from rvmon.spec.check.comparisons import is_time, seconds_of
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.ctl import linear_form, property_of
 from rvmon.spec.check.expressions import Checker
@@ -18,7 +17,7 @@ from rvmon.spec.check.normalise import (
     scoped_trigger,
 )
 from rvmon.spec.check.quantities import node_of
-from rvmon.spec.check.scope import EVERYWHERE, Closure, Moment, Now, Quantity, Scope
+from rvmon.spec.check.scope import EVERYWHERE, AtTrigger, Moment, Now, Quantity, Scope
 from rvmon.spec.check.traps import (
     at_start_by_mistake,
     capture_traps,
@@ -29,6 +28,7 @@ from rvmon.spec.check.traps import (
 )
 from rvmon.spec.checked.classify import (
     end_part,
+    fields_in,
     future_part,
     is_pulse,
     is_timeless,
@@ -39,19 +39,15 @@ from rvmon.spec.checked.classify import (
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import (
     Amount,
-    Binary,
-    BinaryOp,
     Bound,
     BoundAtom,
     Captured,
+    Compare,
     FieldValue,
     Formula,
-    Interval,
     NowValue,
-    Unary,
-    UnaryOp,
-    passed,
 )
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import (
     Capture,
     EndPolicy,
@@ -66,10 +62,7 @@ from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import requirements as rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.syntax.expressions import (
-    Expression,
     Ident,
-    Prefix,
-    Window,
 )
 from rvmon.spec.syntax.items import (
     AtEndClause,
@@ -104,11 +97,11 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
         ctl = property_of(checker, item)
-        bounded = _bounded(checker, item, outer)
-        parts = _parts(checker, item, outer, inner, ctl, bounded)
-        mode, trigger, consequent = _scoped(checker, item, outer, parts)
+        trigger = AtTrigger()
+        parts = _parts(checker, item, outer, replace(inner, trigger=trigger), ctl)
+        mode, when, consequent = _scoped(checker, item, outer, parts)
         if for_each is not None:
-            _refuse_fields_in_sums((trigger, consequent), item.span)
+            _refuse_fields_in_sums((when, consequent), item.span)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
@@ -120,12 +113,12 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
     return Requirement(
         item.name.text,
         mode,
-        trigger,
+        when,
         consequent,
         item.text,
         at_end=policy,
-        pulse=is_pulse(trigger),
-        captures=captures if bounded is None else (*captures, *bounded.captures),
+        pulse=is_pulse(when),
+        captures=(*captures, *trigger.captures),
         for_each=for_each,
         source=texts.get("source", ""),
         rationale=texts.get("rationale", ""),
@@ -139,10 +132,16 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
 
 
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
-    """Several instances may have an occurrence each at one instant."""
+    """Of several occurrences at one instant each has to tell by itself whether it counts."""
     for part in (part for formula in formulas for part in subformulas(formula)):
-        if isinstance(part, Amount) and part.value is not None and reads_field(part.value):
-            raise Refusal(type_rules.sum_of_instances(part.operand.span or place))
+        if not isinstance(part, Amount) or part.value is None or not reads_field(part.value):
+            continue
+        events = {one.event for one in fields_in(part.value)}
+        for one in subformulas(part.operand):
+            read = {*names_read(one)} & events if isinstance(one, Compare) else set()
+            own = isinstance(one, Compare) and one.left == one.right == part.value
+            if len(events) > 1 or (read and not own):
+                raise Refusal(type_rules.sum_of_instances(part.operand.span or place))
 
 
 def check_clauses(checker: Checker, item: RequirementItem) -> None:
@@ -174,11 +173,10 @@ def _parts(
     outer: Scope,
     inner: Scope,
     ctl: Property | None,
-    bounded: _Bounded | None,
 ) -> Parts:
     match item.body:
         case Bare(formula=expression):
-            formula = checker.top(expression, inner)
+            formula = checker.top(expression, replace(inner, trigger=None))
             if formula is None:
                 raise Reported
             if end := end_part(formula):
@@ -187,7 +185,7 @@ def _parts(
                 checker.report(rules.bare_instant(ungrouped(expression).span))
             return normalised(formula)
         case Triggered():
-            return _triggered(checker, item.body, outer, inner, bounded)
+            return _triggered(checker, item.body, outer, inner)
         case ResponseMonitor(within=within, span=span):
             ticks = checker.duration(within, EVERYWHERE)
             if ctl is None:
@@ -216,66 +214,10 @@ def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts)
     return parts
 
 
-@dataclass(frozen=True, slots=True)
-class _Bounded:
-    """`within (x) φ`, `for (x) φ` behind `upon … then`, x from data: counted from the trigger.
-
-    Attributes:
-        op: which of the two.
-        within: φ.
-        captures: the trigger's instant, and x, seconds.
-        span: of the whole.
-    """
-
-    op: UnaryOp
-    within: Expression
-    captures: tuple[Capture, Capture]
-    span: Span
-
-    def owed(self, operand: Formula) -> Formula:
-        """φ before it is too late, or until it is."""
-        begun, bound = self.captures
-        late = passed(begun.name, Captured(bound.name), True, self.span)
-        if self.op is UnaryOp.ALWAYS:
-            excused = Binary(BinaryOp.OR, operand, late, None, self.span)
-            return Binary(BinaryOp.RELEASE, late, excused, Interval(), self.span)
-        early = Unary(UnaryOp.NOT, late, None, self.span)
-        reached = Binary(BinaryOp.AND, operand, early, None, self.span)
-        return Binary(BinaryOp.UNTIL, early, reached, Interval(), self.span)
-
-
-def _bounded(checker: Checker, item: RequirementItem, outer: Scope) -> _Bounded | None:
-    """What a requirement owes within, or for, a time that comes from data; `None`: another."""
-    if not isinstance(item.body, Triggered) or item.body.mode is not Mode.UPON:
-        return None
-    match ungrouped(item.body.consequent):
-        case Prefix(
-            op=UnaryOp.EVENTUALLY | UnaryOp.ALWAYS as op,
-            operand=operand,
-            window=Window(low=None, high=high, high_open=False),
-            span=span,
-        ) if high is not None:
-            pass
-        case _:
-            return None
-    names = dict(outer.names)
-    for clause in _clauses(item, LetClause):  # it is captured where they are
-        names[clause.name.text] = Closure(clause.value, Scope(dict(names)))
-    value = checker.value(high, Scope(names))
-    if not isinstance(value, Quantity) or value.node is None or not is_time(value):
-        return None
-    word = "within" if op is UnaryOp.EVENTUALLY else "for"
-    bound = Capture(word, seconds_of((value, high.span)))
-    return _Bounded(op, operand, (Capture("upon", NowValue()), bound), span)
-
-
-def _triggered(
-    checker: Checker, body: Triggered, outer: Scope, inner: Scope, bounded: _Bounded | None
-) -> Parts:
+def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
     trigger = checker.top(body.trigger, outer)
-    consequent = checker.top(bounded.within if bounded else body.consequent, inner)
-    if bounded and consequent is not None:
-        consequent = bounded.owed(consequent)
+    at_once = replace(inner, at_once=body.mode is Mode.UPON)
+    consequent = checker.top(body.consequent, at_once)
     if trigger and (ahead := future_part(trigger)):
         checker.report(rules.future_trigger(ahead.span or body.trigger.span))
         raise Reported

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Protocol
 
 from rvmon.diagnostics import Span
 from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import Formula, Measured, Numeric
-from rvmon.spec.checked.specification import Event, Signal, TimeModel, Type
+from rvmon.spec.checked.formula import (
+    TRIGGERED,
+    Compare,
+    Formula,
+    Measured,
+    NowValue,
+    Numeric,
+    Passed,
+    since_trigger,
+)
+from rvmon.spec.checked.specification import Capture, Event, Signal, TimeModel, Type
 from rvmon.spec.names import Declared, DeclaredEvent, DeclaredSignal
 from rvmon.spec.syntax.expressions import Expression
 from rvmon.spec.syntax.items import ConstItem, DefineItem
@@ -89,6 +98,9 @@ class AmountOf:
         window: D, ticks; `None`: since the first instant.
         share: whether it is one.
         added: x, of numbers.
+        most: of `last(n, x)`, n.
+        counted: of a count of these, which of them count.
+        chosen: what is asked of each occurrence.
     """
 
     measured: Measured
@@ -96,6 +108,9 @@ class AmountOf:
     window: int | None
     share: bool = False
     added: Quantity | None = None
+    most: int | None = None
+    counted: Formula | None = None
+    chosen: tuple[Compare, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,12 +122,18 @@ class Extreme:
         quantity: x.
         span: of x.
         window: D, ticks; `None`: since the first instant.
+        begun: that the trigger has come, if only what is since then counts.
+        most: of `last(n, x)`, n.
+        updated: of that, where x is updated.
     """
 
     greatest: bool
     quantity: Quantity
     span: Span
     window: int | None
+    begun: Formula | None = None
+    most: int | None = None
+    updated: Formula | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,10 +166,48 @@ class Closure:
 
 
 @dataclass(frozen=True, slots=True)
+class AtTrigger:
+    """What is captured at the trigger besides `let`, as far as what is owed asks for it."""
+
+    captures: list[Capture] = field(default_factory=list)
+
+    def begun(self, span: Span) -> Passed:
+        """That it has come."""
+        if not any(one.name == TRIGGERED for one in self.captures):
+            self.captures.append(Capture(TRIGGERED, NowValue()))
+        return since_trigger(span)
+
+    def number(self, word: str, value: Numeric) -> str:
+        """The name of a number of that instant, which begins as a word of the language does."""
+        for one in self.captures:
+            if one.value == value and one.name.startswith(word):
+                return one.name
+        taken = sum(one.name.startswith(word) for one in self.captures)
+        self.captures.append(Capture(f"{word} {taken + 1}" if taken else word, value))
+        return self.captures[-1].name
+
+
+@dataclass(frozen=True, slots=True)
 class Scope:
-    """The names that hold inside a macro or requirement, besides those of the file."""
+    """The names that hold inside a macro or requirement, besides those of the file.
+
+    Attributes:
+        names: what they stand for.
+        trigger: in what is owed, what is captured with it.
+        at_once: whether it is owed at the trigger, and not at some later instant.
+    """
 
     names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)
+    trigger: AtTrigger | None = None
+    at_once: bool = False
+
+    def later(self) -> Scope:
+        """The same below an operator of time."""
+        return replace(self, at_once=False) if self.at_once else self
+
+    def inside(self, names: Mapping[str, Closure]) -> Scope:
+        """That of the body of a macro."""
+        return Scope(names, self.trigger, self.at_once)
 
 
 EVERYWHERE = Scope()

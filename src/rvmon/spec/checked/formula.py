@@ -15,6 +15,7 @@ from typing import Any
 
 from rvmon.diagnostics import Span
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.measured import Measured as Measured
 from rvmon.spec.checked.operators import BinaryOp as BinaryOp
 from rvmon.spec.checked.operators import Interval as Interval
 from rvmon.spec.checked.operators import UnaryOp as UnaryOp
@@ -226,95 +227,52 @@ class Binary:
     span: Span | None = None
 
 
-class Measured(StrEnum):
-    """What is measured of a formula, or of a number, over the last D.
-
-    Attributes:
-        takes: what it is of, and its unit.
-        doc: its value in a few words.
-        unknown: what becomes of it where something in the window is not known.
-        memory: that it takes.
-    """
-
-    COUNT = (
-        *("count", "a formula that is true at single instants; a plain number"),
-        "how often φ was true in the last D",
-        *("between what it may be", "16 bytes a stretch of instants, 32 once one was unknown"),
-    )
-    DURATION = (
-        *("duration", "a formula; a duration"),
-        "for how long φ was true in the last D, up to this instant",
-        *("between what it may be", "16 bytes a stretch of time, 32 once one was unknown"),
-    )
-    SUM = (
-        *("sum", "fields of events, or a signal at its updates; their unit"),
-        "what x came to in the last D, together",
-        *("unknown", "32 bytes a value, and 296"),
-    )
-    MEAN = (
-        *("mean", "signals, or fields of events; their unit"),
-        "the mean of x at all instants of the last D, of a field at its occurrences",
-        *("unknown, as of nothing", "32 bytes a stretch of one value, and 296"),
-    )
-    INTEGRAL = (
-        *("integral", "signals; their unit times s"),
-        "x times the time for which it was held, in the last D, up to this instant",
-        *("unknown", "32 bytes a stretch of one value, and 296"),
-    )
-
-    takes: str
-    doc: str
-    unknown: str
-    memory: str
-
-    def __new__(
-        cls, name: str, takes: str = "", doc: str = "", unknown: str = "", memory: str = ""
-    ) -> Measured:
-        """A member: the name that it is called by, with the rest of its entry."""
-        made = str.__new__(cls, name)
-        made._value_ = name
-        made.takes, made.doc, made.unknown, made.memory = takes, doc, unknown, memory
-        return made
-
-    @property
-    def of_numbers(self) -> bool:
-        """Whether numbers are added up, exactly."""
-        return self not in (Measured.COUNT, Measured.DURATION)
-
-
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """`count(φ, D) >= n`, `sum(x, D) >= c` and their kin; where φ is not born it does not hold.
+    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: what the members of a window come to.
 
-    Of numbers, φ says at which positions there is one: a comparison of x with itself is unknown
-    where that is, and FALSE where its event does not occur. Any that is unknown within the last D
-    leaves the whole unknown. A mean of signals is not born before these are.
+    A member is a position at which φ is true, with the number x there; where φ is not born there is
+    none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
 
     Attributes:
-        measured: what of it.
+        measured: what they come to.
         operand: φ, of the present and past.
         window: D, ticks; `None`: since the first instant.
-        least: of a count or duration, n, 1 or more.
-        value: of numbers, x.
-        limit: of numbers, c, in the unit of x; of an integral in that times seconds.
+        limit: n or c, in the unit of `measured`: of a duration ticks, of an integral that of x
+            times seconds, of a variance the square of that of x.
         strict: whether it is `> c`.
+        span: of the whole.
+        value: x; `None`: positions or ticks are counted.
         known: a comparison of c with itself, if it may change.
+        most: how many of the last members count, at most; `None`: all of the window.
+        counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
+        chosen: comparisons of fields that are asked of each occurrence.
     """
 
     measured: Measured
     operand: Formula
     window: int | None
-    least: int = 1
+    limit: Numeric
+    strict: bool = False
     span: Span | None = None
     value: Numeric | None = None
-    limit: Numeric | None = None
-    strict: bool = False
     known: Compare | None = None
+    most: int | None = None
+    counted: Formula | None = None
+    chosen: tuple[Compare, ...] = ()
 
     @property
     def operands(self) -> tuple[Formula, ...]:
-        """φ, and what says whether c is known."""
-        return (self.operand,) if self.known is None else (self.operand, self.known)
+        """φ, what says whether a member counts, and whether c is known, what is chosen."""
+        asked = (self.operand, self.counted, self.known, *self.chosen)
+        return tuple(part for part in asked if part is not None)
+
+    @property
+    def born_with(self) -> tuple[Compare, ...]:
+        """Comparisons that are born first: of c, and of x where of nothing there is none."""
+        born = () if self.known is None else (self.known,)
+        asks = self.value is not None and self.measured.asks_for_one
+        return (*born, itself(self.value)) if asks and self.value is not None else born
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,10 +292,24 @@ class Passed:
     known: Compare
     span: Span | None = None
 
+    @property
+    def begins(self) -> bool:
+        """Whether it is true from a captured instant on."""
+        return self.since is not None and self.after == Literal(0) and not self.strict
+
 
 def itself(value: Numeric, span: Span | None = None) -> Compare:
     """A comparison of a number with itself: unknown where that is, else true."""
     return Compare(CompareOp.EQ, value, value, span)
+
+
+TRIGGERED = "upon"
+"""The instant of the trigger, as it is captured where something is measured since then."""
+
+
+def since_trigger(span: Span | None = None) -> Passed:
+    """That the trigger has come."""
+    return passed(TRIGGERED, Literal(0, "s"), False, span)
 
 
 def passed(since: str | None, after: Numeric, strict: bool, span: Span | None = None) -> Passed:

@@ -20,14 +20,16 @@ class Argument(Enum):
     FORMULA = "a formula"
     DURATION = "a duration"
     NUMBER = "a number"
+    WHOLE = "a whole number"
     SIGNAL = "the name of a signal"
     SOURCE = "the name of a signal or event"
 
 
 class Recall(Enum):
-    """Of a value that was held before."""
+    """Of values that were there before."""
 
     AGO = "ago"
+    LAST = "last"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +65,10 @@ _OF_UPDATES = (
         *("prev", UpdateFunction.PREV, (Argument.SIGNAL,)), "the value of x before its last update"
     ),
     Function(
-        *("delta", UpdateFunction.DELTA, (Argument.SIGNAL,)),
-        "the difference between the last two values of x",
+        *("delta", UpdateFunction.DELTA, (Argument.SIGNAL, Argument.DURATION)),
+        "the difference between the last two values of x; with D, "
+        "by how much x is more than at the first instant of the last D",
+        optional=1,
     ),
     Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
 )
@@ -77,12 +81,18 @@ _AMOUNTS = (
     *(
         Function(one.value, one, _ADDED if one.of_numbers else _COUNTED, one.doc, optional=1)
         for one in Measured
+        if one is not Measured.DELTA
     ),
     Function(
         *("share", Measured.DURATION, _COUNTED),
         "that duration divided by D, beside a number or `%`",
+        optional=1,
     ),
     Function("ago", Recall.AGO, _ADDED, "the value that x had D ago; in `time held`"),
+    Function(
+        *("last", Recall.LAST, (Argument.WHOLE, Argument.NUMBER)),
+        "the last n updates of x, or of what φ reads, in place of a D: `mean(last(5, x)) <= 2`",
+    ),
 )
 
 

@@ -17,6 +17,7 @@ from rvmon import diagnostics
 from rvmon.diagnostics import Source, Span
 from rvmon.spec.checked import formula, specification
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.measured import Measured
 from rvmon.spec.checked.operators import BinaryOp, Interval, UnaryOp
 from rvmon.trace.schema import Kind
 
@@ -29,7 +30,7 @@ def _class_named(name: str) -> type | None:
 @cache
 def _classes() -> Mapping[str, type]:
     modules = (formula, specification, diagnostics)
-    own = {one.__name__: one for one in (NumericOp, UnaryOp, BinaryOp, Interval, Kind)}
+    own = {one.__name__: one for one in (Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind)}
     return {**own, **dict(_own_classes(*modules))}
 
 

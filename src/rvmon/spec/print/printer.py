@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from decimal import Decimal
 from typing import assert_never
 
@@ -31,6 +32,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
     UpdateValue,
+    itself,
+    since_trigger,
 )
 from rvmon.spec.checked.operators import PREFIXED, Window
 from rvmon.spec.syntax.words import RESERVED
@@ -109,30 +112,58 @@ def _formula(formula: Formula, level: int) -> str:
 
 
 def _amount(formula: Amount) -> str:
-    window = "" if formula.window is None else f", {format_duration(formula.window)}"
-    if formula.value is None or formula.limit is None:
-        least = formula.least
-        enough = str(least) if formula.measured is Measured.COUNT else format_duration(least)
-        return f"{formula.measured}({_formula(formula.operand, 0)}{window}) >= {enough}"
+    limit = format_numeric(formula.limit)
+    if formula.measured is Measured.DURATION and isinstance(formula.limit, Literal):
+        limit = format_duration(int(formula.limit.value))
     sign = ">" if formula.strict else ">="
-    word, what = str(formula.measured), format_numeric(formula.value)
-    if isinstance(formula.value, Literal):  # so many times 1
-        word = "count" if formula.measured is Measured.SUM else "duration"
-        what = _formula(formula.operand, 0)
-    elif conditions := [_formula(one, 4) for one in _conditions(formula)]:
-        what = f"if {' and '.join(conditions)} then {what} else 0"
-    return f"{word}({what}{window}) {sign} {format_numeric(formula.limit)}"
+    return f"{_measured(formula)} {sign} {limit}"
+
+
+def _measured(formula: Amount) -> str:
+    """What is measured, without what it is compared with."""
+    word, what = str(formula.measured), ""
+    conditions = _conditions(formula)
+    since = since_trigger() in conditions
+    conditions = [one for one in conditions if one != since_trigger()]
+    if formula.value is None and formula.counted is not None:
+        what = _formula(formula.counted, 0)
+    elif formula.value is None or isinstance(formula.value, Literal):  # so many times 1
+        word = "duration" if formula.measured.of_time else word
+        what = " and ".join(_formula(one, 0 if len(conditions) == 1 else 4) for one in conditions)
+    else:
+        what = format_numeric(formula.value)
+        if conditions and formula.most is None:
+            condition = " and ".join(_formula(one, 4) for one in conditions)
+            what = f"if {condition} then {what} else 0"
+    if formula.most is not None:
+        what = f"last({formula.most}, {what})"
+    if since:
+        what = f"({what}) since trigger" if " " in what else f"{what} since trigger"
+    window = "" if formula.window is None else f", {format_duration(formula.window)}"
+    return f"{word}({what}{window})"
 
 
 def _conditions(formula: Amount) -> list[Formula]:
-    """Where a number is added, but for that it is there, and that a signal is updated."""
-    *conditions, _ = _chain(formula.operand, BinaryOp.AND)
-    match conditions, formula.value:
-        case [ProbeAtom(probe=Probe.UPDATED, name=name), *rest], SignalValue(name=own) if (
-            name == own
-        ):
-            return rest
-    return conditions
+    """Where there is a member, but for that its number is there, and that a signal is updated."""
+    conditions = [_without_span(one) for one in _chain(formula.operand, BinaryOp.AND)]
+    if formula.value is not None and not isinstance(formula.value, Literal):
+        conditions = [one for one in conditions if one != itself(formula.value)]
+        if isinstance(formula.value, SignalValue):
+            updated = ProbeAtom(Probe.UPDATED, formula.value.name)
+            conditions = [one for one in conditions if one != updated]
+    if formula.value is None and len(conditions) > 1 and since_trigger() not in conditions:
+        return [formula.operand]
+    return [*conditions, *formula.chosen]
+
+
+def _without_span(formula: Formula) -> Formula:
+    match formula:
+        case Compare() | ProbeAtom():
+            return replace(formula, span=None)
+        case Passed():
+            return replace(formula, span=None, known=replace(formula.known, span=None))
+        case _:
+            return formula
 
 
 def _unary(formula: Unary) -> str:

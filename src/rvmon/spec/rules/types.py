@@ -88,21 +88,53 @@ limit_of_event = Breach(
 )
 sum_of_instances = Breach(
     WRONG_TYPE,
-    "`{}` has a field of an event, of which `for each` may see several at one instant",
-    "count them, `count(e.k == k, D)`, or publish the sum of each as a signal",
+    "`{}` does not say of one occurrence whether it counts, and `for each` may see several at "
+    "one instant",
+    "join comparisons of its fields by `and`: `sum(if e.k == k and e.ok then e.x else 0, D)`",
 )
-_ADDED = {
-    "sum": "a field of an event, or one signal, which is added at its updates",
-    "integral": "signals: what they hold is multiplied by time",
-    "mean": "signals, or fields of an event, but not of both",
-}
+variance_moves = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` moves along a curve between samples, and the tick at which it crosses a bound is not "
+    "worked out",
+    "take that of updates, `variance(last(20, x))`, or of a field, `variance(e.x, 10 s)`",
+)
+last_alone = Breach(
+    WRONG_TYPE,
+    "`{}` are several values, expected one",
+    "say what they come to: `mean(last(5, x)) <= 2`, `count(last(8, x > 1)) >= 5`",
+)
+last_count = Breach(
+    WRONG_ARGUMENTS, "`{0}` is no whole number from 1 to {1:,}", "write `last(5, x)`"
+)
+last_of_several = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` does not read one signal or event alone, whose updates were counted",
+    "write `last(5, x)`, `last(8, beat.ms < 500)`",
+)
+two_windows = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` has two windows",
+    "leave the duration out, or what limits it before",
+)
+since_no_trigger = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` is counted from a trigger, and there is none here",
+    "it stands in what is owed: `upon e then always count(f since trigger) <= 3`",
+)
 
 
-def not_added(span: Span, name: str) -> Diagnostic:
-    """Numbers that are not added up by that function."""
-    fix = "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`"
-    message = f"`{name}` is of {_ADDED[name]}, and `{short(span.text)}` is not"
-    return finding(WRONG_ARGUMENTS, message, span, fix=fix)
+def not_of_last(span: Span, name: str) -> Diagnostic:
+    """What is not measured of the last updates; `name` is the function."""
+    fix = "of updates there are `count`, `sum`, `mean`, `min`, `max`, `variance` and `distinct`"
+    return finding(WRONG_ARGUMENTS, f"`{name}` is of a time, not of updates", span, fix=fix)
+
+
+not_added = Breach(
+    WRONG_ARGUMENTS,
+    "`{1}` is of {2}, and `{0}` is not",
+    "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`",
+)
+"""Numbers that are not measured by a function: it, and of what it is."""
 
 
 extreme_alone = Breach(

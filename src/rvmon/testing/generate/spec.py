@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -70,7 +72,9 @@ class Profile:
         wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
             computed with.
         numbers: whether comparisons and probes may occur.
-        amounts: how often counts and durations come, beside about 120 of all other operators.
+        amounts: how often what is measured in windows comes, beside about 120 of all others.
+        form: the only one of these, at least one in each specification: a name (`mean`), which may
+            stand behind `last` (updates), `since` (the trigger) or `each` (several occurrences).
         past: whether past operators may occur.
         future: whether future operators may occur.
         events: whether events may be read.
@@ -89,6 +93,7 @@ class Profile:
     crowded: int = 0
     wide: int = 0
     amounts: int = 0
+    form: str = ""
     numbers: bool = True
     past: bool = True
     future: bool = True
@@ -120,6 +125,8 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
     if profile.wide:
         profile = replace(profile, wide=100 if chance(rng, profile.wide) else 0)
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
+    while profile.form and not any(_has_window(one) for one in found):
+        found[-1] = _requirement(rng, profile, time, f"R{number}")
     return CheckedSpec(
         name="random",
         title="",
@@ -129,6 +136,11 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
         requirements={requirement.id: requirement for requirement in found},
         period=rng.randint(1, 4) if time is TimeModel.CLOCKED else None,
     )
+
+
+def _has_window(requirement: Requirement) -> bool:
+    wholes = (requirement.trigger, requirement.consequent)
+    return any(isinstance(part, Amount) for whole in wholes for part in subformulas(whole))
 
 
 def _stale(rng: Rng, profile: Profile) -> dict[str, int]:
@@ -141,12 +153,16 @@ def _ignoring(rng: Rng, profile: Profile) -> frozenset[str]:
 
 
 def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
-    captures = _captures(rng, profile) if profile.captures and chance(rng, 12) else ()
+    mode = profile.form.rpartition(" ")[0]
+    since = mode == "since"
+    captures: tuple[Capture, ...] = ()
+    if profile.captures and (since or chance(rng, 12)):
+        captures = _captures(rng, profile)
     for_each = None
-    if profile.for_each and chance(rng, 12):
+    if profile.for_each and (mode == "each" or chance(rng, 12)):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
-    instants = ("t0",) if captures and profile.amounts and chance(rng, 50) else ()
+    instants = ("t0",) if captures and profile.amounts and (since or chance(rng, 50)) else ()
     captures += tuple(Capture(name, NowValue()) for name in instants)
     shape = Shape(
         step=time is not TimeModel.HELD,
@@ -159,6 +175,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         wide=profile.wide > 0,
         amounts=profile.amounts,
         instants=instants,
+        form=profile.form,
     )
     seen = Shape(
         step=shape.step,
@@ -168,11 +185,12 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         events=profile.events,
         captured=instance,
         wide=profile.wide > 0,
-        amounts=profile.amounts,
+        amounts=0 if since else profile.amounts,
+        form=profile.form,
     )
     trigger = _trigger(rng, seen, for_each)
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
-    mode = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
+    how = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
     owed = consequent(rng, shape, rng.randint(1, profile.depth))
     if captures and chance(rng, 70):
         op = pick(rng, (BinaryOp.AND, BinaryOp.OR))
@@ -182,7 +200,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         policy = pick(rng, tuple(EndPolicy)[1:])
     return Requirement(
         name,
-        mode,
+        how,
         trigger,
         owed,
         at_end=policy,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import assert_never
 
@@ -22,7 +22,14 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.testing.law.syntax import parts_of
-from rvmon.testing.law.word import Letter, Truth, conjunction, disjunction, truth_of
+from rvmon.testing.law.word import (
+    Letter,
+    Occurrence,
+    Truth,
+    conjunction,
+    disjunction,
+    truth_of,
+)
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
@@ -41,26 +48,31 @@ def compare(
     """
     events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
     choices = product(*(letter.events[event].occurrences for event in events))
-    born = is_born(comparison, letter)
 
-    def holds(payloads: Mapping[str, Payload]) -> Truth:
-        if not born:
-            return Truth.UNBORN
-        left = number(comparison.left, letter, payloads, captured)
-        right = number(comparison.right, letter, payloads, captured)
-        if left is None or right is None:
-            return Truth.UNKNOWN
-        return truth_of(_related(comparison.op, left, right))
+    def holds(choice: Sequence[Occurrence]) -> Truth:
+        payloads = {e: o.payload for e, o in zip(events, choice, strict=True)}
+        return compare_at(comparison, letter, payloads, captured)
 
     return disjunction(
-        conjunction(
-            [
-                *(occurrence.truth for occurrence in choice),
-                holds({e: o.payload for e, o in zip(events, choice, strict=True)}),
-            ]
-        )
+        conjunction([*(occurrence.truth for occurrence in choice), holds(choice)])
         for choice in choices
     )
+
+
+def compare_at(
+    comparison: Compare,
+    letter: Letter,
+    payloads: Mapping[str, Payload],
+    captured: Mapping[str, Scalar],
+) -> Truth:
+    """The truth of a comparison by one occurrence of each event that it reads."""
+    if not is_born(comparison, letter):
+        return Truth.UNBORN
+    left = number(comparison.left, letter, payloads, captured)
+    right = number(comparison.right, letter, payloads, captured)
+    if left is None or right is None:
+        return Truth.UNKNOWN
+    return truth_of(_related(comparison.op, left, right))
 
 
 def is_born(comparison: Compare, letter: Letter) -> bool:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 
-from rvmon.spec.checked.formula import Amount, Formula, Interval, Measured
+from rvmon.spec.checked.formula import Formula, Interval
 from rvmon.testing.law.syntax import constant_value
 from rvmon.testing.law.word import (
     Letter,
@@ -18,10 +16,7 @@ from rvmon.testing.law.word import (
     disjunction,
     either,
     negation,
-    truth_of,
 )
-from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TICKS_PER_SECOND
 
 Operand = Callable[[int], Truth]
 """The truth of an operand at a position."""
@@ -105,69 +100,6 @@ def held(
         return disjunction(values)
     long_enough = _lasted(letters, i, interval.high or 0)
     return conjunction([long_enough, *(born_or_false(value) for value in values)])
-
-
-def amount(letters: Sequence[Letter], operand: Operand, i: int, formula: Amount) -> Truth:
-    """So many positions of the window, or ticks between them, had it.
-
-    A position lasts up to the next. What is not known may count, or not.
-    """
-    sure = possible = 0
-    for k in range(i + 1):
-        size = _size(letters, k, i, formula)
-        there = operand(k)
-        sure += size * (there is Truth.TRUE)
-        possible += size * (there in (Truth.TRUE, Truth.UNKNOWN))
-    if sure >= formula.least:
-        return Truth.TRUE
-    return Truth.UNKNOWN if possible >= formula.least else Truth.FALSE
-
-
-def total(
-    letters: Sequence[Letter],
-    operand: Operand,
-    value: Callable[[int], Scalar],
-    limit: Scalar,
-    i: int,
-    formula: Amount,
-) -> Truth:
-    """The numbers of the window, added up exactly, beside a limit; unknown if one is.
-
-    Args:
-        letters: of the word.
-        operand: where there is a number.
-        value: it, at a position where there is.
-        limit: of now.
-        i: the position.
-        formula: says what is measured.
-    """
-    if isinstance(limit, str) or limit is None or not math.isfinite(limit):
-        return Truth.UNKNOWN
-    found, count = Fraction(0), 0
-    for k in range(i + 1):
-        size = _size(letters, k, i, formula)
-        there = operand(k) if size else Truth.FALSE
-        if there in (Truth.FALSE, Truth.UNBORN):
-            continue
-        number = value(k) if there is Truth.TRUE else None
-        if number is None or isinstance(number, str) or not math.isfinite(number):
-            return Truth.UNKNOWN
-        found += Fraction(number) * size
-        count += size
-    if formula.measured is Measured.MEAN and count == 0:
-        return Truth.UNKNOWN
-    times = {Measured.MEAN: count, Measured.INTEGRAL: TICKS_PER_SECOND}
-    rest = found - Fraction(limit) * times.get(formula.measured, 1)
-    return truth_of(rest > 0 if formula.strict else rest >= 0)
-
-
-def _size(letters: Sequence[Letter], k: int, i: int, formula: Amount) -> int:
-    """How many positions, or ticks, of the window of `i` a position stands for."""
-    begin = letters[k].instant
-    first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
-    if formula.measured not in (Measured.DURATION, Measured.INTEGRAL):
-        return int(begin == first)
-    return max(0, letters[k + 1].instant - first) if k < i else 0
 
 
 def _lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:

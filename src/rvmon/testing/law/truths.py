@@ -20,26 +20,23 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
-    Measured,
-    Numeric,
     Passed,
     ProbeAtom,
     SignalAtom,
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.numbers import as_ticks, compare, events_of, number
+from rvmon.testing.law.amounts import Past
+from rvmon.testing.law.numbers import as_ticks, compare, number
 from rvmon.testing.law.past import (
     Operand,
     always_false,
     always_true,
-    amount,
     held,
     historically,
     inverted,
     is_within,
     since,
-    total,
     unless_constant,
 )
 from rvmon.testing.law.syntax import is_proposition, speaks_of_future
@@ -178,10 +175,8 @@ class Truths:
                 return self._is_first(i)
             case Unary() | Binary():
                 return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
-            case Amount(value=None, operand=operand):
-                return amount(self._letters, lambda k: self.state(operand, k), i, formula)
             case Amount():
-                return self._total(formula, i)
+                return Past(self._letters, self._captured, self.state).truth(formula, i)
             case Passed():
                 return self._passed(formula, i)
             case _:
@@ -189,7 +184,7 @@ class Truths:
 
     def _passed(self, formula: Passed, i: int) -> Truth:
         """A first instant that may have been earlier leaves unknown what is since then."""
-        after = self._number(formula.after, i)
+        after = number(formula.after, self._letters[i], {}, self._captured)
         since = 0 if formula.since is None else self._captured[formula.since]
         if not isinstance(after, int | float) or not isinstance(since, int):
             unborn = self.state(formula.known, i) is Truth.UNBORN
@@ -199,31 +194,6 @@ class Truths:
         firsts += [self._letters[0].instant] if not self._letters[0].sure else []
         late = {self._letters[i].instant - first >= ticks for first in firsts}
         return truth_of(late.pop()) if len(late) == 1 else Truth.UNKNOWN
-
-    def _total(self, formula: Amount, i: int) -> Truth:
-        """A sum, mean or integral: unborn as its limit is, and a mean as what it is of."""
-        asked = formula.operands[formula.measured is not Measured.MEAN :]
-        if any(self.state(part, i) is Truth.UNBORN for part in asked):
-            return Truth.UNBORN
-
-        value, limit, operand = formula.value, formula.limit, formula.operand
-        if value is None or limit is None:
-            raise AssertionError("numbers are added up")
-        return total(
-            self._letters,
-            lambda k: self.state(operand, k),
-            lambda k: self._number(value, k),
-            *(self._number(limit, i), i, formula),
-        )
-
-    def _number(self, expression: Numeric, i: int) -> Scalar:
-        """A number at a position; unknown where an event that it reads occurs several times."""
-        letter = self._letters[i]
-        events = {event: letter.events[event].occurrences for event in events_of(expression)}
-        if any(len(found) > 1 for found in events.values()):
-            return None
-        payloads = {event: found[0].payload for event, found in events.items() if found}
-        return number(expression, letter, payloads, self._captured)
 
     def _is_first(self, i: int) -> Truth:
         """Whether no position is before this one."""

@@ -46,6 +46,17 @@ def owed(text):
         ("2 >= mean(x, 5 s)", "not mean(x, 5 s) > 2"),
         ("sum(e.k, 5 s) == 2", "sum(e.k, 5 s) >= 2 and not sum(e.k, 5 s) > 2"),
         ("integral(d, 1 min) < 1 min^2", "not integral(d, 1 min) >= 3600 s^2"),
+        ("variance(e.k, 5 s) > 4", "variance(e.k, 5 s) > 4"),
+        ("delta(x, 5 s) <= v", "not delta(x, 5 s) > v"),
+        ("distinct(e.k, 1 h) >= x", "distinct(e.k, 1 h) >= x"),
+        ("mean(last(5, x)) <= 2", "not mean(last(5, x)) > 2"),
+        ("count(last(8, e.k > 5)) >= 5", "count(last(8, e.k > 5)) >= 5"),
+        ("max(last(5, x)) <= 2", "not count(last(5, x > 2)) >= 1"),
+        ("min(last(5, x)) <= 2", "count(last(5, x <= 2)) >= 1"),
+        ("count(e since trigger) > 2", "count(e since trigger) >= 3"),
+        ("count((e and a) since trigger) > v", "count((e and a) since trigger) > v"),
+        ("sum(e.k since trigger) > 2", "sum(e.k since trigger) > 2"),
+        ("max(x since trigger) >= 2", "once (now - `upon` >= 0 s and x >= 2)"),
     ],
 )
 def test_all_comparisons_are_made_of_a_few(text, printed):
@@ -82,7 +93,19 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("once[0 s, d] f", "`d` comes from data, and is no constant duration"),
         ("median(x, 5 s) <= 2", "`share(x > 2, 10 s) <= 10 %`"),
         ("average(x, 5 s) <= 2", "write `mean(x, 10 s)`"),
-        ("variance(x, 5 s) <= 2", "bound the spread"),
+        ("variance(x, 5 s) <= 2", "moves along a curve between samples"),
+        ("stddev(x, 5 s) <= 2", "its square is the variance"),
+        ("variance(x * e.k, 5 s) <= 2", "`variance` is of signals, or fields of an event"),
+        ("delta(e.k, 5 s) <= 2", "`delta` is of signals"),
+        ("distinct(x * x, 5 s) <= 2", "`distinct` is of a field of an event, or one signal"),
+        ("last(5, x) <= 2", "`last(5, x)` are several values"),
+        ("mean(last(0, x)) <= 2", "`0` is no whole number from 1 to 1,000,000"),
+        ("mean(last(5, x + v)) <= e.k", "`e.k` is there only while its event occurs"),
+        ("mean(last(5, x * d / 1 s)) <= 2", "does not read one signal or event alone"),
+        ("integral(last(5, x)) <= 2 s", "`integral` is of a time, not of updates"),
+        ("share(last(5, a)) <= 2 %", "`share` is of a time, not of updates"),
+        ("mean(last(5, x), 5 s) <= 2", "`mean(last(5, x), 5 s)` has two windows"),
+        ("count(e since trigger, 5 s) <= 2", "has two windows"),
     ],
 )
 def test_what_is_refused(text, message):
@@ -102,18 +125,34 @@ def test_printed_amounts_are_read_back():
         "sum(if a then x else 0, 5 s) > 2",
         "sum(if f and a then e.k else 0, 5 s) > 2",
         "integral(if a and x > 1 then x * x else 0) >= 2 s",
+        "sum(if f and e.k == 1 then e.k else 0, 5 s) > 2",
+        "variance(last(20, x)) > 0.5",
+        "distinct(last(9, e.k)) >= 3",
+        "count(last(9, a)) > x",
+        "duration((a or x > 1) since trigger) >= 2 s",
+        "mean(x since trigger) > v",
     ):
         assert owed(text) == text
 
 
-def test_sums_for_each_are_refused():
-    """Several occurrences may come at one instant."""
+def test_each_occurrence_says_whether_it_is_added():
+    """Several may come at one instant, of which some are chosen."""
     text = (
-        "event e(k: int, x: real), f\nrequirement R\n  upon e.k == k then within 3 s "
-        "(sum(e.x, 5 s) <= 2) for each k in e.k\n"
+        "event e(k: int, x: real, ok: bool), f\nrequirement R\n  upon e.k == k then within 3 s "
+        "(sum({}, 5 s) <= 2) for each k in e.k\n"
     )
+    chosen = "if e.k == k and e.ok then e.x else 0"
+    owed = rvmon.loads(text.format(chosen)).checked.requirements["R"].consequent
+    assert format_formula(owed) == f"within 3 s not sum({chosen}, 5 s) > 2"
     with pytest.raises(rvmon.SpecError, match="`for each` may see several"):
-        rvmon.loads(text)
+        rvmon.loads(text.format("if e.k == k or e.ok then e.x else 0"))
+
+
+def test_since_the_trigger_needs_one():
+    """A bare formula has none, and a trigger is none itself."""
+    for body in ("always count(e since trigger) <= 2", "upon count(e since trigger) > 2 then f"):
+        with pytest.raises(rvmon.SpecError, match="there is none here"):
+            rvmon.loads(f"event e, f\nrequirement R\n  {body}\n")
 
 
 def test_an_amount_ago_needs_held_time():

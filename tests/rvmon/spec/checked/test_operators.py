@@ -18,6 +18,7 @@ LETTERS = {
     Argument.FORMULA: "φ",
     Argument.DURATION: "D",
     Argument.NUMBER: "x",
+    Argument.WHOLE: "n",
     Argument.SIGNAL: "x",
     Argument.SOURCE: "x",
 }
@@ -51,7 +52,7 @@ def test_operators_stand_in_the_reference(op):
 def test_functions_stand_in_the_reference(function):
     """As do those that are called."""
     arguments = [LETTERS[argument] for argument in function.arguments]
-    if len(arguments) > 1 and arguments[1] == "x":
+    if arguments[:2] == ["x", "x"]:
         arguments = list("xyzw"[: len(arguments)])
     form = f"{function.name}({', '.join([*arguments, *(['…'] if function.more else [])])})"
     assert f"| `{form}` | {function.doc} |" in PAGE

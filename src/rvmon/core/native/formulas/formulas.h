@@ -20,11 +20,9 @@ void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
-/* ---- amounts.c */
-uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand);
-
-/* ---- sums.c */
-uint8_t node_sum(run *r, const node_plan *n, int64_t t, uint8_t operand);
+/* ---- window.c; `blank`: there may be no such position */
+uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
+void window_begins(run *r, const node_plan *n);
 
 /* ---- graph.c: the nodes of a part */
 void mark_dirty(run *r, int32_t node);

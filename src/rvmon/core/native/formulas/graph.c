@@ -99,8 +99,7 @@ void remember_unknown(run *r, int64_t t)
         case NODE_EVER: (void)ever(r, n, left_there(r, n), IS_UNKNOWN); break;
         case NODE_EDGE:
         case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
-        case NODE_AMOUNT: (void)node_amount(r, n, t, IS_UNKNOWN); break;
-        case NODE_SUM: (void)node_sum(r, n, t, IS_UNKNOWN); break;
+        case NODE_WINDOW: (void)node_window(r, n, t, IS_UNKNOWN, true); break;
         default: break;
         }
     }
@@ -123,8 +122,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_DOUBT: return node_doubt(r, n, place, t, r->truth[operands[0]]);
     case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
-    case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
-    case NODE_SUM: return node_sum(r, n, t, r->truth[operands[0]]);
+    case NODE_WINDOW: return node_window(r, n, t, r->truth[operands[0]], false);
     case NODE_PASSED: return passed(r, n, t, r->truth[operands[0]]);
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
@@ -257,7 +255,15 @@ void vary(run *r, int64_t t, bool pending)
         reread(r, atoms[i], pending);
     }
     for (i = 0; i < p->varying_nodes.count; i++) {
-        const uint8_t value = evaluated(r, nodes[i], t);
+        const node_plan *n = &r->part->nodes[nodes[i]];
+        uint8_t value;
+        if (n->op == NODE_WINDOW) {
+            if ((n->since < 0) || (r->captured[n->since].kind == RV_UNKNOWN)) {
+                continue; /* it goes on */
+            }
+            window_begins(r, n);
+        }
+        value = evaluated(r, nodes[i], t);
         if (value != r->truth[nodes[i]]) {
             change(r, nodes[i], value, t); /* what remembers it looks at the next position */
         }

@@ -68,7 +68,7 @@ typedef struct {
 } subscription;
 
 /* Some requirements that are judged together; those with values of their own are alone. */
-enum { PART_REPLAYS = 1, PART_FRESH = 2, PART_FORGETS = 4, PART_KEEPS_PAST = 8 };
+enum { PART_REPLAYS = 1, PART_FRESH = 2, PART_FORGETS = 4, PART_KEEPS_PAST = 8, PART_CAPTURES_NOW = 16 };
 
 typedef struct {
     list signals;              /* records of SEC_SIGNALS; so with what follows */
@@ -107,7 +107,7 @@ typedef struct {
     int32_t truths;            /* the form of whose operators it is kept where they are known; -1 */
     list watches;              /* records of SEC_WATCHES; so with what follows */
     list groups;
-    int32_t sums;              /* so many nodes SUM */
+    int32_t sums;              /* so many tallies of windows */
 } part_plan;
 
 /* Lists for the two phases: until all is born and determined, and from then on. */
@@ -179,31 +179,41 @@ enum {
     NODE_EVER,                 /* since, without bounds */
     NODE_EDGE,                 /* since from 0 on, or without an end */
     NODE_STRETCH,              /* since in bounds */
-    NODE_AMOUNT,               /* so much in the last `high` ticks: amounts.c */
-    NODE_SUM,                  /* numbers of the last `high` ticks, added up: sums.c */
+    NODE_WINDOW,               /* what the members of a window come to: window.c */
     NODE_PASSED,               /* so long has passed as a number says */
     NODES
 };
 
 typedef struct {
-    int64_t low;               /* of a `since`; of ELAPSED, how long; of SUM, the program of its
+    int64_t low;               /* of a `since`; of ELAPSED, how long; of WINDOW, the program of its
                                 * limit; of PASSED, that of the instant, in ticks */
     int64_t high;              /* RV_NEVER: none */
     int32_t op;
-    int32_t a;                 /* of a leaf, SUM or PASSED, the atom; of a constant, the truth; DOUBT: pulse */
-    int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of SUM,
-                                * what is added up, and SUM_STRICT if the limit is not enough; of PASSED, a tick more */
+    int32_t a;                 /* of a leaf or PASSED, the atom; of WINDOW, that of the numbers, -1: none;
+                                * of a constant, the truth; DOUBT: pulse */
+    int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of WINDOW,
+                                * a fold with marks; of PASSED, a tick more */
     int32_t slot;              /* its memory; -1: it has none */
     int32_t timer;             /* -1: time alone does not change it */
     list operands;             /* of a leaf and UNBORN: signals times 2, plus 1 if an update after the
                                 * first value is asked for */
     phased parents;
     list links;                /* records of SEC_LINKS */
-    int32_t sum;               /* of SUM, the number of its sum */
+    int32_t sum;               /* of WINDOW, the number of its tally; -1: it has none */
+    int32_t most;              /* of WINDOW, so many members are in it; 0: any number */
+    int32_t chosen;            /* of WINDOW, from which operand on they are asked of each occurrence */
+    int32_t since;             /* of WINDOW, the captured instant that it begins with; -1: another */
+    int32_t spare;
 } node_plan;
 
-/* What is added up: numbers where they are, with how many these are, or times ticks. */
-enum { SUM_PLAIN, SUM_MEAN, SUM_INTEGRAL, SUM_STRICT };
+/* What members of a window come to: how many they are; as ticks; together; that by how many; times ticks;
+ * how far they spread; how far the last is from the first; how many there are of different ones. */
+enum {
+    FOLD_COUNT, FOLD_DURATION, FOLD_SUM, FOLD_MEAN, FOLD_INTEGRAL, FOLD_VARIANCE, FOLD_DELTA, FOLD_DISTINCT,
+    FOLDS
+};
+/* The limit is not enough; the second operand says whether a member counts. */
+enum { WINDOW_FOLD = 15, WINDOW_STRICT = 16, WINDOW_COUNTED = 32 };
 
 /* WATCH alone: the number is that of a watch, and weights mean nothing. */
 enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };

@@ -129,7 +129,7 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
     case NODE_EVER:
     case NODE_EDGE:
     case NODE_STRETCH: return (n->operands.count == 2) && lists(p, n->operands, 0, place);
-    case NODE_SUM: return is_within(n->operands.count, 1, 3) && lists(p, n->operands, 0, place);
+    case NODE_WINDOW: return (n->operands.count >= 1) && lists(p, n->operands, 0, place);
     default: return (n->operands.count == 1) && lists(p, n->operands, 0, place);
     }
 }
@@ -148,8 +148,7 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
         break;
     case NODE_EDGE: slots = x->edges; break;
     case NODE_STRETCH:
-    case NODE_AMOUNT:
-    case NODE_SUM: slots = x->stretches; break;
+    case NODE_WINDOW: slots = x->stretches; break;
     case NODE_ELAPSED:
     case NODE_PASSED: break;
     default: timed = false; break;
@@ -196,18 +195,47 @@ static bool check_links(const plan *p, const part_plan *x, list links)
     return true;
 }
 
-/* What is added up, and the program of the limit; or how much time, and that of the instant. */
-static bool check_sum(const plan *p, const part_plan *x, const node_plan *n)
+/* An atom of which numbers are read. */
+static bool check_read(const plan *p, const part_plan *x, int32_t number)
 {
     const atom_plan *a;
-    if (!is_within(n->a, 0, x->atoms.count)) {
+    if (!is_within(number, 0, x->atoms.count)) {
         return false;
     }
-    a = &p->atoms[x->atoms.first + n->a];
-    return ((a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD))
-           && ((n->op == NODE_PASSED) ? is_within(n->b, 0, 2)
-                                      : is_within(n->b, 0, 2 * SUM_STRICT) && is_within(n->sum, 0, x->sums))
-           && check_program(p, x, n->low);
+    a = &p->atoms[x->atoms.first + number];
+    return (a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD);
+}
+
+/* How much time has to pass, and the program of the instant. */
+static bool check_passed(const plan *p, const part_plan *x, const node_plan *n)
+{
+    return check_read(p, x, n->a) && is_within(n->b, 0, 2) && check_program(p, x, n->low);
+}
+
+/* What members are, and the program of the limit. */
+static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
+{
+    const int32_t fold = n->b & WINDOW_FOLD;
+    const bool tallied = is_within(fold, FOLD_SUM, FOLD_VARIANCE + 1);
+    const int32_t *operands = &p->lists[n->operands.first];
+    int32_t i;
+    if (!is_within(fold, 0, FOLDS) || !is_within(n->b, 0, 2 * WINDOW_COUNTED) || (n->most < 0)
+        || (n->most > MOST) || !check_program(p, x, n->low) || !is_within(n->chosen, 1, n->operands.count + 1)
+        || !is_within(n->since, -1, x->captured)
+        || (tallied ? !is_within(n->sum, 0, x->sums) : (n->sum != -1))) {
+        return false;
+    }
+    if ((fold == FOLD_COUNT) || (fold == FOLD_DURATION)) {
+        const bool counted = (n->b & WINDOW_COUNTED) != 0;
+        return (n->a == -1) && (!counted || ((n->most > 0) && (n->chosen > 1)));
+    }
+    for (i = n->chosen; i < n->operands.count; i++) {
+        const node_plan *one = &p->nodes[x->nodes.first + operands[i]];
+        if ((one->op != NODE_LEAF) || !check_read(p, x, one->a)) {
+            return false;
+        }
+    }
+    return ((n->b & WINDOW_COUNTED) == 0) && check_read(p, x, n->a);
 }
 
 bool check_nodes(const plan *p, const part_plan *x)
@@ -222,7 +250,8 @@ bool check_nodes(const plan *p, const part_plan *x)
             || ((n->op == NODE_LEAF)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
             || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))
-            || (((n->op == NODE_SUM) || (n->op == NODE_PASSED)) && !check_sum(p, x, n))) {
+            || ((n->op == NODE_PASSED) && !check_passed(p, x, n))
+            || ((n->op == NODE_WINDOW) && !check_window(p, x, n))) {
             return false;
         }
     }

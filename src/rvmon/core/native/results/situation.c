@@ -71,32 +71,27 @@ static void put_stretches(telling *s, const stretches *own)
     put_word(s, (own->left ? 1 : 0) + (own->right ? 2 : 0) + (own->growing ? 4 : 0));
 }
 
-static void put_amount(telling *s, const stretches *own)
+/* The members of a window; of one without an end, what they come to. */
+static void put_window(telling *s, const node_plan *n, const stretches *own, const tally *x)
 {
     int32_t i;
     for (i = 0; i < own->count; i++) {
         const stretch *one = &own->at[(own->head + i) & (own->room - 1)];
-        put_word(s, one->begin - s->now);
-        put_word(s, one->end - s->now);
-    }
-    put_word(s, own->growing ? 1 : 0);
-}
-
-/* Of what goes back to the first instant, the sum; else what it is made of. */
-static void put_sum(telling *s, const stretches *own, const exact_sum *x, bool ever)
-{
-    int32_t i;
-    put_amount(s, own);
-    for (i = 0; i < own->count; i++) {
         const stretch *value = &own[1].at[(own[1].head + i) & (own[1].room - 1)];
+        put_word(s, (n->high < NEVER) ? one->begin - s->now : 0);
+        put_word(s, (n->high < NEVER) ? one->end - s->now : ((n->most > 0) ? one->end - one->begin : 0));
         put_word(s, value->begin);
         put_word(s, value->end);
     }
-    for (i = 0; ever && (i < SUM_LIMBS); i++) {
+    put_word(s, own->growing ? 1 : 0);
+    put_word(s, own[1].lost);
+    for (i = 0; (n->high == NEVER) && (i < 2); i++) {
+        put_word(s, own[i].total);
+        put_word(s, own->lost);
+    }
+    for (i = 0; (x != NULL) && (n->high == NEVER) && (i < TALLY_LIMBS); i++) {
         put_word(s, x->limb[i]);
     }
-    put_word(s, ever ? x->lost : 0);
-    put_word(s, ever ? own->total : 0);
 }
 
 /* What formulas are, and remember. */
@@ -134,14 +129,8 @@ static void put_formulas(telling *s, const run *r)
             if (worse->apart) {
                 put_stretches(s, worse + 1);
             }
-        } else if (n->op == NODE_AMOUNT) {
-            const stretches *worse = &r->past[2 * n->slot];
-            put_amount(s, worse);
-            if (worse->apart) {
-                put_amount(s, worse + 1);
-            }
-        } else if (n->op == NODE_SUM) {
-            put_sum(s, &r->past[2 * n->slot], &r->sums[n->sum], n->high == NEVER);
+        } else if (n->op == NODE_WINDOW) {
+            put_window(s, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum]);
         } else {
             /* It remembers no more than a truth. */
         }

@@ -304,15 +304,17 @@ void look_after(run *r, int64_t t)
 {
     run *one;
     bool some = false;
+    bool other_next = false;
     int32_t i;
     for (one = r->first_child; one != NULL; one = one->sibling) {
         if (one->watched) {
             touch_run(one);
             keep_watch(one, t);
             some = some || one->watched;
+            other_next = other_next || (one->watched && (one->cut == NEVER));
         }
     }
-    r->stays_busy = false;
+    r->stays_busy = other_next && ((r->part->plan->flags & PART_CAPTURES_NOW) != 0);
     for (i = 0; some && (i < r->part->plan->events.count); i++) {
         /* Payloads are others behind this position. */
         r->stays_busy = r->stays_busy || (r->payloads[i].count > 0);

@@ -290,7 +290,8 @@ static bool stretches_agree(const stretches *a, const stretches *b)
 {
     int32_t i;
     if ((a->count != b->count) || (a->left != b->left) || (a->right != b->right)
-        || (a->growing != b->growing) || (a->apart != b->apart)) {
+        || (a->growing != b->growing) || (a->apart != b->apart) || (a->total != b->total)
+        || (a->lost != b->lost) || (a->members != b->members)) {
         return false;
     }
     for (i = 0; i < a->count; i++) {
@@ -356,7 +357,7 @@ bool is_over(const run *r)
         }
     }
     for (i = 0; i < p->sums; i++) {
-        if (memcmp(&r->sums[i], &root->sums[i], sizeof *r->sums) != 0) {
+        if (memcmp(&r->tallies[i], &root->tallies[i], sizeof *r->tallies) != 0) {
             return false;
         }
     }

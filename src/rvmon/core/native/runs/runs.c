@@ -45,7 +45,7 @@ static size_t cut_block(cutter *c, run *r)
     r->spans = piece(c, signals, sizeof *r->spans);
     r->history = piece(c, signals, sizeof *r->history);
     r->edges = piece(c, 2 * (int64_t)p->edges, sizeof *r->edges);
-    r->sums = piece(c, p->sums, sizeof *r->sums);
+    r->tallies = piece(c, p->sums, sizeof *r->tallies);
     cut_timers(c, &r->wake, p->timers + p->perishable);
     r->dirty = piece(c, words, sizeof *r->dirty);
     r->dirty_words = piece(c, (words + 63) / 64, sizeof *r->dirty_words);
@@ -182,6 +182,9 @@ static bool copy_grown(run *made, const run *r)
         to->growing = from->growing;
         to->apart = from->apart;
         to->total = from->total;
+        to->lost = from->lost;
+        to->members = from->members;
+        to->known_slots = -1;
     }
     return true;
 }
@@ -204,7 +207,7 @@ void clear_run(run *r)
     (void)memset(r->truth, IS_UNKNOWN, (size_t)p->nodes.count);
     (void)memset(r->seen, 0, (size_t)p->seen);
     (void)memset(r->edges, 0, 2 * (size_t)p->edges * sizeof *r->edges);
-    (void)memset(r->sums, 0, (size_t)p->sums * sizeof *r->sums);
+    (void)memset(r->tallies, 0, (size_t)p->sums * sizeof *r->tallies);
     for (i = 0; i < p->atoms.count; i++) {
         r->atom[i] = IS_UNKNOWN;
         r->momentary[i] = (uint8_t)r->part->atoms[i].momentary;
@@ -237,6 +240,9 @@ void clear_run(run *r)
         s->growing = false;
         s->apart = false;
         s->total = 0;
+        s->lost = 0;
+        s->members = 0;
+        s->known_slots = -1;
     }
     begin_unlost(r);
     clear_judges(r);

@@ -125,46 +125,46 @@ static void carry_stretches(carrier *c, stretches *s)
     carry_flag(c, &s->right);
     carry_flag(c, &s->growing);
     carry_flag(c, &s->apart);
-    carry_long(c, &s->total, 0, NEVER);
+    carry_long(c, &s->total, -LIMIT, LIMIT);
+    carry_long(c, &s->lost, 0, LIMIT);
+    carry_long(c, &s->members, 0, LIMIT);
+    if (c->reading) {
+        s->known_slots = -1;
+    }
 }
 
-static void carry_sum(carrier *c, exact_sum *x)
+static void carry_tally(carrier *c, tally *x)
 {
     int32_t i;
-    carry_long(c, &x->lost, 0, NEVER);
-    for (i = 0; i < SUM_LIMBS; i++) {
+    for (i = 0; i < TALLY_LIMBS; i++) {
         carry_count(c, &x->limb[i]);
     }
 }
 
-static void demand_amount(carrier *c, const run *r, const stretches *s)
+/* Members of windows lie within the bounds of time, one behind the other. */
+static void demand_members(carrier *c, const run *r, const stretches *s)
 {
+    int64_t behind = -LIMIT;
     int32_t i;
     for (i = 0; (i < s->count) && !is_lost(c); i++) {
         const stretch *one = &s->at[(s->head + i) & (s->room - 1)];
-        demand(c, (one->begin > -LIMIT) && (one->begin < LIMIT) && (one->end >= one->begin - step_of(r))
+        demand(c, (one->begin >= behind) && (one->begin < LIMIT) && (one->end >= one->begin - step_of(r))
                   && (one->end < LIMIT));
+        behind = one->end;
     }
-    demand(c, (s->total < LIMIT) && (!s->growing || (s->count > 0)));
+    demand(c, !s->growing || (s->count > 0));
 }
 
-/* What is counted lies within the bounds of time; of numbers, there is one for each stretch. */
-static void demand_amounts(carrier *c, const run *r)
+/* There is a number for each. */
+static void demand_windows(carrier *c, const run *r)
 {
     int32_t i;
     for (i = 0; (i < r->part->plan->nodes.count) && !is_lost(c); i++) {
         const node_plan *n = &r->part->nodes[i];
-        if ((n->op != NODE_AMOUNT) && (n->op != NODE_SUM)) {
-            continue;
-        }
-        demand_amount(c, r, &r->past[2 * n->slot]);
-        if (n->op == NODE_SUM) {
-            demand(c, (r->past[2 * n->slot].count == r->past[2 * n->slot + 1].count)
-                      && (r->sums[n->sum].lost < LIMIT));
-        } else if (r->past[2 * n->slot].apart) {
-            demand_amount(c, r, &r->past[2 * n->slot + 1]);
-        } else {
-            /* There is one reading. */
+        if (n->op == NODE_WINDOW) {
+            const stretches *own = &r->past[2 * n->slot];
+            demand_members(c, r, own);
+            demand(c, own->count == own[1].count);
         }
     }
 }
@@ -182,7 +182,7 @@ static void carry_past(carrier *c, run *r)
         }
     }
     for (i = 0; (i < p->sums) && !is_lost(c); i++) {
-        carry_sum(c, &r->sums[i]);
+        carry_tally(c, &r->tallies[i]);
     }
     for (i = 0; (i < p->stretches) && !is_lost(c); i++) {
         carry_stretches(c, &r->past[2 * i]);
@@ -190,7 +190,7 @@ static void carry_past(carrier *c, run *r)
             carry_stretches(c, &r->past[2 * i + 1]);
         }
     }
-    demand_amounts(c, r);
+    demand_windows(c, r);
 }
 
 /* The nodes that are to be worked out. */

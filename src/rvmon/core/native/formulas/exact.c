@@ -1,0 +1,156 @@
+/* Sums in fixed point: numbers in two's complement of 32 bits a limb.
+ *
+ * Source: Kulisch, Computer Arithmetic and Validity, 2008 (the long accumulator). */
+#include "formulas/exact.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LOWEST 1088 /* minus the exponent of the lowest bit of a sum; of squares it is twice that */
+#define VARIANCE_LIMBS (SQUARE_LIMBS + 4)
+
+/* A number: its size is a whole one, times 2^bit in units of the lowest bit of a sum. */
+typedef struct {
+    uint64_t size;
+    int32_t bit;
+    bool negative;
+} fixed_point;
+
+static fixed_point fixed_of(const rv_number *number)
+{
+    fixed_point found;
+    int exponent = 0;
+    if (number->kind == RV_WHOLE) {
+        found.negative = number->as.whole < 0;
+        found.size = found.negative ? UINT64_C(0) - (uint64_t)number->as.whole : (uint64_t)number->as.whole;
+    } else {
+        found.negative = number->as.real < 0.0;
+        found.size = (uint64_t)ldexp(frexp(fabs(number->as.real), &exponent), 53);
+        exponent -= 53;
+    }
+    if (exponent < -LOWEST) {
+        found.size >>= -LOWEST - exponent; /* of the smallest, these bits are 0 */
+        exponent = -LOWEST;
+    }
+    found.bit = exponent + LOWEST;
+    return found;
+}
+
+/* Add the product of two numbers times 2^bit, or take it off. */
+static void add_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit, bool off)
+{
+    const uint64_t low = (a & UINT32_MAX) * (b & UINT32_MAX);
+    const uint64_t one = (a & UINT32_MAX) * (b >> 32);
+    const uint64_t other = (a >> 32) * (b & UINT32_MAX);
+    const uint64_t high = (a >> 32) * (b >> 32);
+    const uint64_t middle = (low >> 32) + (one & UINT32_MAX) + (other & UINT32_MAX);
+    const uint64_t upper = (middle >> 32) + (one >> 32) + (other >> 32) + high;
+    const uint32_t word[6] = {0, (uint32_t)low, (uint32_t)middle, (uint32_t)upper, (uint32_t)(upper >> 32), 0};
+    const int32_t by = bit % 32;
+    uint64_t carry = 0;
+    int32_t i;
+    for (i = 0; (i < 5) || (carry != 0); i++) {
+        const int32_t place = bit / 32 + i;
+        const uint64_t both = (i < 5) ? (((uint64_t)word[i + 1] << 32) | word[i]) : 0;
+        const uint64_t digit = ((both << by) >> 32) & UINT32_MAX;
+        uint64_t made;
+        if (place >= limbs) {
+            return;
+        }
+        made = off ? x[place] - digit - carry : x[place] + digit + carry;
+        x[place] = (uint32_t)made;
+        carry = (made >> 32) & 1;
+    }
+}
+
+/* The same of a number and the square of another. */
+static void add_square_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit, bool off)
+{
+    const uint64_t low = b & UINT32_MAX;
+    const uint64_t high = b >> 32;
+    add_product(x, limbs, a, low * low, bit, off);
+    add_product(x, limbs, a, low * high, bit + 33, off);
+    add_product(x, limbs, a, high * high, bit + 64, off);
+}
+
+void exact_add(uint32_t *sum, const rv_number *number, int64_t times, bool off)
+{
+    const fixed_point p = fixed_of(number);
+    add_product(sum, SUM_LIMBS, p.size, (uint64_t)times, p.bit, p.negative != off);
+}
+
+void exact_add_square(uint32_t *squares, const rv_number *number, int64_t times, bool off)
+{
+    const fixed_point p = fixed_of(number);
+    add_square_product(squares, SQUARE_LIMBS, (uint64_t)times, p.size, 2 * p.bit, off);
+}
+
+static bool is_negative(const uint32_t *x, int32_t limbs)
+{
+    return (x[limbs - 1] >> 31) != 0;
+}
+
+static bool is_enough(const uint32_t *x, int32_t limbs, bool strict)
+{
+    int32_t i;
+    for (i = 0; strict && (i < limbs); i++) {
+        if (x[i] != 0) {
+            return !is_negative(x, limbs);
+        }
+    }
+    return !strict && !is_negative(x, limbs);
+}
+
+bool exact_is_enough(const uint32_t *sum, bool strict)
+{
+    return is_enough(sum, SUM_LIMBS, strict);
+}
+
+/* Its three highest limbs. */
+double exact_roughly(const uint32_t *sum, int32_t *exponent)
+{
+    const uint32_t sign = is_negative(sum, SUM_LIMBS) ? UINT32_MAX : 0;
+    double found = 0.0;
+    int32_t i = SUM_LIMBS - 1;
+    int32_t k;
+    while ((i > 2) && (sum[i] == sign)) {
+        i--;
+    }
+    for (k = i; k > i - 3; k--) {
+        found = found * 0x1p32 + (double)(sum[k] ^ sign);
+    }
+    *exponent = 32 * (i - 2);
+    return (sign != 0) ? -found : found;
+}
+
+/* n times the sum of squares, less the square of the sum, less n * n times the limit. */
+bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
+                  bool strict)
+{
+    const fixed_point p = fixed_of(limit);
+    uint32_t rest[VARIANCE_LIMBS] = {0};
+    uint32_t size[SUM_LIMBS];
+    const bool turned = is_negative(sum, SUM_LIMBS);
+    uint64_t carry = turned ? 1 : 0;
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < SUM_LIMBS; i++) {
+        const uint64_t digit = (uint64_t)(turned ? ~sum[i] : sum[i]) + carry;
+        size[i] = (uint32_t)digit;
+        carry = digit >> 32;
+    }
+    for (i = 0; i < SQUARE_LIMBS; i++) {
+        if (squares[i] != 0) {
+            add_product(rest, VARIANCE_LIMBS, squares[i], (uint64_t)count, 32 * i, false);
+        }
+    }
+    for (i = 0; i < SUM_LIMBS; i++) {
+        for (k = 0; (size[i] != 0) && (k < SUM_LIMBS); k++) {
+            if (size[k] != 0) {
+                add_product(rest, VARIANCE_LIMBS, size[i], size[k], 32 * (i + k), true);
+            }
+        }
+    }
+    add_square_product(rest, VARIANCE_LIMBS, p.size, (uint64_t)count, p.bit + LOWEST, !p.negative);
+    return is_enough(rest, VARIANCE_LIMBS, strict);
+}

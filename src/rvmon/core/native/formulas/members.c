@@ -1,0 +1,266 @@
+/* Members of windows: each costs what it adds, and what it takes off when it leaves.
+ *
+ * A window is of time, or of the last so many members. What counts ticks counts them up to the one before
+ * this instant; the others count positions. */
+#include "formulas/exact.h"
+#include "formulas/formulas.h"
+#include "formulas/members.h"
+#include "input/input.h"
+
+#include <math.h>
+#include <string.h>
+
+static stretch *kept_of(const stretches *s, int32_t i)
+{
+    return stretch_of(s + 1, i);
+}
+
+static rv_number number_of(const stretch *kept)
+{
+    rv_number found = UNKNOWN_NUMBER;
+    found.kind = (int32_t)(kept->begin & MEMBER_KIND);
+    found.as.whole = kept->end;
+    if (found.kind == RV_REAL) {
+        (void)memcpy(&found.as.real, &kept->end, sizeof kept->end);
+    }
+    if ((found.kind != RV_WHOLE) && ((found.kind != RV_REAL) || !(fabs(found.as.real) <= 0x1.fffffffffffffp1023))) {
+        found = UNKNOWN_NUMBER;
+    }
+    return found;
+}
+
+static bool is_below_zero(const rv_number *number)
+{
+    return (number->kind == RV_WHOLE) ? (number->as.whole < 0) : (number->as.real < 0.0);
+}
+
+static rv_number read_as(const rv_number *number, bool maybe, bool better)
+{
+    rv_number found = *number;
+    if (maybe && (is_below_zero(number) == better)) {
+        found.kind = RV_WHOLE;
+        found.as.whole = 0;
+    }
+    return found;
+}
+
+rv_number member_number(const window *w, int32_t i, bool better)
+{
+    const stretch *kept = kept_of(w->s, i);
+    const rv_number number = number_of(kept);
+    return (number.kind == RV_UNKNOWN) ? number : read_as(&number, (kept->begin & MEMBER_MAYBE) != 0, better);
+}
+
+bool is_counted(const window *w, int32_t i, bool better)
+{
+    const stretch *kept = kept_of(w->s, i);
+    return (kept->end != 0) && (better || ((kept->begin & MEMBER_MAYBE) == 0));
+}
+
+/* From here on two sums are kept. */
+static void part_sums(window *w)
+{
+    if (!w->s[1].apart) {
+        (void)memcpy(w->x->limb + SUM_LIMBS, w->x->limb, SUM_LIMBS * sizeof *w->x->limb);
+        w->s[1].apart = true;
+    }
+}
+
+static void add_number(window *w, const rv_number *number, bool maybe, int64_t count, bool off)
+{
+    const rv_number worse = read_as(number, maybe, false);
+    if (maybe) {
+        part_sums(w);
+    }
+    w->s[1].right = w->s[1].right || is_below_zero(number);
+    exact_add(w->x->limb, &worse, count, off);
+    if (w->fold == FOLD_VARIANCE) {
+        exact_add_square(w->x->limb + SUM_LIMBS, &worse, count, off);
+    } else if (w->s[1].apart) {
+        const rv_number better = read_as(number, maybe, true);
+        exact_add(w->x->limb + SUM_LIMBS, &better, count, off);
+    } else {
+        /* There is one reading. */
+    }
+}
+
+/* Of forged snapshots, sums of counts may leave their bits, which does no harm. */
+static void add_count(int64_t *x, int64_t more)
+{
+    *x = (int64_t)((uint64_t)*x + (uint64_t)more);
+}
+
+/* Some more of a member, or fewer. */
+static void add_members(window *w, const stretch *kept, int64_t count, bool off)
+{
+    const bool maybe = (kept->begin & MEMBER_MAYBE) != 0;
+    const int64_t more = off ? -count : count;
+    stretches *s = w->s;
+    add_count(&s->members, more);
+    if (!off && (w->n->most > 0)) {
+        s[1].lost -= least(s[1].lost, count);
+    }
+    if ((w->fold == FOLD_COUNT) || (w->fold == FOLD_DURATION)) {
+        add_count(&s[maybe ? 1 : 0].total, (kept->end != 0) ? more : 0);
+    } else if (w->fold == FOLD_DELTA) {
+        /* The first and the last of them are looked at. */
+    } else {
+        const rv_number number = number_of(kept);
+        if (number.kind == RV_UNKNOWN) {
+            add_count(&s->lost, more);
+        } else if (w->fold != FOLD_DISTINCT) {
+            add_number(w, &number, maybe, count, off);
+            add_count(&s->total, more);
+        } else {
+            /* It is counted where it begins. */
+        }
+    }
+}
+
+/* Have the last member go on up to a position. */
+void members_go_on(window *w, int64_t end)
+{
+    stretch *last = stretch_of(w->s, w->s->count - 1);
+    if (end > last->end) {
+        add_members(w, kept_of(w->s, w->s->count - 1), (end - last->end) / w->unit, false);
+        last->end = end;
+    }
+}
+
+/* Room for a member behind the others; false: memory is short, and the run is spoilt. */
+static bool begin_member(window *w, const stretch *kept)
+{
+    stretches *s = w->s;
+    const bool grows = s->count == s->room;
+    stretch *last = next_stretch_of(w->r->home->monitor, s, s->count, true);
+    stretch *own = next_stretch_of(w->r->home->monitor, s + 1, s[1].count, true);
+    if ((last == NULL) || (own == NULL)) {
+        s->count = 0;
+        s[1].count = 0;
+        return false;
+    }
+    if (grows) {
+        s->known_slots = -1; /* they are others */
+    }
+    last->begin = w->t;
+    last->end = w->t - w->unit;
+    *own = *kept;
+    return true;
+}
+
+/* Whether a member that is known has to be kept; of values that are told apart, the last one is. */
+static bool keeps_member(window *w, const rv_number *number)
+{
+    stretches *s = w->s;
+    const bool ever = (w->n->high == NEVER) && (w->n->most == 0);
+    if (w->fold == FOLD_DISTINCT) {
+        const int32_t same = (number->kind == RV_UNKNOWN) ? -1 : latest_with(w, number);
+        if (ever && (number->kind == RV_UNKNOWN)) {
+            s->lost = 1;
+        } else if ((same >= 0) && !ever) {
+            s[1].at[same].begin |= MEMBER_OLDER;
+        } else {
+            s->total += ((number->kind != RV_UNKNOWN) && (same < 0)) ? 1 : 0;
+        }
+        return !ever || ((number->kind != RV_UNKNOWN) && (same < 0));
+    }
+    if (ever) { /* nothing of it is taken off */
+        s->count = ((w->fold == FOLD_DELTA) && (s->count > 0)) ? 1 : 0;
+        s[1].count = s->count;
+    }
+    return true;
+}
+
+bool member_comes(window *w, const rv_number *number, bool maybe)
+{
+    stretches *s = w->s;
+    stretch kept = {number->kind, 0};
+    if (number->kind == RV_REAL) {
+        (void)memcpy(&kept.end, &number->as.real, sizeof kept.end);
+    } else if (number->kind == RV_WHOLE) {
+        kept.end = number->as.whole;
+    } else {
+        /* It is not known. */
+    }
+    if (maybe && ((w->fold == FOLD_COUNT) || (w->fold == FOLD_DURATION) || (w->fold == FOLD_SUM)
+                  || (w->fold == FOLD_INTEGRAL))) {
+        kept.begin |= (number->kind == RV_UNKNOWN) ? 0 : MEMBER_MAYBE;
+    } else if (maybe) {
+        kept.begin = RV_UNKNOWN; /* that there may be one says nothing of these */
+        kept.end = 0;
+    } else {
+        /* It is one. */
+    }
+    if ((s->count == 0) || (stretch_of(s, s->count - 1)->end != w->t - w->unit)
+        || (kept_of(s, s->count - 1)->begin != kept.begin) || (kept_of(s, s->count - 1)->end != kept.end)) {
+        const rv_number own = number_of(&kept);
+        if (!keeps_member(w, &own) || !begin_member(w, &kept)) {
+            return false;
+        }
+        if ((w->fold == FOLD_DISTINCT) && (own.kind != RV_UNKNOWN)) {
+            note_latest(w, &own);
+        }
+    }
+    if (!w->of_ticks) {
+        members_go_on(w, w->t);
+    }
+    return true;
+}
+
+/* Take off so much of the first one. */
+static void take_off(window *w, int64_t gone)
+{
+    stretches *s = w->s;
+    stretch *first = stretch_of(s, 0);
+    const stretch *kept = kept_of(s, 0);
+    const int64_t held = (first->end - first->begin) / w->unit + 1;
+    add_members(w, kept, gone, true);
+    if ((gone < held) || (s->growing && (s->count == 1))) {
+        first->begin += gone * w->unit;
+        return;
+    }
+    if ((w->fold == FOLD_DISTINCT) && ((kept->begin & MEMBER_OLDER) == 0) && (number_of(kept).kind != RV_UNKNOWN)) {
+        s->total--;
+    }
+    s->head = (s->head + 1) & (s->room - 1);
+    s[1].head = (s[1].head + 1) & (s[1].room - 1);
+    s->count--;
+    s[1].count--;
+}
+
+void members_leave(window *w)
+{
+    stretches *s = w->s;
+    const int64_t from = (w->n->high < NEVER) ? w->t - w->n->high : INT64_MIN;
+    while ((w->n->most > 0) && (s->count > 0) && (s->members > w->n->most)) {
+        const stretch *first = stretch_of(s, 0);
+        take_off(w, least(s->members - w->n->most, (first->end - first->begin) / w->unit + 1));
+    }
+    while ((s->count > 0) && (stretch_of(s, 0)->begin < from)) {
+        const stretch *first = stretch_of(s, 0);
+        const int64_t held = (first->end - first->begin) / w->unit + 1;
+        const int64_t gone = least((from - first->begin + w->unit - 1) / w->unit, held);
+        const bool goes_on = s->growing && (s->count == 1);
+        take_off(w, gone);
+        if ((gone < held) || goes_on) {
+            return;
+        }
+    }
+}
+
+/* Where there may have been one more, it is not known which the last ones are. */
+void forget_members(window *w)
+{
+    stretches *s = w->s;
+    s->count = 0;
+    s[1].count = 0;
+    s->total = 0;
+    s[1].total = 0;
+    s->lost = 0;
+    s->members = 0;
+    s->known_slots = -1;
+    s[1].lost = w->n->most;
+    if (w->x != NULL) {
+        (void)memset(w->x, 0, sizeof *w->x);
+    }
+}

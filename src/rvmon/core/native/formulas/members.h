@@ -1,0 +1,45 @@
+/* The members of a window of the past: what of them is kept, and what they come to. */
+#ifndef RVMON_MEMBERS_H
+#define RVMON_MEMBERS_H
+
+#include "basics.h"
+
+/* A node WINDOW at the position at hand. Behind the stretches of positions stands a ring with what is
+ * the same at each: the number of a member, and whether it is one. */
+typedef struct {
+    run *r;
+    const node_plan *n;
+    stretches *s;
+    tally *x;                  /* NULL: nothing is added up */
+    int64_t t;
+    int64_t unit;              /* ticks of a member */
+    int32_t fold;
+    bool of_ticks;             /* each tick is one, up to the one before */
+} window;
+
+/* What stands of a member beside the kind of its number: it may be none; a later one has the same. */
+enum { MEMBER_KIND = 3, MEMBER_MAYBE = 4, MEMBER_OLDER = 8 };
+
+static inline stretch *stretch_of(const stretches *s, int32_t i)
+{
+    return &s->at[(s->head + i) & (s->room - 1)];
+}
+
+/* The number of a member by one of two readings: one that may be none is that, or 0. */
+rv_number member_number(const window *w, int32_t i, bool better);
+bool is_counted(const window *w, int32_t i, bool better);
+
+/* ---- members.c */
+void members_go_on(window *w, int64_t end);
+bool member_comes(window *w, const rv_number *number, bool maybe);
+void members_leave(window *w);
+void forget_members(window *w);
+
+/* ---- distinct.c */
+int32_t latest_with(window *w, const rv_number *number);
+void note_latest(window *w, const rv_number *number);
+
+/* ---- folds.c */
+uint8_t folded(window *w, int64_t *due);
+
+#endif

@@ -1,0 +1,147 @@
+/* Windows of the past: what comes to one at a position. */
+#include "formulas/formulas.h"
+#include "formulas/members.h"
+#include "input/input.h"
+
+static rv_number finite(rv_number number)
+{
+    const bool infinite = (number.kind == RV_REAL) && (number.as.real - number.as.real != 0.0);
+    return infinite ? UNKNOWN_NUMBER : number;
+}
+
+/* The number that an occurrence adds, if the nodes from `from` on hold of it. */
+static void occurrence_comes(window *w, int32_t event, int32_t which, uint8_t operand)
+{
+    run *r = w->r;
+    const int32_t *nodes = LIST(PLAN(r), w->n->operands);
+    const bool known = r->payloads[event].known[which] != 0U;
+    rv_number number = UNKNOWN_NUMBER;
+    uint8_t truth = known ? operand : IS_UNKNOWN;
+    int32_t i;
+    r->chosen[event] = which;
+    for (i = w->n->chosen; known && (i < w->n->operands.count); i++) {
+        const atom_plan *a = &r->part->atoms[r->part->nodes[nodes[i]].a];
+        const rv_number left = program_value(r, a->left, r->chosen);
+        const rv_number right = program_value(r, a->right, r->chosen);
+        const int32_t one = compare_numbers(a->compare, &left, &right);
+        truth = (one < truth) ? (uint8_t)one : truth;
+    }
+    if (truth != IS_FALSE) {
+        if (known) {
+            number = finite(program_value(r, r->part->atoms[w->n->a].left, r->chosen));
+        }
+        w->s->growing = member_comes(w, &number, truth != IS_TRUE);
+    }
+}
+
+/* Several occurrences of the event, or some that are chosen by what they say. */
+static void occurrences_come(window *w, int32_t event, uint8_t operand)
+{
+    run *r = w->r;
+    const int32_t *nodes = LIST(PLAN(r), w->n->operands);
+    const int32_t count = r->payloads[event].count;
+    int32_t i;
+    for (i = w->n->chosen; i < w->n->operands.count; i++) {
+        if (r->truth[nodes[i]] == IS_FALSE) {
+            return; /* of none, or of what is not born */
+        }
+    }
+    if ((r->silent[event] == IS_UNKNOWN) || (count == 0)) {
+        w->s->growing = member_comes(w, &UNKNOWN_NUMBER, true);
+    } else if ((w->n->most > 0) && (count > 1)) {
+        forget_members(w); /* which of them is the last one nobody knows */
+    } else {
+        for (i = 0; i < count; i++) {
+            occurrence_comes(w, event, i, operand);
+        }
+    }
+}
+
+/* The number that is added; unknown if several occurrences of one of some events have one. */
+static rv_number number_now(const run *r, const atom_plan *a)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    int32_t i;
+    for (i = 0; i < a->events.count; i++) {
+        if (r->payloads[events[i]].count > 1) {
+            return UNKNOWN_NUMBER;
+        }
+    }
+    return finite(program_value(r, a->left, NULL));
+}
+
+/* Whether a number is the same wherever it is. */
+static bool is_constant(const run *r, const atom_plan *a)
+{
+    const int32_t *word = &PLAN(r)->code[a->left];
+    return ((word[0] & 255) == CODE_NUMBER) && ((word[1] & 255) == CODE_END);
+}
+
+/* What there is at this position, where the first operand is not FALSE. */
+static void members_come(window *w, uint8_t operand, bool blank)
+{
+    run *r = w->r;
+    const node_plan *n = w->n;
+    const int32_t *nodes = LIST(PLAN(r), n->operands);
+    rv_number number = {RV_WHOLE, {1}};
+    if ((n->most > 0) && (operand != IS_TRUE)) {
+        forget_members(w);
+    } else if ((n->b & WINDOW_COUNTED) != 0) {
+        const uint8_t counted = r->truth[nodes[1]];
+        number.as.whole = (counted == IS_FALSE) ? 0 : 1;
+        w->s->growing = member_comes(w, &number, counted == IS_UNKNOWN);
+    } else if (n->a < 0) {
+        w->s->growing = member_comes(w, &number, operand != IS_TRUE);
+    } else {
+        const atom_plan *a = &r->part->atoms[n->a];
+        const int32_t event = (a->events.count == 1) ? LIST(PLAN(r), a->events)[0] : -1;
+        if (blank && !is_constant(r, a)) {
+            w->s->growing = member_comes(w, &UNKNOWN_NUMBER, true);
+        } else if ((event >= 0) && ((n->chosen < n->operands.count) || (r->payloads[event].count > 1))) {
+            occurrences_come(w, event, operand);
+        } else {
+            number = number_now(r, a);
+            w->s->growing = member_comes(w, &number, operand != IS_TRUE);
+        }
+    }
+}
+
+/* Forget what was before. */
+void window_begins(run *r, const node_plan *n)
+{
+    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false};
+    forget_members(&w);
+    w.s->growing = false;
+}
+
+/* Whether it begins behind an instant: that there may be a position makes no matter, then. */
+static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
+{
+    return (n->since >= 0) && (r->captured[n->since].kind == RV_WHOLE)
+           && (t - r->at.begun < r->captured[n->since].as.whole);
+}
+
+uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank)
+{
+    const int32_t fold = n->b & WINDOW_FOLD;
+    const bool of_ticks = (fold == FOLD_DURATION) || (fold == FOLD_INTEGRAL);
+    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], t,
+                of_ticks ? 1 : step_of(r), fold, of_ticks};
+    int64_t due;
+    uint8_t found;
+    w.s->apart = true; /* there is a second ring */
+    if (w.s->growing && (w.s->count > 0)) {
+        members_go_on(&w, of_ticks ? t - 1 : r->at.before);
+    }
+    w.s->growing = false;
+    if ((operand != IS_FALSE) && !(blank && has_not_begun(r, n, t))) {
+        members_come(&w, operand, blank);
+    }
+    members_leave(&w);
+    found = folded(&w, &due);
+    if (n->most > 0) {
+        due = w.s->growing ? t + w.unit : NEVER; /* the next position may have one, too */
+    }
+    timers_set(&r->wake, n->timer, ((GAP(r) > 0) && (due > t)) ? due : NEVER); /* each sample is looked at */
+    return found;
+}

@@ -1,0 +1,93 @@
+"""Bounds that come from data: counted from the trigger, at which they are captured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.diagnostics import Span
+from rvmon.spec.check.quantities import is_time, seconds_of
+from rvmon.spec.check.scope import Operands, Quantity, Scope
+from rvmon.spec.checked.formula import (
+    TRIGGERED,
+    Binary,
+    BinaryOp,
+    Captured,
+    Formula,
+    Interval,
+    Numeric,
+    Passed,
+    Unary,
+    UnaryOp,
+    passed,
+)
+from rvmon.spec.syntax.expressions import Window
+
+_BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL)
+"""The operators whose window may end where data says."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounded:
+    """A window from now on whose end comes from data, where what it bounds is owed at the trigger.
+
+    Attributes:
+        seconds: how long it is.
+        scope: that captures it.
+    """
+
+    seconds: Numeric
+    scope: Scope
+
+    def late(self, word: str, span: Span) -> Passed:
+        """That the window is over."""
+        trigger = self.scope.trigger
+        if trigger is None:
+            raise AssertionError("what is owed at the trigger has one")
+        trigger.begun(span)
+        return passed(TRIGGERED, Captured(trigger.number(word, self.seconds)), True, span)
+
+
+def bound_of(
+    operands: Operands, op: UnaryOp | BinaryOp, window: Window | None, scope: Scope
+) -> Bounded | None:
+    """The end of a window that comes from data, where that is captured; `None`: another.
+
+    Raises:
+        Reported: it is wrong.
+    """
+    if op not in _BOUNDED or window is None or not window.high or not scope.at_once:
+        return None
+    if window.high_open or window.low_open:
+        return None
+    if window.low and operands.duration(window.low, scope):
+        return None
+    value = operands.values((window.high,), scope)[0]
+    if not isinstance(value, Quantity) or value.node is None or not is_time(value):
+        return None
+    return Bounded(seconds_of((value, window.high.span)), scope)
+
+
+def bounded_prefix(op: UnaryOp, operand: Formula, bound: Bounded, span: Span) -> Formula:
+    """`within (x) φ`, `for (x) φ`: φ before it is too late, or until it is."""
+    if op is UnaryOp.ALWAYS:
+        late = bound.late("for", span)
+        excused = Binary(BinaryOp.OR, operand, late, None, span)
+        return Binary(BinaryOp.RELEASE, late, excused, Interval(), span)
+    early = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
+    reached = Binary(BinaryOp.AND, operand, early, None, span)
+    return Binary(BinaryOp.UNTIL, early, reached, Interval(), span)
+
+
+def bounded_infix(
+    op: BinaryOp, left: Formula, right: Formula, bound: Bounded, span: Span
+) -> Formula:
+    """`φ until[0, x] ψ`, `φ unless[0, x] ψ`."""
+    if op is BinaryOp.WEAK_UNTIL:
+        late = bound.late("for", span)
+        ended = Binary(BinaryOp.OR, right, late, None, span)
+        excused = Binary(BinaryOp.OR, left, ended, None, span)
+        return Binary(BinaryOp.RELEASE, ended, excused, Interval(), span)
+    early = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
+    lasting = Binary(BinaryOp.AND, left, early, None, span)
+    reached = Binary(BinaryOp.AND, right, early, None, span)
+    return Binary(BinaryOp.UNTIL, lasting, reached, Interval(), span)

@@ -1,0 +1,269 @@
+"""Windows of the past as numbers: what is measured of which members, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeGuard
+
+from rvmon.diagnostics import Span
+from rvmon.spec.check.comparisons import number_of
+from rvmon.spec.check.scope import Ago, AmountOf, Chosen, Extreme, Operands, Quantity, Scope, Value
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.classify import fields_in, future_part, is_pulse, reads_field
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    EventAtom,
+    Formula,
+    Measured,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+    itself,
+)
+from rvmon.spec.checked.measured import Members
+from rvmon.spec.checked.names_read import names_in, names_read
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.rules import Refusal
+from rvmon.spec.rules import time as time_rules
+from rvmon.spec.rules import types as rules
+from rvmon.spec.syntax.expressions import Call, Expression, Infix, Name
+from rvmon.units import parse_unit
+
+LAST, TRIGGER = "last", "trigger"
+"""Words of windows: `last(n, x)`, `x since trigger`."""
+MOST_LAST = 1_000_000
+"""So many updates a window may hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """What a call measures, and where.
+
+    Attributes:
+        of: the expression.
+        scope: of that.
+        ticks: D; `None`: no such window.
+        most: how many updates; `None`: any number.
+        since: whether only what is since the trigger counts.
+    """
+
+    of: Expression
+    scope: Scope
+    ticks: int | None = None
+    most: int | None = None
+    since: bool = False
+
+    @property
+    def span(self) -> Span:
+        """The place of the expression."""
+        return self.of.span
+
+
+def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
+    """Of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
+    of, inner = operands.peeled(call.args[0], scope)
+    found = _Window(call.args[0], scope)
+    match of:
+        case Call(function=function, args=(count, x)) if function.text == LAST:
+            found = _Window(x, inner, most=_count(operands, count, inner))
+        case Infix(op=BinaryOp.SINCE, left=left, right=right, window=None):
+            name, place = operands.peeled(right, inner)
+            if (
+                isinstance(name, Name)
+                and name.text == TRIGGER
+                and not operands.known(TRIGGER, place)
+            ):
+                if scope.trigger is None:
+                    raise Refusal(rules.since_no_trigger(of.span))
+                found = _Window(left, inner, since=True)
+    if len(call.args) == 1:
+        return found
+    if found.most is not None or found.since:
+        raise Refusal(rules.two_windows(call.span))
+    ticks = operands.duration(call.args[1], scope)
+    if ticks == 0:
+        raise Refusal(time_rules.no_duration(call.args[1].span))
+    return replace(found, ticks=ticks)
+
+
+def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
+    (count,) = operands.quantities((expression,), scope)
+    number = count.constant
+    if (
+        number is None
+        or count.unit.symbol
+        or not 1 <= number <= MOST_LAST
+        or number.denominator > 1
+    ):
+        raise Refusal(rules.last_count(expression.span, MOST_LAST))
+    return int(number)
+
+
+def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> AmountOf:
+    """What a call measures, beside nothing yet.
+
+    Raises:
+        Refusal: there is no such window, or that is not measured of such members.
+        Reported: an operand is wrong.
+    """
+    window = _window(operands, call, scope)
+    found = (_added if measured.of_numbers else _counted)(operands, measured, call, window)
+    if window.since and scope.trigger is not None:
+        begun = scope.trigger.begun(window.span)
+        found = replace(found, operand=_both(begun, found.operand, window.span))
+    return replace(found, window=window.ticks, most=window.most)
+
+
+def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> AmountOf:
+    """How much of a formula there was, which has to be known at once."""
+    formula = operands.formula(window.of, window.scope)
+    _refuse_future(formula, call, call.function.text)
+    share = call.function.text == "share"
+    if share and window.ticks is None and window.most is None:
+        raise Refusal(rules.argument_count(call.span, "share", "two arguments", 1))
+    if window.most is not None:
+        if share or measured is not Measured.COUNT:
+            raise Refusal(rules.not_of_last(call.span, call.function.text))
+        updated = _updates(operands, {*names_read(formula)}, window.span)
+        return AmountOf(measured, updated, None, counted=formula)
+    held = operands.table.time is TimeModel.HELD
+    if measured is Measured.COUNT and held and not is_pulse(formula):
+        raise Refusal(rules.count_of_state(window.span))
+    return AmountOf(measured, formula, None, share)
+
+
+def _refuse_future(formula: Formula, call: Call, name: str) -> None:
+    if (ahead := future_part(formula)) is not None:
+        raise Refusal(rules.amount_of_future(ahead.span or call.span, name))
+
+
+def _updates(operands: Operands, names: set[str], span: Span) -> Formula:
+    """Where the only name of an expression is updated."""
+    if len(names) != 1:
+        raise Refusal(rules.last_of_several(span))
+    (name,) = names
+    if name in operands.table.events:
+        return EventAtom(name, span)
+    return ProbeAtom(Probe.UPDATED, name, span)
+
+
+def _added(operands: Operands, measured: Measured, call: Call, window: _Window) -> AmountOf:
+    """The numbers of occurrences, of updates, or what is held."""
+    place = window.span
+    (value,) = operands.values((window.of,), window.scope)
+    conditions: list[Formula] = []
+    if isinstance(value, Chosen) and _may_choose(measured, window) and _is_nothing(value.otherwise):
+        conditions, value = [*_conjuncts(value.condition)], value.chosen
+    quantity = number_of(value, place)
+    node = quantity.node
+    if node is None:
+        raise Refusal(rules.not_added(place, measured, measured.of.value))
+    events = {one.event for one in fields_in(node)}
+    signals = {*names_in(node)} - events
+    if window.most is not None:
+        if measured.of is Members.HELD:
+            raise Refusal(rules.not_of_last(call.span, measured))
+        updated = _updates(operands, events | signals, place)
+        return AmountOf(measured, updated, None, added=quantity, counted=itself(node, place))
+    if not _can_be_added(measured, node, fields=bool(events), signals=bool(signals)):
+        raise Refusal(rules.not_added(place, measured, measured.of.value))
+    if measured is Measured.VARIANCE and signals:
+        _refuse_curve(operands, call, window)
+    if measured.of is Members.EVENTS and isinstance(node, SignalValue):
+        conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
+    chosen = tuple(one for one in conditions if _is_of_occurrence(one, events))
+    member: Formula = itself(node, place)
+    for condition in reversed([one for one in conditions if one not in chosen]):
+        _refuse_future(condition, call, measured)
+        member = _both(condition, member, place)
+    return AmountOf(measured, member, None, added=quantity, chosen=chosen)
+
+
+def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
+    """Whether it is a comparison that says something of one occurrence of the only event."""
+    if not isinstance(formula, Compare) or len(events) != 1:
+        return False
+    fields = (*fields_in(formula.left), *fields_in(formula.right))
+    return {one.event for one in fields} == events
+
+
+def _conjuncts(formula: Formula) -> Iterator[Formula]:
+    if isinstance(formula, Binary) and formula.op is BinaryOp.AND:
+        yield from _conjuncts(formula.left)
+        yield from _conjuncts(formula.right)
+    else:
+        yield formula
+
+
+def _both(left: Formula, right: Formula, span: Span) -> Formula:
+    return Binary(BinaryOp.AND, left, right, None, span)
+
+
+def _may_choose(measured: Measured, window: _Window) -> bool:
+    return measured in (Measured.SUM, Measured.INTEGRAL) and window.most is None
+
+
+def _is_nothing(value: Value) -> bool:
+    return isinstance(value, Quantity) and value.constant == 0
+
+
+def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:
+    """Of what occurs, of what is held, or of either."""
+    match measured.of:
+        case Members.EVENTS:
+            return fields or isinstance(node, SignalValue)
+        case Members.HELD:
+            return signals and not fields
+        case _:
+            return fields is not signals
+
+
+def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
+    """Between samples a variance of what is held is no line; on a clock it is looked at anew."""
+    time = operands.table.time
+    if time is TimeModel.HELD:
+        raise Refusal(rules.variance_moves(call.span))
+    if time is TimeModel.CLOCKED and window.ticks is None:
+        raise Refusal(rules.argument_count(call.span, "variance", "two arguments", 1))
+
+
+def ago(operands: Operands, call: Call, scope: Scope) -> Ago:
+    """`ago(x, D)`.
+
+    Raises:
+        Refusal: it is of no signals, or not of held time.
+    """
+    (quantity,) = operands.quantities(call.args[:1], scope)
+    if quantity.node is None or reads_field(quantity.node):
+        raise Refusal(rules.argument_kind(call.args[0].span, "ago", "a number of signals"))
+    if operands.table.time is not TimeModel.HELD:
+        raise Refusal(time_rules.ago_of_samples(call.span))
+    return Ago(quantity, call.args[0].span, operands.duration(call.args[1], scope))
+
+
+def extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Extreme | None:
+    """That of a window, if the second argument is a duration and the first is no time."""
+    greatest = op is NumericOp.MAX
+    if len(call.args) == 1:
+        window = _window(operands, call, scope)
+        (number,) = operands.quantities((window.of,), window.scope)
+        found = Extreme(greatest, number, window.span, None)
+        if window.most is not None:
+            names = set() if number.node is None else {*names_in(number.node)}
+            updated = _updates(operands, names, window.span)
+            return replace(found, most=window.most, updated=updated)
+        if window.since and scope.trigger is not None:
+            return replace(found, begun=scope.trigger.begun(window.span))
+        return found
+    first, second = operands.values(call.args, scope)
+    if not isinstance(first, Quantity) or not isinstance(second, Quantity):
+        return None
+    time = parse_unit("s").dimension
+    is_window = second.constant is not None and second.unit.dimension == time
+    if first.constant is not None or not is_window or first.unit.dimension == time:
+        return None
+    return Extreme(greatest, first, call.args[0].span, operands.duration(call.args[1], scope))

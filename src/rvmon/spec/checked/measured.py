@@ -1,0 +1,132 @@
+"""What is measured in windows of the past: one entry for each, which all readers use."""
+
+from __future__ import annotations
+
+from enum import Enum, StrEnum
+
+
+class Members(Enum):
+    """What the members of a window are.
+
+    Attributes:
+        said: it in words.
+    """
+
+    TRUTHS = "a formula that is true at single instants"
+    TIME = "a formula"
+    EVENTS = "a field of an event, or one signal, at its updates"
+    HELD = "signals"
+    EITHER = "signals, or fields of an event, but not of both"
+
+
+class Dimension(Enum):
+    """The unit of what comes out."""
+
+    PLAIN = "a plain number"
+    TIME = "a duration"
+    SAME = "its unit"
+    TIMES_TIME = "its unit times s"
+    SQUARE = "the square of its unit"
+
+
+class Measured(StrEnum):
+    """What is measured of a formula, or of a number, over the last D.
+
+    Attributes:
+        of: what it is of.
+        dimension: of what comes out.
+        doc: its value in a few words.
+        unknown: what becomes of it where something in the window is not known.
+        each: bytes that a member takes, or a stretch of equal ones.
+        fixed: bytes besides.
+        steady: whether it takes no more without D, however long the run.
+
+    >>> Measured.SUM.dimension.value, Measured("integral").of.value
+    ('its unit', 'signals')
+    """
+
+    COUNT = (
+        *("count", Members.TRUTHS, Dimension.PLAIN, "how often φ was true in the last D"),
+        *("between what it may be", 32, 0),
+    )
+    DURATION = (
+        *("duration", Members.TIME, Dimension.TIME),
+        "for how long φ was true in the last D, up to this instant",
+        *("between what it may be", 32, 0),
+    )
+    SUM = (
+        *("sum", Members.EVENTS, Dimension.SAME, "what x came to in the last D, together"),
+        *("unknown; between what it may be where a condition is not known", 32, 856),
+    )
+    MEAN = (
+        *("mean", Members.EITHER, Dimension.SAME),
+        "the mean of x at all instants of the last D, of a field at its occurrences",
+        *("unknown, as of nothing", 32, 856),
+    )
+    INTEGRAL = (
+        *("integral", Members.HELD, Dimension.TIMES_TIME),
+        "x times the time for which it was held, in the last D, up to this instant",
+        *("unknown; between what it may be where a condition is not known", 32, 856),
+    )
+    VARIANCE = (
+        *("variance", Members.EITHER, Dimension.SQUARE),
+        "the mean square of how far x was from its mean, in the last D; in `time held` of fields",
+        *("unknown, as of nothing", 32, 856),
+    )
+    DELTA = (
+        *("delta", Members.HELD, Dimension.SAME),
+        "by how much x is more than at the first instant of the last D",
+        *("unknown if one of both is", 32, 0),
+    )
+    DISTINCT = (
+        *("distinct", Members.EVENTS, Dimension.PLAIN),
+        "how many different values x had in the last D",
+        *("at least as many as are known", 48, 0, False),
+    )
+
+    of: Members
+    dimension: Dimension
+    doc: str
+    unknown: str
+    each: int
+    fixed: int
+    steady: bool
+
+    def __new__(
+        cls,
+        name: str,
+        of: Members = Members.TIME,
+        dimension: Dimension = Dimension.PLAIN,
+        doc: str = "",
+        unknown: str = "",
+        each: int = 0,
+        fixed: int = 0,
+        steady: bool = True,
+    ) -> Measured:
+        """A member: the name that it is called by, with the rest of its entry."""
+        made = str.__new__(cls, name)
+        made._value_ = name
+        made.of, made.dimension, made.doc, made.unknown = of, dimension, doc, unknown
+        made.each, made.fixed, made.steady = each, fixed, steady
+        return made
+
+    @property
+    def memory(self) -> str:
+        """What it takes, in words."""
+        besides = f", and {self.fixed}" if self.fixed else ""
+        return f"{self.each} bytes a member, or stretch of equal ones{besides}"
+
+    @property
+    def of_numbers(self) -> bool:
+        """Whether members are numbers."""
+        return self.of not in (Members.TRUTHS, Members.TIME)
+
+    @property
+    def asks_for_one(self) -> bool:
+        """Whether it is not born before its numbers are: of nothing there is none."""
+        return self in (Measured.MEAN, Measured.VARIANCE, Measured.DELTA)
+
+    @property
+    def of_time(self) -> bool:
+        """Whether what is held between positions counts, up to this instant."""
+        return self.dimension in (Dimension.TIME, Dimension.TIMES_TIME)

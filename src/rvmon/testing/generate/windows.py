@@ -1,0 +1,126 @@
+"""Random windows of the past, beside a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
+    Amount,
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    Compare,
+    CompareOp,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Literal,
+    Measured,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+    itself,
+    passed,
+)
+from rvmon.spec.checked.measured import Members
+from rvmon.testing.generate import (
+    CARRIER,
+    FIELD,
+    NUMBERS,
+    Rng,
+    chance,
+    pick,
+)
+from rvmon.testing.generate.numbers import Shape, arithmetic, field_value, input_number
+
+Draw = Callable[[Rng, Shape], Formula]
+"""What draws an operand."""
+
+
+def late(rng: Rng, shape: Shape) -> Formula:
+    """So long since an instant, with or without data in the duration."""
+    after: Numeric = Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
+    if chance(rng, 60):
+        after = Arithmetic(
+            NumericOp.MUL, (input_number(rng, replace(shape, events=False)), Literal(1e-9))
+        )
+    since = pick(rng, shape.instants) if shape.instants and chance(rng, 85) else None
+    return passed(since, after, chance(rng, 50))
+
+
+def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
+    """So much of a formula, or of a number, in a window, or since the first instant."""
+    mode, _, form = shape.form.rpartition(" ")
+    measured = Measured(form) if form else pick(rng, tuple(Measured))
+    if measured.of_numbers and (not shape.numbers or shape.wide):
+        measured = Measured.COUNT
+    window = None if chance(rng, 15) else rng.randint(1, shape.longest)
+    below = replace(shape, future=False)
+    operand: Formula
+    value: Numeric | None = None
+    counted: Formula | None = None
+    most = None
+    chosen: tuple[Compare, ...] = ()
+    plain = replace(shape, events=False)
+    may_be_last = not measured.of_time and measured is not Measured.DELTA
+    if may_be_last and (mode == "last" or chance(rng, 25)) and mode not in ("since", "each"):
+        most, window = rng.randint(1, 4), None
+        name = pick(rng, (*NUMBERS, CARRIER) if shape.events else NUMBERS)
+        operand = EventAtom(name) if name == CARRIER else ProbeAtom(Probe.UPDATED, name)
+        if measured is Measured.COUNT:
+            counted = draw(rng, below)
+        else:
+            value = FieldValue(CARRIER, FIELD) if name == CARRIER else SignalValue(name)
+            counted = itself(value)
+    elif not measured.of_numbers:
+        operand = draw(rng, below)
+    else:
+        likely = 90 if mode == "each" else 40
+        fields = shape.events and measured.of is not Members.HELD and chance(rng, likely)
+        number = field_value(rng) if fields else _held(rng, plain)
+        if measured is Measured.INTEGRAL and chance(rng, 10):
+            number = Literal(1)
+        value = number
+        operand, chosen = _member(rng, below, draw, measured, number)
+        if measured is Measured.DELTA:
+            window = window or shape.longest
+    since = mode == "since" or chance(rng, 30)
+    if shape.instants and since and measured is not Measured.DELTA and not most:
+        begun = passed(pick(rng, shape.instants), Literal(0), strict=False)
+        operand = Binary(BinaryOp.AND, begun, operand)
+    limit: Numeric = Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
+    if measured is Measured.INTEGRAL:
+        limit = Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
+    if not measured.of_numbers:
+        limit = Literal(rng.randint(1, 4))
+    if chance(rng, 20) and measured is not Measured.DURATION and shape.numbers and not shape.wide:
+        limit = input_number(rng, plain)
+    known = None if isinstance(limit, Literal) else itself(limit)
+    strict = measured.of_numbers and chance(rng, 50)
+    return Amount(
+        *(measured, operand, window, limit, strict, None, value, known, most, counted, chosen)
+    )
+
+
+def _held(rng: Rng, shape: Shape) -> Numeric:
+    return arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
+
+
+def _member(
+    rng: Rng, shape: Shape, draw: Draw, measured: Measured, value: Numeric
+) -> tuple[Formula, tuple[Compare, ...]]:
+    """Where a number is a member, and what is asked of each occurrence."""
+    member: Formula = itself(value)
+    chosen: tuple[Compare, ...] = ()
+    if isinstance(value, Literal):
+        return draw(rng, shape), ()
+    if isinstance(value, FieldValue) and measured is Measured.SUM and chance(rng, 40):
+        beside = input_number(rng, replace(shape, events=False))
+        chosen = (Compare(pick(rng, tuple(CompareOp)), value, beside),)
+    may_choose = measured in (Measured.SUM, Measured.INTEGRAL)
+    if may_choose and chance(rng, 40):
+        member = Binary(BinaryOp.AND, draw(rng, shape), member)
+    return member, chosen
