@@ -7,8 +7,12 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+
+POLL_S = 0.005
+"""Between two looks at a process; what it is told to have used includes who began it."""
 
 
 @dataclass(slots=True)
@@ -23,7 +27,7 @@ class Task:
         rows: of all files.
         wall: seconds of each pass.
         cpu: the same.
-        mebibytes: the largest resident memory.
+        mebibytes: the largest resident memory of the first process, as far as it was seen.
         found: in the last pass.
         refusal: why it was not measured.
     """
@@ -44,7 +48,11 @@ class Task:
         began = time.monotonic()
         with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as told:
             process = subprocess.Popen(self.command, stdout=said, stderr=told, env=installed)
-            _, status, usage = os.wait4(process.pid, 0)
+            ended, peak = 0, 0.0
+            while not ended:
+                peak = max(peak, _mebibytes(process.pid))
+                time.sleep(POLL_S)
+                ended, status, usage = os.wait4(process.pid, os.WNOHANG)
             wall = time.monotonic() - began
             process.returncode = os.waitstatus_to_exitcode(status)
             if process.returncode not in (0, 1):
@@ -57,9 +65,18 @@ class Task:
         if counts:
             self.wall.append(wall)
             self.cpu.append(usage.ru_utime + usage.ru_stime)
-            self.mebibytes = max(self.mebibytes, usage.ru_maxrss / 1024)
+            self.mebibytes = max(self.mebibytes, peak)
         if self.read is not None:
             self.found = self.read(printed)
+
+
+def _mebibytes(pid: int) -> float:
+    """The largest resident memory of a process since it began; 0 if it has ended."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{pid}/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    return 0.0
 
 
 def measure(tasks: Sequence[Task], repeats: int, installed: Mapping[str, str]) -> None:
