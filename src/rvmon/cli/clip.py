@@ -90,8 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.attempt is None and arguments.start is None and arguments.stop is None:
         raise RvmonError("name what to cut out: an attempt such as R1#3, or --from T and --to T")
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
-    if out is not None:
-        refuse_place(data, out)
+    refuse_place(data, out)
     for one in (out, case):
         if one is not None:
             read = [data, arguments.spec] + [arguments.binding] * bool(arguments.binding)

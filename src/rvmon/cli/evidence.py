@@ -25,6 +25,7 @@ from rvmon.evidence.keep import (
     sha256_of,
 )
 from rvmon.evidence.matrix import Row, rows_by_item
+from rvmon.readers.found import files_of
 from rvmon.session import load
 from rvmon.verdict import LAW
 from rvmon.verdict.rows import VerdictRow
@@ -101,7 +102,7 @@ def _verify(
     for name, sha256 in _shown(about.recordings):
         if not is_recording(name):
             unchecked.append(f"{name} is not there")
-        elif sha256_of(Path(name)) != sha256:
+        elif sha256_of(*map(Path, files_of(name))) != sha256:
             differ.append(f"{name} is not the recording that was evaluated")
         else:
             continue

@@ -13,7 +13,7 @@ import msgspec
 from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, TraceError
 from rvmon.evidence.keep import (
     COVERAGE,
     About,
@@ -25,6 +25,7 @@ from rvmon.evidence.keep import (
     texts_of,
     write_evidence,
 )
+from rvmon.readers.found import files_of
 from rvmon.readers.held import HeldRecording
 from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.source import Source
@@ -135,10 +136,10 @@ def _record_coverage(
 
 
 def is_recording(path: str) -> bool:
-    """Whether there is a file, or a folder that is a recording; other things have no hash."""
+    """Whether there is a file, a folder that is a recording, or several: else it has no hash."""
     try:
-        return Path(path).is_file() or bool(form_of_folder(path))
-    except (OSError, ValueError):
+        return all(Path(one).is_file() or form_of_folder(one) for one in files_of(path))
+    except (OSError, ValueError, TraceError):
         return False
 
 
@@ -161,7 +162,7 @@ def begun(
     for trace in traces:
         if not is_recording(trace) or shown_path(trace) in found:
             raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
-        found[shown_path(trace)] = sha256_of(Path(trace))
+        found[shown_path(trace)] = sha256_of(*map(Path, files_of(trace)))
     return *texts_of({"": arguments.spec}, arguments.binding), found
 
 

@@ -25,8 +25,12 @@ from rvmon.trace.time import format_stamp
 from rvmon.writing import beside
 
 
-def refuse_place(path: str, out: str) -> None:
+def refuse_place(path: str, out: str | None) -> None:
     """Say, before any work is done for it, that a piece of a recording cannot go to a place.
+
+    Args:
+        path: of the recording.
+        out: the place; `None`: one that suits it.
 
     Raises:
         RvmonError: it has the ending of another format, or is a folder that is there.
@@ -36,7 +40,9 @@ def refuse_place(path: str, out: str) -> None:
     if path == "-":
         raise RvmonError("standard input can be read once only: save the recording first")
     if form in ("tables", JOINED):
-        raise RvmonError(f"{path}: of several files no piece is written: clip each of them")
+        raise RvmonError(f"{path}: of several files no piece is written: clip each by --from, --to")
+    if out is None:
+        return
     if form == "ros2" and local_path(path).is_dir():
         if os.path.lexists(out):
             raise RvmonError(f"cannot write {out}: it is there, and a bag is a new folder")

@@ -173,12 +173,19 @@ class Kept(NamedTuple):
     binding: str | None
 
 
-def sha256_of(path: Path) -> str:
+def sha256_of(path: Path, *more: Path) -> str:
     """The SHA-256 of a file; of a folder, that of the lines `sha256sum` has for its files.
+
+    Args:
+        path: of it.
+        more: with these it is one recording: the same of their lines, in this order.
 
     Raises:
         OSError: there is none.
     """
+    if more:
+        both = "".join(f"{sha256_of(one)}  {one.name}\n" for one in (path, *more))
+        return hashlib.sha256(both.encode()).hexdigest()
     if path.is_file():
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()

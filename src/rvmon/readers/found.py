@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rvmon.errors import TraceError
 from rvmon.readers.messages.forms import FORMATS, form_of_folder
-from rvmon.readers.places import endings_of, is_address, matching_addresses
+from rvmon.readers.places import JOINT, endings_of, is_address, matching_addresses
 
 _MAGIC = frozenset("*?[")
 
@@ -39,6 +39,12 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
             # `**` stands for a folder and for what is in it.
             found = {one for match in iglob(path, recursive=True) for one in _recordings_at(match)}
             yield from _some(sorted(found), path)
+
+
+def files_of(path: str) -> list[str]:
+    """The files of which a recording is joined; what is one file, or folder, is itself."""
+    is_joined = JOINT in path and not os.path.lexists(path)
+    return list(found_recordings(filter(None, path.split(JOINT)))) if is_joined else [path]
 
 
 def one_recording(path: str) -> str:

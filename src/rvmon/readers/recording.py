@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
-from rvmon.readers.found import found_recordings
+from rvmon.readers.found import files_of
 from rvmon.readers.joined import Joined, schemas_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import (
@@ -105,7 +105,7 @@ class FileRecording:
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end
         elif self._format == JOINED:
-            paths = list(found_recordings(filter(None, self.path.split(JOINT))))
+            paths = files_of(self.path)
             of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
             files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
             parts = [FileRecording(*one, ordered=ordered) for one in files]
@@ -300,6 +300,8 @@ def messages_of(path: str) -> MessageFile:
         TraceError: it cannot be read, or holds no messages.
     """
     recording = FileRecording(path, Schema({}, {}))
+    if recording._joined is not None:
+        raise TraceError(f"{path}: of several files bindings are proposed one by one: name each")
     if recording._messages is None:
         raise TraceError(f"{path}: has columns and no topics: use --map")
     return recording._messages

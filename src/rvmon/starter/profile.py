@@ -13,12 +13,12 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
-from rvmon.readers.found import found_recordings
+from rvmon.readers.found import files_of
 from rvmon.readers.joined import topics_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
-from rvmon.readers.places import JOINT, local_path, named_errors, opened
+from rvmon.readers.places import local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
 from rvmon.starter.column import Column, Profile, Shape, Shapes
 from rvmon.starter.declared import Seen, message_shapes, shapes_seen
@@ -42,7 +42,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     """
     form = format_of(path)
     if form == JOINED:
-        return _of_files(list(found_recordings(filter(None, path.split(JOINT)))), stamps)
+        return _of_files(files_of(path), stamps)
     if form in MESSAGE_FORMS:
         return message_shapes(messages_of(path))
     with named_errors(path):

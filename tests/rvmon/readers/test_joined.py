@@ -167,7 +167,25 @@ def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
     spec, piece = str(tmp_path / "s.rv"), str(tmp_path / "c.csv")
     words = ["clip", spec, both, "--from", "0", "--to", "1", "-o", piece]
     assert main(words) == 2
-    assert "clip each of them" in capsys.readouterr().err
+    assert "clip each by --from, --to" in capsys.readouterr().err
+    assert main(["clip", spec, both, "R#1", "--reproducer", str(tmp_path / "c.rvcase")]) == 2
+    assert "clip each by --from, --to" in capsys.readouterr().err
+    assert main(["init", both, "--for", spec]) == 2
+    assert "of several files bindings are proposed one by one" in capsys.readouterr().err
+
+
+def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypatch):
+    """It holds as long as none of them has changed."""
+    monkeypatch.chdir(tmp_path)
+    for name in "ab":
+        (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
+    (tmp_path / "s.rv").write_text("signal a, b : real\nrequirement R\n  always a <= b\n")
+    assert main(["run", "s.rv", "a.csv", "b.csv", "--join", "--evidence", "e.zip"]) == 0
+    assert main(["evidence", "e.zip"]) == 0
+    assert "evaluated again: 1 of 1" in capsys.readouterr().out
+    (tmp_path / "b.csv").write_text("t,b\n0,2\n")
+    assert main(["evidence", "e.zip"]) == 1
+    assert "a.csv + b.csv is not the recording that was evaluated" in capsys.readouterr().out
 
 
 def test_a_specification_is_begun_from_several_files(tmp_path):
