@@ -309,7 +309,7 @@ def check(tmp_path_factory):
     library = tmp_path_factory.mktemp("core") / "core.so"
     sources = [f"{amalgamate.FOLDER}/{name}" for name in amalgamate.core_files()]
     flags = [
-        "-O1",
+        "-O0",
         "-shared",
         "-fPIC",
         "-fsanitize=undefined",

@@ -3,7 +3,7 @@
 #include "formulas/members.h"
 #include "input/input.h"
 
-static rv_number finite(rv_number number)
+static rv_number within_range(rv_number number)
 {
     const bool infinite = (number.kind == RV_REAL) && (number.as.real - number.as.real != 0.0);
     return infinite ? UNKNOWN_NUMBER : number;
@@ -28,7 +28,7 @@ static void occurrence_comes(window *w, int32_t event, int32_t which, uint8_t op
     }
     if (truth != IS_FALSE) {
         if (known) {
-            number = finite(program_value(r, r->part->atoms[w->n->a].left, r->chosen));
+            number = within_range(program_value(r, r->part->atoms[w->n->a].left, r->chosen));
         }
         w->s->growing = member_comes(w, &number, truth != IS_TRUE);
     }
@@ -67,7 +67,7 @@ static rv_number number_now(const run *r, const atom_plan *a)
             return UNKNOWN_NUMBER;
         }
     }
-    return finite(program_value(r, a->left, NULL));
+    return within_range(program_value(r, a->left, NULL));
 }
 
 /* Whether a number is the same wherever it is. */
