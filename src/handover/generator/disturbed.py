@@ -97,8 +97,11 @@ PERSON: Mapping[State, Sequence[tuple[float, Acts, State]]] = {
 """State to probability, what is done, and the state after.
 
 The weights of the network (`handover.ta`) give the share of bad postures and of those who lose
-interest, 0.05 at each step. The other deviations have no published rates: each has so much that
-among 100 tests several show it, and that three of ten follow the protocol to its end.
+interest, 0.05 at each step. All other rates and pauses are free: each deviation has so much that
+among 100 tests several show it, and that three of ten follow the protocol to its end. That people
+ignore the robot, or hold on to the piece, is studied with failures that were asked of them (Thoduka
+et al. 2024, "A Multimodal Handover Failure Detection Dataset and Baselines", ICRA); when they reach
+is too (Moon et al. 2014, "Meet me where I'm gazing", HRI, 102 people). Neither gives a rate.
 """
 
 
@@ -160,6 +163,28 @@ P_IN_PLANE: Final = 0.5
 
 P_AT_LIMITS: Final = 0.2
 """Postures at the ends of the seed's ranges: its authors' corner cases of gaze and location."""
+
+
+FREE: Final = (
+    "PERSON",
+    "LONGEST",
+    "P_SENSORS",
+    "DELAY_S",
+    "LOSS",
+    "P_SLIPPERY",
+    "GREASY",
+    "P_PLANNER",
+    "PLAN_FAILURE",
+    "P_HIDDEN",
+    "HIDDEN",
+    "P_RAISED",
+    "RAISED_M",
+    "P_EARLY",
+    "EARLY_S",
+    "P_IN_PLANE",
+    "P_AT_LIMITS",
+)
+"""What no source gives: a count of disturbed tests says nothing of how often anything happens."""
 
 
 def disturbed(count: int, seed: int) -> tuple[AbstractTest, ...]:

@@ -1,8 +1,10 @@
 """Every free number of the simulation, in one place, with its reason.
 
 Units are SI (metres, seconds, kilograms, newtons, radians) unless a name says otherwise.
-`FITTED` names those that were chosen to meet a figure of the paper's Table 1; all others come
-from the paper, from the behaviour of its testbench, or from ordinary human and robot figures.
+`FITTED` names those that were chosen to meet a figure of the paper's Table 1, `FREE` those of the
+person that no study gives for a handover; all others come from the paper, from the behaviour of its
+testbench, or from ordinary robot figures. What a person does, and how often, is free as well:
+`handover.generator.disturbed.FREE`.
 The robot's own numbers stand with the robot, in `handover.robot.behaviour`.
 
 Axes: the scene is a vertical plane, x towards the human, z up, the table's top at z = 0. The
@@ -103,10 +105,12 @@ SIGHT_RESOLUTION_DIGITS: Final = 3
 
 # --- human ----------------------------------------------------------------------------------
 REACTION_S: Final = 0.2
-"""From a decision to the first motion: a fast human reaction."""
+"""From a decision to the first motion: a fast human reaction. Single people correct a motion of the
+hand after 0.087 to 0.441 s, on average 0.273 s (24 people; doi 10.1080/00140139.2014.933268)."""
 
 REACH_SPEED: Final = 1.5
-"""m/s at the fastest point of a motion of hand or head: 0.5 m take 0.65 s, a brisk reach."""
+"""m/s at the fastest point of a motion of hand or head: 0.5 m take 0.65 s, a brisk reach. To the
+ends of their reach people take up to 0.595 s (Li, Zhu and Adams 1995, Ergonomics 38(4))."""
 
 SHORTEST_REACH_S: Final = 0.4
 HAND_RADIUS: Final = 0.02
@@ -183,3 +187,21 @@ TIMEOUT_TIME_S: Final = (0, 100)
 """Whole seconds, uniform: the sensing timeout that the legacy robot is given (testbench)."""
 
 FITTED: Final = ("POLL_GROWTH_S", "LATCH_LINGER_S", "STARTUP_LOSS")
+
+FREE: Final = (
+    "REACTION_S",
+    "REACH_SPEED",
+    "SHORTEST_REACH_S",
+    "HAND_RADIUS",
+    "HAND_MASS",
+    "HAND_FORCE",
+    "HOLD_FORCE",
+    "GRASP_FORCE",
+    "GRASP_DEPTH",
+    "GRASP_SLIP",
+    "HAND_REST",
+    "HEAD_REST",
+    "HEAD_REST_ANGLE",
+    "HEAD_RADIUS",
+)
+"""Chosen within what people's bodies can do."""

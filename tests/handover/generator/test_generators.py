@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from pathlib import Path
 
+import pymunk
 import pytest
 
+from handover.driver import run_test
 from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
+from handover.generator import disturbed as generator
 from handover.generator.disturbed import PERSON, disturbed
 from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
+from handover.world import parameters as p
 from handover.world.faults import SceneFaults, SensorFaults
+from handover.world.film import outlines
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
@@ -88,6 +95,43 @@ def test_probabilities_of_the_person_add_up() -> None:
     for ways in PERSON.values():
         assert sum(weight for weight, _, _ in ways) == pytest.approx(1)
     assert {state for ways in PERSON.values() for _, _, state in ways} == {*PERSON, "leaves"}
+
+
+def test_numbers_of_the_person_have_a_source_or_are_called_free() -> None:
+    """Of a body each is in `FREE` or has the paper below it; of the rates all but two are there."""
+    text = Path(p.__file__).read_text("utf-8")
+    section = text.partition("# --- human")[2].partition("# --- sensing")[0]
+    line = r"([A-Z_]+): Final = .*\n"
+    of_the_paper = re.findall(rf'^{line}(?:{line})?"""[^"]*\(paper', section, re.MULTILINE)
+    sourced = {name for names in of_the_paper for name in names if name}
+    assert sourced | {*p.FREE} == {*re.findall(f"^{line}", section, re.MULTILINE)}
+    numbers = {name for name in vars(generator) if name.isupper()} - {"FREE"}
+    assert numbers - {*generator.FREE} == {"OK", "NOISE_M"}
+
+
+def test_a_forearm_behind_the_hand_is_out_of_reach() -> None:
+    """In the plane the gripper meets the hand first: no force on a forearm could be judged."""
+    elbow = pymunk.Vec2d(0.85, 0.15)
+    parts = {one.body: one.corners for one in outlines() if one.role == "gripper"}
+    tests = [one for one in disturbed(40, seed=1) if one.scene.hand_in_plane][:8]
+    from_hand, from_forearm = [], []
+    for test in tests:
+        scene = run_test(test, robot="correct", films=True).scene
+        assert scene is not None
+        for _, frame in scene.frames:
+            places = {body: frame[3 * at : 3 * at + 3] for at, body in enumerate(scene.bodies)}
+            hand = pymunk.Vec2d(*places["hand"][:2])
+            along = (elbow - hand).normalized()
+            bones = [hand + along * (0.06 + 0.025 * part) for part in range(9)]
+            for part, corners in parts.items():
+                body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+                body.position, body.angle = places[part][:2], places[part][2]
+                shape = pymunk.Poly(body, corners)
+                shape.cache_bb()
+                from_hand.append(shape.point_query(hand).distance - p.HAND_RADIUS)
+                from_forearm += [shape.point_query(bone).distance - 0.04 for bone in bones]
+    assert len(tests) == 8
+    assert min(from_hand) < 0.005 < min(from_forearm)
 
 
 @pytest.mark.parametrize("make", [pseudorandom, constrained, disturbed])
