@@ -30,7 +30,7 @@ from rvmon.logic.lower import lower
 from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample

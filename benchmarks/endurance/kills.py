@@ -37,8 +37,7 @@ from tests.tools.forked import Forked
 
 import handover.cli
 from rvmon import cli
-from rvmon.cache import read_kept
-from rvmon.writing import SUFFIX
+from rvmon.files import SUFFIX, read_kept
 
 PATIENCE_S = 2.0
 """Seconds that processes may take to end."""

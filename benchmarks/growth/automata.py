@@ -27,7 +27,7 @@ from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.testing.generate.formula import Shape, formula
 
 SHAPE = Shape(mixed=False, past=False)

@@ -15,9 +15,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from rvmon.coverage import Hit, Hits, Item, Subject, TestRecord, group_of, model_of
 from rvmon.coverage.database import Database
-from rvmon.coverage.model import Hit, Hits, Item, Subject, group_of, model_of
-from rvmon.coverage.record import TestRecord
 
 ROWS = 100
 """Of a recording."""

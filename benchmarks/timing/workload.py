@@ -19,7 +19,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 Column = Sequence[bool | float]
 

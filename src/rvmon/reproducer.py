@@ -19,10 +19,10 @@ import msgspec
 
 from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError
+from rvmon.files import beside
 from rvmon.spec.rules import Findings
 from rvmon.spec.syntax.imports import load_files
 from rvmon.texts import cannot_read, text_of_file
-from rvmon.writing import beside
 
 FORMAT = 1
 """Version of the description; what a later one says is not guessed."""

@@ -17,7 +17,7 @@ from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Plans
-    from rvmon.coverage.model import Hits
+    from rvmon.coverage import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
@@ -82,7 +82,7 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.binding.load import reading_schema
+        from rvmon.binding import reading_schema
 
         other = copy(self)
         other.schema = reading_schema(self.checked, self.schema, **options)

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import rvmon
-from rvmon.cache import cache_folder, keep, read_kept
+from rvmon.files import cache_folder, keep, read_kept
 
 
 @pytest.fixture(autouse=True)

@@ -44,7 +44,7 @@ from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.texts import shown, shown_json, shown_line
 from rvmon.timed.language.load import loads_network
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report, report_of
 

@@ -6,7 +6,7 @@ import stat
 
 import pytest
 
-from rvmon.writing import write_whole
+from rvmon.files import write_whole
 
 
 def test_a_file_that_cannot_be_finished_stays_as_it_was(tmp_path, monkeypatch):

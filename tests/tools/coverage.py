@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
-from rvmon.coverage.model import combination
+from rvmon.coverage import combination
 from rvmon.coverage.monitor import SpecCoverage
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross

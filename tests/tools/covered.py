@@ -5,19 +5,20 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable
 
-from rvmon.coverage.database import Database
-from rvmon.coverage.model import (
+from rvmon.coverage import (
+    Ending,
     Group,
     Hit,
     Hits,
     Item,
     Model,
     Subject,
+    TestRecord,
     combination,
     group_of,
     model_of,
 )
-from rvmon.coverage.record import Ending, TestRecord
+from rvmon.coverage.database import Database
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict import Verdict
 

@@ -18,8 +18,7 @@ from rvmon.readers import line_chunks, parquet
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate import Rng, chance
 from rvmon.testing.generate.trace import Case
-from rvmon.trace.health import HealthKind
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import HealthKind, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.report import Report
 

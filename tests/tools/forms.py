@@ -16,8 +16,7 @@ from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.trace import Case
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

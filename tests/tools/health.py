@@ -12,8 +12,7 @@ from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import heard
 from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.word import Word
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import Health, HealthKind, Value
 from tests.tools.law import names_read
 
 

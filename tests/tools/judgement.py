@@ -11,7 +11,7 @@ from rvmon.testing.law.decisions import Followed, Followings
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Truth
 from rvmon.testing.oracle import judge_views, report_on
-from rvmon.trace.health import Health
+from rvmon.trace.sample import Health
 from rvmon.verdict.report import Report
 from tests.tools.compare import Key, Outcome, outcomes
 from tests.tools.health import expected_health, may_be_simplified

@@ -182,7 +182,7 @@ def unrolled(formula: Formula) -> Formula:
     """The same formula without bounds, where every tick is a position: windows as nests of `X`.
 
     >>> from tests.tools.build import eventually, p
-    >>> from rvmon.spec.print.printer import format_formula
+    >>> from rvmon.spec.print import format_formula
     >>> format_formula(unrolled(eventually(p, 1, 2)))
     'next (p or next p)'
     """

@@ -18,7 +18,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print.printer import format_formula, format_numeric
+from rvmon.spec.print import format_formula, format_numeric
 from rvmon.testing.law.attempts import Start
 from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.truths import Truths

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import Mode
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.testing.law.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.law.syntax import intervals, subformulas
 from rvmon.testing.law.word import Rest, Truth

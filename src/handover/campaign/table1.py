@@ -17,9 +17,9 @@ import msgspec
 from rvmon.cdv import tables
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
+from rvmon.files import write_whole
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.verdict import Verdict
-from rvmon.writing import write_whole
 
 SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"
 

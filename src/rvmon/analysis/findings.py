@@ -14,7 +14,7 @@ from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.spec.checked.classify import FUTURE, subformulas
 from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
-from rvmon.spec.print.printer import format_duration
+from rvmon.spec.print import format_duration
 from rvmon.spec.rules import Rule, finding
 
 

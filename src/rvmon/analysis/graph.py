@@ -15,7 +15,7 @@ from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
-from rvmon.spec.print.printer import format_duration, format_formula
+from rvmon.spec.print import format_duration, format_formula
 from rvmon.texts import shown
 
 Cube = tuple[int, ...]

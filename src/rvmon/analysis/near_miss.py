@@ -18,7 +18,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_instant
 

@@ -29,7 +29,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 

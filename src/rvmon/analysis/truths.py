@@ -16,7 +16,7 @@ from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
 from rvmon.trace.schema import is_unknown
 from rvmon.verdict.attempt import Attempt

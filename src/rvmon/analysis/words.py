@@ -35,7 +35,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.formula import Literal as NumericLiteral
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
-from rvmon.spec.print.printer import format_duration, format_numeric
+from rvmon.spec.print import format_duration, format_numeric
 
 _PROBED = {
     Probe.KNOWN: ("is known", "is not known"),

@@ -13,7 +13,7 @@ from rvmon.cdv.system import System
 from rvmon.cdv.tables import Presentation
 from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
-from rvmon.coverage.model import Model, Subject
+from rvmon.coverage import Model, Subject
 from rvmon.errors import UnknownNameError
 from rvmon.session import load
 from rvmon.texts import did_you_mean

@@ -13,7 +13,7 @@ from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.summary import CampaignSummary, differences
 from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.report.pages import render, table_html
 from rvmon.report.table import VerdictTable
 from rvmon.verdict import Verdict

@@ -19,7 +19,7 @@ import rvmon
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.code import Code
 from rvmon.cdv.system import Run
-from rvmon.coverage.model import (
+from rvmon.coverage import (
     PAIRS,
     STATES,
     TRANSITIONS,

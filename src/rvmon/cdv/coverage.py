@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 from rvmon.cdv.campaign import unreachable_items
 from rvmon.cdv.code_coverage import cobertura, lcov, measured_groups
 from rvmon.cdv.plan import accepted_failures
+from rvmon.coverage import Group, Item, Model, TestRecord, merged, model_of, share, without
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.model import Group, Item, Model, merged, model_of, share, without
-from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
+from rvmon.files import write_whole
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 from rvmon.spec.checked.goals import BinKind
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign, Robot

@@ -12,7 +12,7 @@ from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.plan import Played, Results, accepted_failures, is_about
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.summary import differences, missed
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
 from rvmon.session import load

@@ -23,10 +23,10 @@ from rvmon.cdv.tables import (
     to_json,
 )
 from rvmon.cdv.test import save
+from rvmon.files import write_whole
 from rvmon.report.percent import percent_text
 from rvmon.report.table import table_latex, table_text, tables_csv
 from rvmon.verdict import Verdict
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -23,13 +23,13 @@ from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
+from rvmon.files import write_whole
 from rvmon.report.markup import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
-from rvmon.writing import write_whole
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
 from rvmon.cdv.test import Test, TestError, blamed, from_json, load, to_json
-from rvmon.coverage.model import Group, Hits
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending, Group, Hits
 from rvmon.errors import UnknownNameError
 from rvmon.verdict import Verdict
 

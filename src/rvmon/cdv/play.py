@@ -19,8 +19,7 @@ from rvmon.cdv.plan import Job, Outcome, Plan, Played, Results
 from rvmon.cdv.resume import Unfinished
 from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
 from rvmon.cdv.test import TestError, blamed
-from rvmon.coverage.model import Hits
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending, Hits
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.session import load

@@ -17,11 +17,11 @@ from msgspec import structs
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.plan import Job, Outcome
 from rvmon.cdv.test import Test, TestError, VerdictName, from_json, save, to_json
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.execute import parallel
+from rvmon.files import write_whole
 from rvmon.verdict import Verdict
-from rvmon.writing import write_whole
 
 MOST = 2_000
 """Tests that are played at most, to shrink one."""

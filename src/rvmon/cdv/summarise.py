@@ -22,8 +22,7 @@ from rvmon.cdv.summary import (
     StrategySummary,
     missed,
 )
-from rvmon.coverage.model import STATES, TRANSITIONS, Group
-from rvmon.coverage.record import Ending
+from rvmon.coverage import STATES, TRANSITIONS, Ending, Group
 from rvmon.report.table import Counts
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import RunShare

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.test import Test
-from rvmon.coverage.model import Hits
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending, Hits
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
 from rvmon.verdict import Verdict
@@ -123,7 +122,7 @@ def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) ->
 def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
     """What a test is made to reach and did not, each in a sentence; nothing if none was measured.
 
-    >>> from rvmon.coverage.model import Hit
+    >>> from rvmon.coverage import Hit
     >>> missed({"gaze": ["no"]}, {"gaze": {"yes": Hit(1)}})
     ['gaze: no is not reached']
     """

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from rvmon.cdv.test import Test
-from rvmon.coverage.model import Hit, Hits, illegal
+from rvmon.coverage import Hit, Hits, illegal
 from rvmon.report.scene import Scene
 from rvmon.trace.sample import Value
 from rvmon.verdict.covered import IllegalHit

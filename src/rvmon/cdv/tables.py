@@ -14,7 +14,7 @@ from rvmon.cdv.sequential_test import ALPHA, BETA, Decision, errors_text
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, StrategySummary
 from rvmon.cdv.test import Test
 from rvmon.confidence import CONFIDENCE, interval
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.report.pages import component
 from rvmon.report.percent import percent_text
 from rvmon.report.table import Counts, RunGroup, VerdictTable

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 import msgspec
 
 from rvmon.cdv.test import TestError
-from rvmon.writing import write_whole
+from rvmon.files import write_whole
 
 if TYPE_CHECKING:
     from rvmon.timed.model.network import Edge as NetworkEdge

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 import msgspec
 
 from rvmon.errors import RvmonError
-from rvmon.writing import write_whole
+from rvmon.files import write_whole
 
 VerdictName = Literal["P", "F", "NT", "I"]
 

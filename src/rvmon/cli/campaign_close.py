@@ -22,9 +22,9 @@ from rvmon.cdv.plan import Plan, Results
 from rvmon.cdv.tables import to_json
 from rvmon.cli.campaign_run import specs_of, written
 from rvmon.cli.output import bar, say, say_json, warn
+from rvmon.files import write_whole
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
-from rvmon.writing import write_whole
 
 
 def conduct_closing(

@@ -15,7 +15,7 @@ from rvmon.cdv.resume import sources_of
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import to_json as document_json
 from rvmon.cdv.test import from_json, to_json
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import RvmonError
 from rvmon.evidence.keep import (
     COVERAGE,

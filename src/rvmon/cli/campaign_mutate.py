@@ -16,8 +16,8 @@ from rvmon.cdv.tables import to_json
 from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.files import write_whole
 from rvmon.report.folder import made
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cdv.mutation.output import MutationReport

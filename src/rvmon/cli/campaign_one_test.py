@@ -17,15 +17,15 @@ from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, 
 from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
 from rvmon.cli.output import busy, say_json, warn
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
+from rvmon.files import write_whole
 from rvmon.report.folder import made, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
 from rvmon.session import Spec, load
 from rvmon.verdict import Verdict
-from rvmon.writing import write_whole
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:

@@ -121,7 +121,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
     Raises:
         RvmonError: it does not fit the specification.
     """
-    from rvmon.binding.load import load_binding
+    from rvmon.binding import load_binding
 
     bounds = load_binding(path, checked).bounds
     free = [name for name in (*checked.signals, *checked.events) if name not in bounds]

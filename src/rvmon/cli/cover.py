@@ -15,8 +15,7 @@ from rvmon.report.folder import write_file
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rvmon.coverage.model import Group
-    from rvmon.coverage.record import Coverage
+    from rvmon.coverage import Coverage, Group
     from rvmon.report.coverage_summary import Summary
 
 

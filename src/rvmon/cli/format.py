@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from rvmon.cli.output import say, warn
-from rvmon.writing import write_whole
+from rvmon.files import write_whole
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -12,8 +12,8 @@ from rvmon.cli.options import add_const, constants_of
 from rvmon.cli.output import busy, say, warn
 from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
+from rvmon.files import write_whole
 from rvmon.report.percent import counted
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.starter.column import Profile

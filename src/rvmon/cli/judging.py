@@ -27,7 +27,7 @@ from rvmon.verdict.covered import IllegalHit
 if TYPE_CHECKING:
     import argparse
 
-    from rvmon.coverage.model import Hits
+    from rvmon.coverage import Hits
     from rvmon.coverage.monitor import CoverageMonitor
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -133,7 +133,7 @@ class RecordingCoverage:
         """The report with what was found, when all samples went by."""
         if not self._is_asked:
             return report
-        from rvmon.coverage.model import covered_groups, illegal
+        from rvmon.coverage import covered_groups, illegal
 
         if self._coverage is not None:
             found = self._coverage.finish_ns(self._end)

@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 
 from rvmon.cli.judging import Judged, Options
-from rvmon.coverage.model import Hit
+from rvmon.coverage import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.readers.messages.forms import form_of_folder

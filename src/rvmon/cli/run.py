@@ -28,7 +28,7 @@ from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacke
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 
@@ -262,7 +262,7 @@ def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
 def _shards(arguments: argparse.Namespace) -> list[Path]:
     """The files that keep what shards have judged, where they are to be joined."""
     from rvmon.cli.resume import path_of
-    from rvmon.execute.shard import shards_beside
+    from rvmon.execute.journal import shards_beside
 
     if not arguments.resume or arguments.shard is not None:
         return []

@@ -116,8 +116,8 @@ def write_files(
 def _record_coverage(
     path: Path, spec: Spec, judged: Sequence[Judged], known: KnownFailures
 ) -> None:
+    from rvmon.coverage import TestRecord
     from rvmon.coverage.database import Database
-    from rvmon.coverage.record import TestRecord
 
     with Database.open(path) as database:
         database.declare(spec.coverage_model.model)

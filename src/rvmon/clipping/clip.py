@@ -8,6 +8,7 @@ from typing import Any
 
 from rvmon.clipping.piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.errors import RvmonError, TraceError
+from rvmon.files import beside
 from rvmon.readers.csv_rows import Layout
 from rvmon.readers.messages.forms import FORMATS, MESSAGE_FORMATS
 from rvmon.readers.parquet import (
@@ -22,7 +23,6 @@ from rvmon.readers.tables import arrow_cells
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 from rvmon.trace.time import format_stamp
-from rvmon.writing import beside
 
 
 def refuse_place(path: str, out: str | None) -> None:
@@ -93,7 +93,7 @@ def _written(path: str, piece: Piece, out: Path) -> Copied:
         return clip_messages(path, form, piece, out)
     if form == "parquet":
         return clip_parquet(local_path(path), piece, out)
-    from rvmon.clipping.text import clip_text
+    from rvmon.clipping.piece import clip_text
 
     return clip_text(path, piece, out, is_csv=form == "csv")
 

@@ -7,8 +7,7 @@ from functools import cache
 from typing import assert_never
 
 from rvmon.core.automata import Automata
-from rvmon.core.forms import add_form
-from rvmon.core.measures import add_margin
+from rvmon.core.forms import add_form, add_margin
 from rvmon.core.sections import Section, Sections
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.chain import Chain, chain_of

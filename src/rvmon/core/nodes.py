@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum, auto
 
 from rvmon.core.atoms import Atoms, Names
-from rvmon.core.measures import is_followed
+from rvmon.core.forms import is_followed
 from rvmon.logic.formula import Literal, literals
 from rvmon.logic.network_plan import plan_of
 from rvmon.logic.plan import Plan, PlannedRule

@@ -1,7 +1,7 @@
 """Databases of coverage: what is to be covered, the tests of campaigns, and what each hit.
 
->>> from rvmon.coverage.model import Hit
->>> from rvmon.coverage.model import Item, Subject, group_of, model_of
+>>> from rvmon.coverage import Hit
+>>> from rvmon.coverage import Item, Subject, group_of, model_of
 >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no", goal=3)])
 >>> with Database.in_memory() as database:
 ...     database.declare(model_of([gaze]))
@@ -21,8 +21,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.model import Hits, Model
-from rvmon.coverage.record import Coverage, TestRecord
+from rvmon.coverage import Coverage, Hits, Model, TestRecord
 from rvmon.coverage.schema import connect, damaged, name_of, readable_errors, transaction
 from rvmon.coverage.stored_model import (
     Stored,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from rvmon.coverage.model import PAIRS, STATES, TRANSITIONS, Group, Hits, Model, Subject, count_of
+from rvmon.coverage import PAIRS, STATES, TRANSITIONS, Group, Hits, Model, Subject, count_of
 from rvmon.coverage.requirements import AT, JUST_BEFORE, PASSED, TRIGGERED, locations_of
 
 Goal = tuple[str, str]
@@ -134,8 +134,8 @@ def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
         hits: of all tests together.
         nearest: the test that came nearest to it.
 
-    >>> from rvmon.coverage.model import Item, group_of, model_of
-    >>> from rvmon.coverage.model import Hit
+    >>> from rvmon.coverage import Item, group_of, model_of
+    >>> from rvmon.coverage import Hit
     >>> ways = group_of("transitions", Subject.TRANSITIONS, [Item("up → down")])
     >>> states = group_of("states", Subject.STATES, [Item("up"), Item("down")])
     >>> hits = {"states": {"up": Hit(3)}}

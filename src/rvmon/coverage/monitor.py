@@ -13,7 +13,7 @@ from typing import Any
 
 from rvmon import native
 from rvmon.core.plan import pack
-from rvmon.coverage.model import Group, Hit, Hits, Item, Model, Subject, combination, model_of
+from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
 from rvmon.logic.formula import Factory
@@ -31,7 +31,7 @@ from rvmon.spec.checked.classify import is_pulse
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdict.report import Report, report_of

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.model import Score, weighted
-from rvmon.coverage.record import UNKNOWN, Coverage, TestRecord
+from rvmon.coverage import UNKNOWN, Coverage, Score, TestRecord, weighted
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict import Verdict
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rvmon.coverage import Coverage
 from rvmon.coverage.questions import Answers, Step
-from rvmon.coverage.record import Coverage
 
 MOST_NODES = 20_000
 """Partial choices that are looked at, about a second's worth."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from rvmon import native
 from rvmon.analysis.graph import Graph, graph_of
-from rvmon.coverage.model import Group, Hit, Item, Subject, group_of
+from rvmon.coverage import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec

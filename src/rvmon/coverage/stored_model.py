@@ -9,7 +9,7 @@ from pathlib import Path
 
 import msgspec
 
-from rvmon.coverage.model import Group, Item, Model, Subject
+from rvmon.coverage import Group, Item, Model, Subject
 from rvmon.coverage.schema import damaged, name_of
 from rvmon.errors import CoverageError
 from rvmon.spec.checked.goals import BinKind

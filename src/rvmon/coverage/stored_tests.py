@@ -15,8 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.model import Hits
-from rvmon.coverage.record import UNKNOWN, Ending, Entry, Row, TestRecord
+from rvmon.coverage import UNKNOWN, Ending, Entry, Hits, Row, TestRecord
 from rvmon.coverage.schema import damaged
 from rvmon.errors import CoverageError
 from rvmon.verdict import Verdict

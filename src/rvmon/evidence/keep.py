@@ -19,10 +19,10 @@ from typing import Literal, NamedTuple
 import msgspec
 
 import rvmon
-from rvmon.cache import file_stamps
-from rvmon.coverage.model import Hits, Model, count_of, merged, share
+from rvmon.coverage import Hits, Model, count_of, merged, share
 from rvmon.errors import RvmonError
 from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
+from rvmon.files import file_stamps, write_whole
 from rvmon.reproducer import (
     definition_files,
     expect_definitions_inside,
@@ -34,7 +34,6 @@ from rvmon.session import Spec
 from rvmon.verdict import LAW
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.table_file import csv_bytes
-from rvmon.writing import write_whole
 
 SUMS = "SHA256SUMS"
 """The entry with a line for each of the others, as `sha256sum --check` reads it."""

@@ -21,10 +21,10 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from rvmon.cache import contents
 from rvmon.errors import RvmonError, WorkerLostError, not_installed
 from rvmon.execute import Ended
 from rvmon.execute.worker import answer, packed_error
+from rvmon.files import contents
 
 CONNECT_S = 10
 """Seconds in which a scheduler has to answer."""

@@ -26,6 +26,7 @@ from rvmon.export.foxglove_layout import (
     seconds_and_rest,
     topic_of,
 )
+from rvmon.files import beside, write_whole
 from rvmon.report.scene import Scene
 from rvmon.report.tracks import concerned_names
 from rvmon.spec.checked.specification import CheckedSpec
@@ -34,7 +35,6 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-from rvmon.writing import beside, write_whole
 
 _LEVELS = {Verdict.PASS: 2, Verdict.INCONCLUSIVE: 3, Verdict.FAIL: 4}
 """As of `foxglove.Log`: information, warning, error."""

@@ -13,7 +13,7 @@ from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
 from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Timers, Told, Values, Waiting
 from rvmon.spec.checked.names_read import sources_asked
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict import Verdict
 

@@ -12,7 +12,7 @@ import msgspec
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.live.waiting import Dropped, Gap, Told, Values
 from rvmon.spec.checked.names_read import requirements_asked
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report_json import seconds

@@ -37,7 +37,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
 )
 from rvmon.spec.checked.specification import ForEach
-from rvmon.spec.print.printer import format_formula, format_numeric
+from rvmon.spec.print import format_formula, format_numeric
 
 
 def names_of(leaf: Leaf) -> frozenset[str]:

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cache import cache_folder, file_stamps, keep, read_kept
+from rvmon.files import cache_folder, file_stamps, keep, read_kept
 from rvmon.spec.checked.plain_data import told_apart
 from rvmon.spec.checked.specification import CheckedSpec
 

@@ -11,9 +11,8 @@ from rvmon.logic.formula import Core, horizon
 from rvmon.logic.state_formula import TRUE, UNKNOWN
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.spec.checked.specification import EndPolicy
-from rvmon.spec.print.printer import format_duration
-from rvmon.trace.health import HealthKind
-from rvmon.trace.sample import Scalar
+from rvmon.spec.print import format_duration
+from rvmon.trace.sample import HealthKind, Scalar
 from rvmon.trace.time import format_instant, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame, Decision

@@ -12,8 +12,7 @@ from rvmon.monitor.health import Losses, of_intake
 from rvmon.monitor.intake import Intake, Turn, Validator, refuse_earlier
 from rvmon.monitor.planned import PlannedCore
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.health import Health
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Health, Sample, Value
 from rvmon.trace.time import ticks_of_seconds
 
 

@@ -13,8 +13,7 @@ from rvmon.monitor.intake import MOST_HELD, Intake, Turn
 from rvmon.monitor.planned import PlannedCore
 from rvmon.spec.checked.names_read import sources_asked
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Value, payloads_of
+from rvmon.trace.sample import Health, HealthKind, Value, payloads_of
 from rvmon.trace.time import TIME_LIMIT, format_instant, whole_ticks
 
 if TYPE_CHECKING:

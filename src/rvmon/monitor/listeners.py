@@ -8,7 +8,7 @@ from typing import ParamSpec, TypeVar
 
 from rvmon import native
 from rvmon.errors import OverlapError, RvmonError
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt

@@ -29,7 +29,7 @@ from rvmon.monitor.explanation import (
     still_required,
     unborn,
 )
-from rvmon.monitor.network.network import Network, settled
+from rvmon.monitor.network import Network, settled
 from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
 from rvmon.monitor.obligation_words import Words, all_of

@@ -30,7 +30,7 @@ from rvmon.monitor.explanation import (
 )
 from rvmon.monitor.network_reasons import explained_by_network
 from rvmon.monitor.replayed import Letters, at_decision, at_moment
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision
 

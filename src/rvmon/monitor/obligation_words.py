@@ -22,7 +22,7 @@ from rvmon.monitor.cause import (
 )
 from rvmon.spec.checked.classify import has_future, is_pulse
 from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Blame
 

@@ -9,7 +9,7 @@ from struct import Struct
 from rvmon.logic.formula import Constant, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.monitor.network.network import Network, Noted
+from rvmon.monitor.network import Network, Noted
 from rvmon.monitor.network_reasons import NetworkRuns
 
 _IN_WORD = 32

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import Health, HealthKind, Value
 from rvmon.trace.schema import is_unknown
 
 if TYPE_CHECKING:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Payload, Sample, Value
+from rvmon.trace.sample import Health, HealthKind, Payload, Sample, Value
 
 
 class Conflicts:

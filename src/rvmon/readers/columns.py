@@ -13,8 +13,7 @@ from rvmon.readers.naming import stamps_among
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.readers.tables import cells_of, is_of_dates, is_of_durations, nanoseconds_of
 from rvmon.readers.values import plain
-from rvmon.trace.health import Health
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Health, Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 

@@ -14,8 +14,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.places import name_of, named_errors
 from rvmon.readers.rows import Row, Rows
-from rvmon.trace.health import Health
-from rvmon.trace.sample import Outage, Recording, Sample
+from rvmon.trace.sample import Health, Outage, Recording, Sample
 from rvmon.trace.schema import BY_NAME, Schema
 
 if TYPE_CHECKING:

@@ -31,8 +31,7 @@ from rvmon.readers.messages.forms import (
 from rvmon.readers.places import JOINT, endings_of, is_address, local_path, named_errors, opened
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.texts import cannot_read
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Outage, Sample
+from rvmon.trace.sample import Health, HealthKind, Outage, Sample
 from rvmon.trace.schema import BY_NAME, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 

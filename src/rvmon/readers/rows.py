@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.alternation import Alternations
 from rvmon.readers.coalesce import Conflicts, merged, updates_in
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
-from rvmon.coverage.model import Group, Item, combination
+from rvmon.coverage import Group, Item, TestRecord, combination
 from rvmon.coverage.questions import Step
-from rvmon.coverage.record import TestRecord
 from rvmon.report.coverage_summary import LISTED, Summary, cell_text, is_grid, strategy_name
 from rvmon.report.markup import Child, e
 from rvmon.report.pages import render, table_html

@@ -9,11 +9,10 @@ from math import prod
 
 import numpy as np
 
+from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, TestRecord
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
-from rvmon.coverage.model import Group, Hit, Hits, Item
 from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
-from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import counted
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
@@ -251,7 +250,7 @@ def not_fine(record: TestRecord) -> str:
 def is_grid(group: Group) -> bool:
     """Whether a group is shown along its axes: a cross of the size that a specification may have.
 
-    >>> from rvmon.coverage.model import Subject
+    >>> from rvmon.coverage import Subject
     >>> is_grid(Group("g", Subject.CROSS, {}, axes={"x": ["a", "b"], "y": ["c"]}))
     True
     >>> is_grid(Group("g", Subject.CROSS, {}, axes=dict.fromkeys("vwxyz", ["a"] * 100)))

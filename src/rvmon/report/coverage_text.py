@@ -7,9 +7,8 @@ from dataclasses import asdict
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from rvmon.coverage.model import Group, combination
+from rvmon.coverage import UNKNOWN, Group, combination
 from rvmon.coverage.questions import Comparison
-from rvmon.coverage.record import UNKNOWN
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped

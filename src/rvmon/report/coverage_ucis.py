@@ -9,9 +9,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
+from rvmon.coverage import Group, Item, Subject, TestRecord
 from rvmon.coverage.holes import cross_parts
-from rvmon.coverage.model import Group, Item, Subject
-from rvmon.coverage.record import TestRecord
 from rvmon.report.coverage_summary import Summary, not_fine
 from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import shown

@@ -15,7 +15,7 @@ from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
-from rvmon.spec.print.printer import format_duration
+from rvmon.spec.print import format_duration
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt

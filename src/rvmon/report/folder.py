@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rvmon.errors import RvmonError
-from rvmon.writing import write_whole
+from rvmon.files import write_whole
 
 
 def made(folder: str | Path) -> Path:

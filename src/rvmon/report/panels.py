@@ -19,8 +19,7 @@ from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Track, TrackKind, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.health import HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import HealthKind, Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

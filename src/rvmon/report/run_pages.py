@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from rvmon.files import write_whole
 from rvmon.report.folder import made
 from rvmon.report.pages import render
 from rvmon.report.panels import JudgedRun, RunPage
@@ -20,7 +21,6 @@ from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
-from rvmon.writing import write_whole
 
 _BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"

@@ -11,7 +11,7 @@ from rvmon.report.percent import counted
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import forecast_sentence, full_reason, instants_of, without_attempts
 from rvmon.spec.checked.goals import BinKind
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, LazyAttempts

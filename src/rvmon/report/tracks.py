@@ -15,8 +15,7 @@ from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Scalar
+from rvmon.trace.sample import Health, HealthKind, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Blame
 

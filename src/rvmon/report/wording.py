@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.spec.print.printer import format_duration
+from rvmon.spec.print import format_duration
 from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span, render_full
 from rvmon.errors import SpecError
-from rvmon.spec.check.specification import check
+from rvmon.spec.check import check
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.names import overridden, resolve, unused_names
 from rvmon.spec.rules import MOST, Enough, Findings

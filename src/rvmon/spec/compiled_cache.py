@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cache import cache_folder, file_stamps, keep, read_kept
+from rvmon.files import cache_folder, file_stamps, keep, read_kept
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
 

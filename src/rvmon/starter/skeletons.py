@@ -11,8 +11,8 @@ from itertools import islice
 from pathlib import Path
 
 from rvmon.spec.checked.formula import Literal, SignalAtom
+from rvmon.spec.print import format_duration, format_formula, format_numeric
 from rvmon.spec.print.formatter import format_text
-from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.starter.column import Column, Profile
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND

@@ -14,10 +14,9 @@ from rvmon.errors import TraceError
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.law.attempts import Start, obligation
 from rvmon.testing.law.decisions import Followed, Followings, follow
-from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.syntax import is_upon_end
-from rvmon.testing.law.word import Rest, Truth, Word
+from rvmon.testing.law.word import Outage, Rest, Truth, Word
 from rvmon.trace.sample import Sample, Trace, Value
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from rvmon.trace.health import Health
+from rvmon.trace.sample import Health
 from rvmon.verdict import LAW, Verdict, fold
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredGroup, IllegalHit

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import msgspec
 
 from rvmon.errors import TraceError
-from rvmon.trace.health import Health
+from rvmon.trace.sample import Health
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt

@@ -12,10 +12,10 @@ from typing import Any, NoReturn
 import msgspec
 
 from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.files import write_whole
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 from rvmon.verdict.rows import VerdictRow, arrow_table, broken_rows, column_types
-from rvmon.writing import write_whole
 
 TABLE = "verdicts"
 """The table in a database; beside it `about` says what judged."""

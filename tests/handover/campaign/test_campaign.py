@@ -17,7 +17,7 @@ from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.session import load
 from rvmon.verdict import Verdict
 

@@ -9,7 +9,7 @@ from handover.driver import run_test
 from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
 from rvmon.cdv.code_coverage import Meter, code_groups, statements_name
-from rvmon.coverage.model import merged, score
+from rvmon.coverage import merged, score
 
 TESTS = {test.name: test for test in directed()}
 GROUPS = {group.name: group for group in code_groups(robot_code())}

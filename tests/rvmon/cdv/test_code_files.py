@@ -6,7 +6,7 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.code_coverage import cobertura, code_groups, lcov
-from rvmon.coverage.model import Hit, model_of, without
+from rvmon.coverage import Hit, model_of, without
 
 HITS = {
     "statements of Toy.climb": {"4": Hit(3), "6": Hit(2)},

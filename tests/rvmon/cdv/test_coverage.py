@@ -10,8 +10,8 @@ from rvmon.cdv import Campaign, ExpectedFailure, Robot, Run, Test
 from rvmon.cdv.coverage import coverage_model, write_coverage
 from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
+from rvmon.coverage import count_of, merged
 from rvmon.coverage.database import read
-from rvmon.coverage.model import count_of, merged
 from rvmon.errors import RvmonError
 from rvmon.session import load
 

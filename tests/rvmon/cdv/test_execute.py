@@ -10,7 +10,7 @@ from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import RvmonError
 from rvmon.session import load
 

@@ -13,7 +13,7 @@ from rvmon.cdv.plan import Job, Outcome
 from rvmon.cdv.shrink import Failure, failure_of, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import TestError, load, save, to_json
 from rvmon.cli.campaign import main
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.verdict import Verdict
 

@@ -8,9 +8,8 @@ from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import STEERING, hostile_names
 
 from rvmon.cli import main
+from rvmon.coverage import Group, Item, Subject, TestRecord, combination, group_of, model_of
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
-from rvmon.coverage.record import TestRecord
 from rvmon.verdict import Verdict
 
 

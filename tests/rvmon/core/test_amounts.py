@@ -8,7 +8,7 @@ import rvmon
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
-from rvmon.testing.law.outage import Outage
+from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 
 

@@ -11,7 +11,7 @@ from tests.tools.law import judge
 
 import rvmon
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.outage import Outage
+from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"

@@ -27,8 +27,7 @@ from tests.rvmon.core.plan_reader import (
 import rvmon
 from rvmon.core import amalgamate, sections
 from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, AtomOp, Code
-from rvmon.core.forms import Operator
-from rvmon.core.measures import Measure
+from rvmon.core.forms import Measure, Operator
 from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import pack
 from rvmon.core.sections import RECORDS, Packed, Section, hash_of

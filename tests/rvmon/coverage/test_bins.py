@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.coverage.model import illegal
+from rvmon.coverage import illegal
 
 SIGNALS = """signal p, q : bool
 signal x : real

@@ -7,8 +7,8 @@ import sqlite3
 import pytest
 from tests.tools.covered import fill
 
+from rvmon.coverage import TestRecord
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.record import TestRecord
 from rvmon.errors import CoverageError
 
 

@@ -6,11 +6,9 @@ import pytest
 from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import hostile_names
 
-from rvmon.coverage import schema
+from rvmon.coverage import Ending, Group, Hit, Item, Subject, TestRecord, group_of, model_of, schema
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.model import Group, Hit, Item, Subject, group_of, model_of
 from rvmon.coverage.questions import Answers
-from rvmon.coverage.record import Ending, TestRecord
 from rvmon.errors import CoverageError
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict import Verdict

@@ -3,8 +3,8 @@
 import pytest
 
 from rvmon import loads
+from rvmon.coverage import merged
 from rvmon.coverage.holes import hole_of, nearest_tests
-from rvmon.coverage.model import merged
 
 SPEC = """
 signal level : real

@@ -2,8 +2,8 @@
 
 import pytest
 
+from rvmon.coverage import Group, Hit, Item, Subject, group_of, model_of
 from rvmon.coverage.holes import nearness
-from rvmon.coverage.model import Group, Hit, Item, Subject, group_of, model_of
 
 HIT = Hit(1)
 

@@ -6,12 +6,11 @@ from itertools import permutations
 import pytest
 from tests.tools.covered import door_model, fill, hits_of, merged, random_database
 
-from rvmon.coverage import model as by_run
+from rvmon import coverage as by_run
+from rvmon.coverage import Hit, TestRecord
 from rvmon.coverage.database import Database
-from rvmon.coverage.model import Hit
 from rvmon.coverage.questions import Answers, VerdictChange, compare, only
 from rvmon.coverage.ranking import ranking
-from rvmon.coverage.record import TestRecord
 from rvmon.verdict import Verdict
 
 

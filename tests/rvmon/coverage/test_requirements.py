@@ -3,7 +3,7 @@
 import random
 
 from rvmon import loads
-from rvmon.coverage.model import score
+from rvmon.coverage import score
 from rvmon.spec.checked.goals import BinKind
 
 ANSWER = """signal a, b, c : bool

@@ -8,15 +8,14 @@ import sys
 import pytest
 from tests.tools.covered import door_model, hits_of
 
-from rvmon.coverage import schema
+from rvmon.coverage import TestRecord, schema
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.record import TestRecord
 from rvmon.errors import CoverageError
 
 WRITER = """
 import itertools, sys
 from rvmon.coverage.database import Database
-from rvmon.coverage.record import TestRecord
+from rvmon.coverage import TestRecord
 from tests.tools.covered import door_model, hits_of
 
 path, name, count = sys.argv[1], sys.argv[2], int(sys.argv[3])

@@ -16,7 +16,7 @@ from rvmon.errors import RvmonError
 from rvmon.export.hoa import hoa
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 pytestmark = pytest.mark.law
 

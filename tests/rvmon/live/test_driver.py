@@ -7,7 +7,7 @@ import pytest
 from rvmon import RvmonError, TraceError, Verdict, loads
 from rvmon.errors import UnknownNameError
 from rvmon.live import Driver, SimulatedClock
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 
 S = 1_000_000_000
 DOOR = """

@@ -7,7 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TraceError
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 
 SPEC = """spec lidar
 time {time}

@@ -4,7 +4,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TimeOrderError
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 
 SPEC = """spec s
 time held

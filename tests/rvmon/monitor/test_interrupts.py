@@ -11,7 +11,7 @@ import rvmon
 from rvmon.monitor.monitor import Monitor
 from rvmon.report.junit import junit_xml
 from rvmon.report.run_text import health_lines
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 

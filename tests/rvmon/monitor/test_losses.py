@@ -12,10 +12,9 @@ from rvmon.monitor import build_monitor, compile_spec
 from rvmon.monitor.monitor import restore
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
-from rvmon.testing.law.outage import Outage
+from rvmon.testing.law.word import Outage
 from rvmon.testing.oracle import evaluate
-from rvmon.trace.health import HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import HealthKind, Sample
 
 SPEC = """spec s
 {more}

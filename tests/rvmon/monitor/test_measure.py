@@ -31,7 +31,7 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.trace.schema import Kind
 
 PAIRS = 40

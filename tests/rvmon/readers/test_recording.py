@@ -5,7 +5,7 @@ import pytest
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.recording import FileRecording
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 from rvmon.trace.schema import Kind, Schema
 
 SCHEMA = Schema(

@@ -7,9 +7,8 @@ import pytest
 from tests.tools.covered import SECOND, door_model, fill, hits_of
 from tests.tools.hostile import hostile_names
 
+from rvmon.coverage import Group, Item, Subject, TestRecord, combination, group_of, model_of
 from rvmon.coverage.database import Database
-from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
-from rvmon.coverage.record import TestRecord
 from rvmon.report import coverage_page as pages
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary

@@ -26,8 +26,7 @@ from rvmon.report.tracks import (
     thresholds,
     tracks_of,
 )
-from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Health, HealthKind, Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Blame
 from rvmon.verdict.report import report_of

@@ -4,7 +4,7 @@ import pytest
 
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 NAMES = """spec demo
 signal a, b, c : bool

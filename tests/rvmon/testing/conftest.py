@@ -9,7 +9,7 @@ from tests.tools.build import requirement, spec_of, timeline
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import Requirement, TimeModel
-from rvmon.testing.law.outage import Outage
+from rvmon.testing.law.word import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Decision

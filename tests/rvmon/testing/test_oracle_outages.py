@@ -26,7 +26,7 @@ from tests.tools.build import (
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.law.outage import Outage
+from rvmon.testing.law.word import Outage
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_4 = {"time": TimeModel.CLOCKED, "period": 4}

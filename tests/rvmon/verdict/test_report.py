@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from rvmon.errors import TraceError
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import LAW, Verdict
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.report import Report, report_of

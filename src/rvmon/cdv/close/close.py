@@ -15,9 +15,8 @@ from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.play import INTERRUPTED, outcomes
-from rvmon.coverage.model import model_of
+from rvmon.coverage import Ending, model_of
 from rvmon.coverage.ranking import Smallest, smallest
-from rvmon.coverage.record import Ending
 from rvmon.verdict import Verdict
 
 BATCH = 4

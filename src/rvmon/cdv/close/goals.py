@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cdv.campaign import ClosingModel
 from rvmon.cdv.template import Template, project
-from rvmon.coverage.holes import Goal, Hole, hole_of, nearest_tests
-from rvmon.coverage.model import (
+from rvmon.coverage import (
     STATES,
     Group,
     Hit,
@@ -25,6 +24,7 @@ from rvmon.coverage.model import (
     share,
     without,
 )
+from rvmon.coverage.holes import Goal, Hole, hole_of, nearest_tests
 from rvmon.spec.checked.goals import BinKind
 
 if TYPE_CHECKING:

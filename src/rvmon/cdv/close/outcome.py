@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.plan import Played
+from rvmon.coverage import Group
 from rvmon.coverage.holes import Goal, Hole
-from rvmon.coverage.model import Group
 from rvmon.report.coverage_summary import name_of
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped

@@ -17,8 +17,8 @@ from rvmon.cdv.close.goals import Goals, Proof, Witness, Witnesses
 from rvmon.cdv.close.vary_test import Draw, Learned, Mutator
 from rvmon.cdv.plan import Played, plan
 from rvmon.cdv.test import Test, TestError, blamed, from_json, to_json
+from rvmon.coverage import Subject
 from rvmon.coverage.holes import Goal, nearness
-from rvmon.coverage.model import Subject
 
 _Option = TypeVar("_Option", bound=Hashable)
 

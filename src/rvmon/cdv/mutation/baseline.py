@@ -15,7 +15,7 @@ from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.play import Bench
 from rvmon.cdv.system import Run, Values
 from rvmon.cdv.test import Test
-from rvmon.coverage.model import Subject
+from rvmon.coverage import Subject
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.session import Spec, load

@@ -42,7 +42,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print.printer import format_duration, format_formula
+from rvmon.spec.print import format_duration, format_formula
 from rvmon.trace.time import TICKS_PER_UNIT
 from rvmon.verdict import Verdict
 
@@ -175,7 +175,7 @@ SPEC_OPERATORS: Mapping[str, Callable[[Formula], Iterator[Formula]]] = {
 def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     """All changes of a formula: the operator's name, and the whole formula with it.
 
-    >>> from rvmon.spec.print.printer import format_formula
+    >>> from rvmon.spec.print import format_formula
     >>> within = Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9))
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']

@@ -23,15 +23,14 @@ from lsprotocol.types import (
 from pygls.uris import from_fs_path, to_fs_path
 
 from rvmon.analysis.codes import page_of
-from rvmon.cache import cache_folder
 from rvmon.cli.lsp.names import Names
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span
+from rvmon.files import cache_folder, write_whole
 from rvmon.spec.compile import Compilation, compilation
 from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
 from rvmon.spec.syntax.words import split_items
 from rvmon.texts import proposed, shown
-from rvmon.writing import write_whole
 
 _WIDTHS = {
     PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),

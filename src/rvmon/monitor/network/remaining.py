@@ -24,7 +24,7 @@ from rvmon.logic.formula import (
 )
 from rvmon.logic.progress import Duals, opened
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
-from rvmon.monitor.network.network import Network
+from rvmon.monitor.network import Network
 from rvmon.monitor.network.piecewise import FAR, unchanged_until
 
 MOST_POSITIONS = 60

@@ -14,7 +14,7 @@ from typing import Any
 from rvmon.errors import TraceError
 from rvmon.readers.messages.fields import stamp_getter
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import format_ticks
 
 AHEAD = 1_000_000

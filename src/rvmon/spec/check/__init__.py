@@ -1,1 +1,206 @@
-"""From names to the checked specification: types, units, durations, requirements."""
+"""From resolved names to the checked specification: types, units, durations, requirements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
+from rvmon.spec.check.ctl import checked_goal, checked_property
+from rvmon.spec.check.expressions import Checker
+from rvmon.spec.check.requirements import check_clauses, checked_requirement
+from rvmon.spec.check.scope import EVERYWHERE, Table, close_name, close_unit
+from rvmon.spec.checked.goals import Cover
+from rvmon.spec.checked.specification import (
+    CheckedSpec,
+    Event,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.spec.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
+from rvmon.spec.rules import Findings, Refusal, Reported
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import names as rules
+from rvmon.spec.rules import time as time_rules
+from rvmon.spec.rules import types as type_rules
+from rvmon.spec.syntax.expressions import Expression, Name, expressions_in
+from rvmon.spec.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
+from rvmon.trace.schema import Kind
+from rvmon.units import Unit, UnknownUnitError, parse_unit
+
+
+def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
+    """Check everything that a specification says.
+
+    Returns:
+        What could be checked; it is fit for use if no finding is an error.
+    """
+    recursive = find_cycles(spec.declared, findings)
+    table = _table(spec, recursive, findings)
+    checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
+    signals = dict(table.signals)
+    for declared in spec.declared.values():
+        if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
+            name = declared.name.text
+            if name in signals:
+                signals[name] = _with_staleness(checker, signals[name], declared.stale_after)
+    period = delay = None
+    if spec.time is not None and spec.time.period is not None:
+        period = _positive(checker, spec.time.period, "the period")
+    if spec.delay is not None:
+        delay = _duration(checker, spec.delay.delay)
+    requirements: dict[str, Requirement] = {}
+    goals: dict[str, Cover] = {}
+    for name, item in spec.requirements.items():
+        check_clauses(checker, item)
+        if isinstance(item.body, CoverMonitor):
+            goal = checked_goal(checker, item, item.body.span)
+            goals.update({} if goal is None else {name: goal})
+            continue
+        requirement = checked_requirement(checker, item)
+        if requirement is not None:
+            requirements[name] = requirement
+    check_unused(checker, spec)
+    stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
+    properties = {one.id: one.ctl for one in stated if one.ctl is not None}
+    for name, alone in spec.properties.items():
+        if found := checked_property(checker, name, alone.formula):
+            properties[name] = found
+    covers = {
+        name: cover
+        for name, syntax in spec.covers.items()
+        if (cover := checked_cover(checker, syntax))
+    } | goals
+    coverpoints = {
+        name: point
+        for name, syntax in spec.coverpoints.items()
+        if (point := checked_coverpoint(checker, syntax))
+    }
+    crosses = {
+        name: cross
+        for name, syntax in spec.crosses.items()
+        if (cross := checked_cross(checker, syntax, coverpoints, spec.coverpoints))
+    }
+    return CheckedSpec(
+        spec.header.name.text if spec.header else "spec",
+        spec.header.title if spec.header else "",
+        table.time,
+        signals,
+        table.events,
+        requirements,
+        period,
+        delay,
+        spec.sources[0],
+        properties,
+        covers,
+        coverpoints,
+        crosses,
+    )
+
+
+def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) -> Table:
+    signals: dict[str, Signal] = {}
+    events: dict[str, Event] = {}
+    units: dict[str, Unit] = {}
+    types = _Types(findings)
+    for name, declared in spec.declared.items():
+        match declared:
+            case DeclaredSignal():
+                found = types.read(declared.type)
+                if found is not None:
+                    type_, units[name] = found
+                    if declared.ignored is not None and type_.kind is not Kind.REAL:
+                        findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
+                    signals[name] = Signal(
+                        name,
+                        type_,
+                        declared.role,
+                        ignores_nan=declared.ignored is not None,
+                        span=declared.name.span,
+                    )
+            case DeclaredEvent():
+                fields = {}
+                for field in declared.event.fields:
+                    taken = spec.declared.get(f"{name}.{field.name.text}")
+                    first = declared if field.name.text in fields else taken
+                    if first is not None:
+                        places = field.name.span, first.name.span
+                        findings.add(name_rules.double(field.name.text, "field", *places))
+                    found = types.read(field.type)
+                    if found is not None:
+                        fields[field.name.text], units[f"{name}.{field.name.text}"] = found
+                events[name] = Event(name, fields, declared.role, declared.name.span)
+    time = spec.time.model if spec.time is not None else TimeModel.HELD
+    return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
+
+
+class _Types:
+    """Reads types, each syntax once, so that `signal a, b : real [kgg]` is one finding."""
+
+    def __init__(self, findings: Findings) -> None:
+        self._findings = findings
+        self._read: dict[int, tuple[Type, Unit] | None] = {}
+
+    def read(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
+        if id(syntax) not in self._read:
+            self._read[id(syntax)] = self._fresh(syntax)
+        return self._read[id(syntax)]
+
+    def _fresh(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
+        labels = tuple(label.text for label in syntax.labels)
+        for number, label in enumerate(syntax.labels):
+            if label.text in labels[:number]:
+                first = syntax.labels[labels.index(label.text)].span
+                self._findings.add(name_rules.double(label.text, "label", label.span, first))
+        try:
+            unit = parse_unit(syntax.unit)
+        except UnknownUnitError as error:
+            part = str(error)
+            self._findings.add(type_rules.unknown_unit(syntax.span, part, close_unit(part)))
+            return None
+        return Type(Kind(syntax.name), syntax.unit, labels), unit
+
+
+def _with_staleness(checker: Checker, signal: Signal, limit: Expression) -> Signal:
+    ticks = _positive(checker, limit, "the age at which a signal is stale")
+    return replace(signal, stale_after=ticks)
+
+
+def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
+    ticks = _duration(checker, expression)
+    if ticks == 0:
+        checker.report(time_rules.not_positive(expression.span, what))
+    return ticks
+
+
+def _duration(checker: Checker, expression: Expression) -> int | None:
+    try:
+        return checker.duration(expression, EVERYWHERE)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+    except Reported:
+        pass
+    return None
+
+
+def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
+    """Report what is wrong in macros; those with parameters have their names looked up only."""
+    for item in spec.declared.values():
+        match item:
+            case DefineItem(parameters=None, name=name) | ConstItem(name=name):
+                checker.value(Name(name.text, name.span), EVERYWHERE)
+            case DefineItem():
+                _look_up(checker, item)
+
+
+def _look_up(checker: Checker, item: DefineItem) -> None:
+    own = {parameter.text for parameter in item.parameters or ()}
+    table = checker.table
+    for part in expressions_in(item.body):
+        if not isinstance(part, Name) or part.text in own | table.doubtful:
+            continue
+        labels = {label for signal in table.signals.values() for label in signal.type.labels}
+        if part.text not in labels and not checker.known(part.text, EVERYWHERE):
+            close = close_name(table, part.text, tuple(own))
+            checker.report(rules.unknown(part.span, part.text, close))

@@ -27,7 +27,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.spec.checked.operators import Connectives, Tense
 from rvmon.spec.checked.rewrite import read
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as rules

@@ -26,7 +26,7 @@ from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unar
 from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import time as time_rules

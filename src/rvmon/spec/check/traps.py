@@ -27,7 +27,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import Capture, Mode, TimeModel
-from rvmon.spec.print.printer import format_duration, format_formula
+from rvmon.spec.print import format_duration, format_formula
 from rvmon.spec.rules import requirements as rules
 from rvmon.spec.syntax.expressions import Expression, Group, Immediately
 from rvmon.spec.syntax.items import LetClause

@@ -16,7 +16,7 @@ import lark
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
-from rvmon.cache import cache_folder, keep, read_kept
+from rvmon.files import cache_folder, keep, read_kept
 
 _FORMAT = 1
 

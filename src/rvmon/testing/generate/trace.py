@@ -14,10 +14,10 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.spec.print.printer import format_formula, format_numeric
+from rvmon.spec.print import format_formula, format_numeric
 from rvmon.testing.generate import Rng, chance, pick
-from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.syntax import intervals, numerics
+from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 

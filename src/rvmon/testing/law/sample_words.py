@@ -9,11 +9,11 @@ from itertools import dropwhile, pairwise
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.spec.checked.specification import CheckedSpec, Event, Signal, TimeModel
 from rvmon.testing.law.numbers import at_edge, known_scalar
-from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.word import (
     EventState,
     Letter,
     Occurrence,
+    Outage,
     SignalState,
     Truth,
     Update,

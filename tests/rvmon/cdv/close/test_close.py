@@ -12,7 +12,7 @@ from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.close.goals import EDGES
 from rvmon.cdv.test import TestError
-from rvmon.coverage.record import Ending
+from rvmon.coverage import Ending
 from rvmon.errors import ModelError, UnknownNameError
 from rvmon.timed.language.load import loads_network
 

@@ -5,7 +5,7 @@ from tests.tools.bags import START, write_ros1, write_ros2
 
 import rvmon
 from rvmon.cli import main
-from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import HealthKind
 
 pytest.importorskip("rosbags")
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 import rvmon
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 HEAD = (
     "spec s\nsignal a : bool\nsignal d : real [s]\nsignal n : int\nsignal far : real [m]\n"

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 
 def bins(checked, text):

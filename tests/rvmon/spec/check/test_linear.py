@@ -12,7 +12,7 @@ from rvmon.spec.checked.ctl import PathBinary, PathUnary, StateAtom, StateBinary
 from rvmon.spec.checked.formula import BinaryOp, UnaryOp
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.compile import compile_text
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 from rvmon.spec.rules import Refusal
 
 HEAD = "spec s\ntime sampled\nsignal a, b, c : bool\n"

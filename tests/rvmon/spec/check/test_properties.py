@@ -5,7 +5,7 @@ import pytest
 from rvmon.spec.checked.ctl import ModelAtom, PathBinary, PathUnary, StateAtom, StateBinary
 from rvmon.spec.checked.formula import Interval, UnaryOp
 from rvmon.spec.checked.specification import Role
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 ROLES = """signal ok, near : bool input
 signal v : real [m/s] output

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.spec.checked.specification import EndPolicy, Mode, RunShare
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from rvmon import loads
 from rvmon.cli import main
 from rvmon.errors import SpecError
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 HEAD = "spec s\ntime sampled\nsignal a, b, c : bool\nrequirement R1\n  monitor as cover\n"
 

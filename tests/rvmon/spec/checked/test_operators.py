@@ -11,7 +11,7 @@ from rvmon.spec.checked.formula import Binary, Interval, SignalAtom, Unary
 from rvmon.spec.checked.functions import FUNCTIONS, Argument
 from rvmon.spec.checked.operators import OPERATORS, BinaryOp, UnaryOp, Window
 from rvmon.spec.checked.rewrite import rewritten
-from rvmon.spec.print.printer import format_formula
+from rvmon.spec.print import format_formula
 
 PAGE = (Path(__file__).parents[4] / "docs" / "reference" / "language.md").read_text("utf-8")
 LETTERS = {

@@ -8,7 +8,7 @@ from tests.rvmon.spec.print.writing import meaning
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Arithmetic, Compare, Literal, SignalValue
 from rvmon.spec.compile import compile_text
-from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
+from rvmon.spec.print import format_duration, format_formula, format_numeric
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec
 from rvmon.units import unit_table

@@ -11,8 +11,8 @@ import rvmon
 from rvmon.errors import SpecError
 from rvmon.spec.checked.names_read import names_of_spec
 from rvmon.spec.compile import compile_text
+from rvmon.spec.print import format_formula
 from rvmon.spec.print.formatter import format_text
-from rvmon.spec.print.printer import format_formula
 from rvmon.spec.syntax.parse import GRAMMAR_OPTIONS, grammar_text
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 

@@ -5,7 +5,7 @@ from hashlib import sha256
 
 import pytest
 
-from rvmon.cache import cache_folder
+from rvmon.files import cache_folder
 from rvmon.spec.syntax.grammar_cache import parser_of
 
 GRAMMAR = 'start: "a" NUMBER+\nNUMBER: /[0-9]+/\n%ignore " "\n'
