@@ -85,9 +85,9 @@ def by_progression(case: Case) -> Told:
     (requirement,) = case.spec.requirements.values()
     is_held = case.spec.time is TimeModel.HELD
     factory = Factory()
-    owed = lower(requirement, factory, sampled=not is_held).owed
-    alphabet = alphabet_of(owed)
-    machine = Progression(factory.next(owed), alphabet)
+    required = lower(requirement, factory, sampled=not is_held).required
+    alphabet = alphabet_of(required)
+    machine = Progression(factory.next(required), alphabet)
     told: dict[int, tuple[int, int | None, Verdict | None]] = {}
     going: dict[Token, list[int]] = {}
     last = case.samples[-1].t

@@ -68,20 +68,20 @@ def measure(options: argparse.Namespace) -> int:
     while len(seconds) < options.formulas:
         rng = random.Random(f"{options.seed}/{drawn}")
         drawn += 1
-        owed = formula(rng, SHAPE, options.depth)
-        if nesting(owed) < options.depth:
+        required = formula(rng, SHAPE, options.depth)
+        if nesting(required) < options.depth:
             continue
         mode = {"upon": start} if len(seconds) % 2 else {"whenever": p}
         began = time.process_time()
         found: Automaton | None = None
         try:
-            found, own = _built(owed, mode)
+            found, own = _built(required, mode)
             sizes.append(own)
         except DoesNotCloseError as error:
             refused[str(error)] += 1
-        seconds.append((time.process_time() - began, format_formula(owed)))
+        seconds.append((time.process_time() - began, format_formula(required)))
         if found is not None:
-            forecasts += [(spent, format_formula(owed)) for spent in _forecast(found, rng)]
+            forecasts += [(spent, format_formula(required)) for spent in _forecast(found, rng)]
     _print(options, sizes, refused, seconds)
     print(f"  {len(forecasts)} forecasts, of what may be owed at the end of a trace")
     _print_seconds(forecasts)
@@ -99,13 +99,15 @@ def _forecast(automaton: Automaton, rng: random.Random) -> Iterator[float]:
         yield time.process_time() - began
 
 
-def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Size, Size, Size]]:
+def _built(
+    required: Formula, mode: dict[str, Formula]
+) -> tuple[Automaton, tuple[Size, Size, Size]]:
     """The automaton, and its size as made, as people are told of it, and as verdicts want it."""
     factory = Factory()
     obligation = lower(
-        requirement(owed, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
+        requirement(required, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
     )
-    whole = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
+    whole = construct(factory.next(obligation.required), alphabet_of(obligation.required), Budget())
     told = reduce(whole, Words(obligation.origins).label)
     return told, (Size.of(whole), Size.of(told), Size.of(reduce(told)))
 

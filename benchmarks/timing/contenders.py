@@ -146,8 +146,8 @@ def _ours(kind: str) -> Request:
 
 def margin_text(workload: Workload) -> str:
     """A formula as it is owed from the first sample on, a tick between two samples."""
-    owed = f"upon start\n  then {text(workload.formulas[0])}"
-    return specification([owed], workload.columns).replace("time held", "time sampled")
+    required = f"upon start\n  then {text(workload.formulas[0])}"
+    return specification([required], workload.columns).replace("time held", "time sampled")
 
 
 def _margins(kind: str) -> Request:

@@ -82,7 +82,7 @@ def _parser() -> ArgumentParser:
             metavar="N",
             type=positive,
             default=count,
-            help="with --out, hold the first N runs of each strategy against the model, and check "
+            help="with --out, compare the first N runs of each strategy with the model, and check "
             "its claims about all runs (%(default)s)",
         )
     return parser

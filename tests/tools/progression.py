@@ -37,7 +37,7 @@ class Progression:
     Source: AUTOMATA 1.
 
     Args:
-        owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
+        required: what an attempt requires, as `X` of it: it starts before its trigger's position.
         alphabet: of that formula.
         name: of the requirement, for messages.
 
@@ -46,16 +46,16 @@ class Progression:
             in more than `MOST_CLAUSES` ways.
     """
 
-    def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
+    def __init__(self, required: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
         self.alphabet = alphabet
         self._name = name
-        self._owed = owed
+        self._required = required
         self._locations: list[Location] = []
         self._index: dict[Residual, int] = {}
         self._edges: dict[tuple[int, tuple[int, ...], int], Edge] = {}
         for residual in (FAILS, HOLDS):
             self._location(residual)
-        first = self._location(frozenset([frozenset([(owed, NO_CLOCK)])]))
+        first = self._location(frozenset([frozenset([(required, NO_CLOCK)])]))
         self.start: Token = (first, ())
 
     def _location(self, residual: Residual) -> int:

@@ -324,8 +324,8 @@ def test_on_bound() -> None:
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:
     """What is shown of an open attempt has to be undecided, and so has time to be, until then."""
-    owed = two(eventually(p, 0, 3), "and", eventually(q, 0, 5))
-    case = Case(spec_of(requirement(owed)), timeline(p="0", q="0"))
+    required = two(eventually(p, 0, 3), "and", eventually(q, 0, 5))
+    case = Case(spec_of(requirement(required)), timeline(p="0", q="0"))
 
     class Showing(Monitor):
         """A monitor that shows something else."""
@@ -351,7 +351,7 @@ def test_what_is_owed_and_its_deadline_are_compared() -> None:
 def test_deadline_is_the_last_instant_before_time_alone_decides() -> None:
     """Of all that is owed the first, of one of two things the last; none if nothing bounds it."""
     short, long, ever = eventually(p, 0, 3), eventually(no(q), 0, 5), eventually(no(q))
-    for owed, wanted in (
+    for required, wanted in (
         (two(short, "and", long), 3),
         (two(short, "or", long), 5),
         (two(always(q, 0, 3), "and", long), 5),
@@ -360,7 +360,7 @@ def test_deadline_is_the_last_instant_before_time_alone_decides() -> None:
         (two(short, "or", ever), None),
         (eventually(always(p, 2, 2), 0, 3), 2),
     ):
-        judgement = Judgement(Case(spec_of(requirement(owed)), timeline(p="0", q="1")))
+        judgement = Judgement(Case(spec_of(requirement(required)), timeline(p="0", q="1")))
         _, waiting = judgement.at(Moment(0, 0))
         assert [one.deadline() for one in waiting.values()] == [wanted]
 

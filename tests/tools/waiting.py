@@ -94,14 +94,14 @@ class Waiting:
                 return last
         return None
 
-    def misnamed(self, owed: str, origin: int) -> Iterator[str]:
+    def misnamed(self, required: str, origin: int) -> Iterator[str]:
         """What is said to be owed though it is none of the parts that wait for something.
 
         Args:
-            owed: from the record of an attempt.
+            required: from the record of an attempt.
             origin: the first instant of its run, ticks.
         """
-        parts = _PART.findall(owed) or ([owed] if owed else [])
+        parts = _PART.findall(required) or ([required] if required else [])
         wrong = set(parts)
         allowed = self._undecided(origin)
         while wrong and (name := next(allowed, None)):

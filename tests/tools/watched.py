@@ -17,10 +17,10 @@ def is_small(automaton: Automaton | None) -> bool:
 
 def truths_plan(compiled: CompiledSpec) -> Plan:
     """The plan of who asks where all that is owed is true; what is captured is 1."""
-    owed = dict.fromkeys(one.obligation.owed for one in compiled.requirements.values())
+    required = dict.fromkeys(one.obligation.required for one in compiled.requirements.values())
     captured: dict[str, float | None] = {}
     for requirement in compiled.checked.requirements.values():
         each = requirement.for_each
         names = [one.name for one in requirement.captures]
         captured |= dict.fromkeys(names if each is None else [each.name, *names], 1)
-    return plan_of_truths(compiled.checked, list(owed), captured)
+    return plan_of_truths(compiled.checked, list(required), captured)

@@ -56,7 +56,7 @@ def handover_campaign(
     Args:
         robots: `correct`, `legacy` or both, in the order of the tables.
         monitors: `False` judges nothing, to measure what judging costs.
-        conforming: so many runs of each strategy are held against the model for the page, a second
+        conforming: so many runs of each strategy are compared with the model for the page, a second
             each; 0: nothing is shown of the model there.
 
     Raises:

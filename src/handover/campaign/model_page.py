@@ -1,4 +1,4 @@
-"""What the model says, for the page: claims about all of its runs, and runs held against it."""
+"""What the model says, for the page: claims about all of its runs, and runs compared with it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _SECTION = Markup(
     "<section><h2>The model</h2>{}<p class=soft>Random runs choose among edges by the weights of "
     "the model, {:,} of {:g} s for each, with the 95 % interval.</p><h3>The model and the code</h3>"
     "<p class=soft>Tests follow runs of the model that take all edges there are, and the correct "
-    "robot plays them; runs of it are held against the model, of each strategy the first {}; when "
+    "robot plays them; runs of it are compared with the model, of each strategy the first {}; when "
     "the human is ready is an input.</p>{}</section>"
 )
 _WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
@@ -57,12 +57,12 @@ _WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
 def model_sections(
     tests: Mapping[RobotTest, Test], addresses: Addresses, count: int
 ) -> list[Markup]:
-    """The section of a campaign's page, unless no run is to be held against the model.
+    """The section of a campaign's page, unless no run is to be compared with the model.
 
     Args:
         tests: that were played.
         addresses: of its pages.
-        count: of the runs of each strategy the first so many are held against the model.
+        count: of the runs of each strategy the first so many are compared with the model.
     """
     strategies: dict[str, list[AbstractTest]] = {}
     for (robot, _), test in tests.items():

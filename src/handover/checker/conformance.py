@@ -1,4 +1,4 @@
-"""Simulated runs held against the network: does the robot do what the model says it does?"""
+"""Simulated runs compared with the network: does the robot do what the model says it does?"""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
 
 
 def check_run(network: Network, run: Run) -> Conformance:
-    """Hold a simulated run against the handover network."""
+    """Compare a simulated run with the handover network."""
     from rvmon.timed.conformance.conform import conform
 
     actions, observed = actions_of(run)

@@ -119,7 +119,7 @@ def graph_of(compiled: CompiledRequirement, automaton: Automaton, spec: CheckedS
     """
     names = _names(automaton)
     places = tuple(
-        Place(names[index], _owed(compiled, automaton, index), index)
+        Place(names[index], _required(compiled, automaton, index), index)
         for index in sorted(names, key=lambda index: (index <= PASSED, index != automaton.initial))
     )
     reader = _Reader(compiled, automaton, spec)
@@ -140,7 +140,7 @@ def _names(automaton: Automaton) -> dict[int, str]:
     return names
 
 
-def _owed(compiled: CompiledRequirement, automaton: Automaton, index: int) -> str:
+def _required(compiled: CompiledRequirement, automaton: Automaton, index: int) -> str:
     location = automaton.locations[index]
     if index <= PASSED:
         return ""
@@ -158,12 +158,12 @@ def _owed(compiled: CompiledRequirement, automaton: Automaton, index: int) -> st
 
 def _obligation(compiled: CompiledRequirement, node: Core) -> str:
     requirement = compiled.requirement
-    if requirement.mode is not Mode.WHENEVER or node is not compiled.obligation.owed:
+    if requirement.mode is not Mode.WHENEVER or node is not compiled.obligation.required:
         return compiled.words.text(node)
-    owed = format_formula(requirement.consequent)
+    required = format_formula(requirement.consequent)
     if always(requirement):
-        return f"always {owed if ' ' not in owed else f'({owed})'}"
-    return f"{owed}, as long as {format_formula(requirement.trigger)}"
+        return f"always {required if ' ' not in required else f'({required})'}"
+    return f"{required}, as long as {format_formula(requirement.trigger)}"
 
 
 def always(requirement: Requirement) -> bool:

@@ -54,7 +54,7 @@ _AT_END = {
 
 def requirement_in_words(requirement: Requirement) -> list[str]:
     """Sentences: when an attempt starts, what is owed, what is captured, what the end does."""
-    lines = [f"{_starts(requirement)}:", f"{_owed(requirement)}."]
+    lines = [f"{_starts(requirement)}:", f"{_required(requirement)}."]
     lines += [
         f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."
         for capture in requirement.captures
@@ -88,7 +88,7 @@ def _starts(requirement: Requirement) -> str:
     return f"Each time that it begins to be so that {in_words(trigger)}"
 
 
-def _owed(requirement: Requirement) -> str:
+def _required(requirement: Requirement) -> str:
     text = in_words(requirement.consequent)
     at_once = requirement.mode is Mode.UPON and not has_future(requirement.consequent)
     return f"at that very instant, {text}" if at_once else text
@@ -297,7 +297,7 @@ def _judge(compiled: CompiledRequirement, automaton: Automaton | None, *, chaine
 
 
 def _decided(compiled: CompiledRequirement) -> str:
-    reach = horizon(compiled.obligation.owed)
+    reach = horizon(compiled.obligation.required)
     if reach is None:
         return "no bound: it may stay open until the recording ends"
     return f"{format_duration(reach)} after its trigger at the latest" if reach else "at once"
@@ -305,7 +305,7 @@ def _decided(compiled: CompiledRequirement) -> str:
 
 def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
     if automaton is None:
-        reach = horizon(compiled.obligation.owed)
+        reach = horizon(compiled.obligation.required)
         span = "while an attempt is open" if reach is None else f"over {format_duration(reach)}"
         return f"where its parts are known to hold or not, a stretch per change, {span}"
     if compiled.in_runs(automaton):

@@ -213,7 +213,7 @@ class Campaign:
         control: what is played beside a test.
         expected_failures: that do not fail it.
         gates: by strategy, what its tests have to bring; those of all strategies without one are
-            held against that of the name "" together, and without that against `Gate()`.
+            compared with that of the name "" together, and without that with `Gate()`.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
         sources: files and folders that runs depend on, beside those that define tests, strategies
             and systems: where one has changed, an unfinished campaign is not gone on with.

@@ -25,7 +25,7 @@ RobotRequirement = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class TestJudgement:
-    """One test, held against what was expected of it.
+    """One test, compared with what was expected of it.
 
     Attributes:
         played: the test.
@@ -42,7 +42,7 @@ class TestJudgement:
 
 @dataclass(frozen=True, slots=True)
 class CampaignJudgement:
-    """A campaign, held against what was expected of it.
+    """A campaign, compared with what was expected of it.
 
     Attributes:
         tests: each by itself, in the order of the plan.
@@ -78,7 +78,7 @@ def judge_campaign(
     *,
     strict: bool = False,
 ) -> CampaignJudgement:
-    """Hold all tests against what was expected of them.
+    """Compare all tests with what was expected of them.
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
     to fail; if a verdict that it knows came out otherwise; if it does not reach what it is made to;
@@ -139,7 +139,7 @@ def judge_test(
     *,
     gate: Gate | None = None,
 ) -> TestJudgement:
-    """Hold one test against what was expected of it, as `judge_campaign` does with all.
+    """Compare one test with what was expected of it, as `judge_campaign` does with all.
 
     Args:
         one: the test.
@@ -217,7 +217,7 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
 
 
 def _gate_name(campaign: Campaign, one: Played) -> str:
-    """The strategy whose gate a test is held against; empty: that of all which have none."""
+    """The strategy whose gate a test is compared with; empty: that of all which have none."""
     strategy = one.job.test.strategy
     return strategy if strategy in campaign.gates else ""
 

@@ -75,7 +75,7 @@ def replay_page(
         robot: its name.
         spec: that judged it.
         command: replays it.
-        others: runs that a failed attempt can be held against.
+        others: runs that a failed attempt can be compared with.
         back: address of the campaign's page.
         smallest: the command that finds the smallest test that fails alike.
     """

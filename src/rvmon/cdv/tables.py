@@ -33,7 +33,7 @@ class RobotTables:
 
     Attributes:
         own: its counts.
-        beside: by label, counts that each row is held against.
+        beside: by label, counts that each row is compared with.
         control: the same counts with the controls of tests, where there are some.
         control_label: heads those lines of the text; empty: they stand in files only.
         control_title: heads that table of the page.

@@ -144,7 +144,7 @@ def _run(arguments: Namespace) -> int:
 
 
 def run_tests(campaign: Campaign, arguments: Namespace) -> int:
-    """Play a campaign, show it, hold it against what was expected, and return an exit code.
+    """Play a campaign, show it, compare it with what was expected, and return an exit code.
 
     Args:
         campaign: what it is about.

@@ -52,7 +52,7 @@ class Conducted:
         return self.results.cut_short == INTERRUPTED
 
     def judged(self, *, strict: bool) -> CampaignJudgement:
-        """Hold the campaign against what was expected of it.
+        """Compare the campaign with what was expected of it.
 
         Args:
             strict: what is inconclusive, or never triggered, is wrong as well.

@@ -22,7 +22,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compare",
-        description="Hold the verdicts on recordings against earlier ones, by recording and "
+        description="Compare the verdicts on recordings with earlier ones, by recording and "
         "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
         "`rvmon run --out` (.csv, .parquet, .sqlite) and of `--format json` (.json). The "
         "exit code is 1 if less holds than before.",

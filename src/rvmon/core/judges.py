@@ -173,7 +173,7 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     automaton = rule.automaton
     if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
         return automaton
-    network = plan_of(rule.owed, gap)
+    network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
     if automaton is None or (chain is not None and len(chain.windows) > 1):
         return network, chain

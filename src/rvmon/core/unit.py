@@ -93,7 +93,7 @@ class Unit:
     @cached_property
     def _looks_back(self) -> bool:
         plan = self._plan
-        asked = [one for _, rule in plan.judges for one in (rule.owed, rule.measured)]
+        asked = [one for _, rule in plan.judges for one in (rule.required, rule.measured)]
         return any(plan_of(one, plan.gap).looks_back for one in asked if one is not None)
 
     @cached_property

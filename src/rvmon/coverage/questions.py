@@ -263,7 +263,7 @@ def compare(before: Coverage, after: Coverage) -> Comparison:
     """What is different from an earlier campaign.
 
     Tests are the same that have the same name, strategy and seed, whatever system they tested; of
-    several that have, the first is held against the first.
+    several that have, the first is compared with the first.
     """
     old_covered, old_illegal, old_share = _state(before)
     covered, illegal, share = _state(after)

@@ -178,17 +178,17 @@ class WatchedRequirement:
                     edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
             # What is owed for ever is met by the end of the run alone: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
-            owed = [
+            required = [
                 _item(one.name, one.required) for one in self.graph.places if one.name in entered
             ]
-            yield group_of(locations_of(name), Subject.STATES, owed, title=title)
+            yield group_of(locations_of(name), Subject.STATES, required, title=title)
             steps = [_item(step, "; or ".join(upon)) for step, upon in edges.items()]
             yield group_of(edges_of(name), Subject.TRANSITIONS, steps, title=title)
 
 
-def deadline_of(owed: Formula) -> int | None:
+def deadline_of(required: Formula) -> int | None:
     """The ticks within which something has to come, if that is all that is owed."""
-    match owed:
+    match required:
         case Unary(op=UnaryOp.EVENTUALLY, interval=interval):
             return None if interval is None else interval.high
         case Binary(op=BinaryOp.UNTIL, interval=interval):

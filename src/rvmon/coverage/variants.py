@@ -52,15 +52,15 @@ class Variant:
 
 def variants_of(requirement: Requirement) -> list[Variant]:
     """All variants of a requirement: of its trigger first, then of what it owes."""
-    owed = requirement.consequent
-    is_steady = _is_steady(owed)
+    required = requirement.consequent
+    is_steady = _is_steady(required)
     changed = [
         (part, replace(requirement, trigger=without, pulse=is_pulse(without)), False)
         for part, without, _ in _without_one(requirement.trigger)
     ]
     changed += [
         (part, replace(requirement, consequent=without), is_steady and change is _Change.WEAKER)
-        for part, without, change in _without_one(owed)
+        for part, without, change in _without_one(required)
     ]
     found: list[Variant] = []
     counts: Counter[str] = Counter()
@@ -72,15 +72,15 @@ def variants_of(requirement: Requirement) -> list[Variant]:
     return found
 
 
-def _is_steady(owed: Formula) -> bool:
+def _is_steady(required: Formula) -> bool:
     """Whether all that meets a formula does so at the same instant.
 
     It is that of the trigger, or the last one of `always`, if nothing that was can settle it. Then
     what meets it passes no sooner where less is owed.
     """
-    if isinstance(owed, Unary) and owed.op is UnaryOp.ALWAYS:
-        return is_timeless(owed.operand)
-    return not has_future(owed)
+    if isinstance(required, Unary) and required.op is UnaryOp.ALWAYS:
+        return is_timeless(required.operand)
+    return not has_future(required)
 
 
 def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]:

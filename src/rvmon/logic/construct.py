@@ -38,12 +38,12 @@ class DoesNotCloseError(Exception):
 
 
 def construct(
-    owed: Temporal, alphabet: Alphabet, budget: Budget, ages: set[int] | None = None
+    required: Temporal, alphabet: Alphabet, budget: Budget, ages: set[int] | None = None
 ) -> Automaton:
     """Build the automaton of a formula.
 
     Args:
-        owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
+        required: what an attempt requires, as `X` of it: it starts before its trigger's position.
         alphabet: of that formula.
         budget: when to give up.
         ages: takes those with which locations are looked at.
@@ -53,7 +53,7 @@ def construct(
 
     Source: AUTOMATA 2; regions after Alur and Dill 1994.
     """
-    return _Construction(alphabet, budget, set() if ages is None else ages).run(owed)
+    return _Construction(alphabet, budget, set() if ages is None else ages).run(required)
 
 
 class _Construction:
@@ -71,10 +71,10 @@ class _Construction:
         self.diagrams = Diagrams(alphabet)
         self.todo: list[int] = []
 
-    def run(self, owed: Temporal) -> Automaton:
+    def run(self, required: Temporal) -> Automaton:
         for residual in (FAILS, HOLDS):
             self.enter(residual, ())
-        initial = self.enter(frozenset([frozenset([(owed, NO_CLOCK)])]), ())
+        initial = self.enter(frozenset([frozenset([(required, NO_CLOCK)])]), ())
         while self.todo:
             self.explore(self.todo.pop())
         return self.tables(initial)

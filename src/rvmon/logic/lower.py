@@ -42,8 +42,8 @@ class Obligation:
     Attributes:
         trigger: starts an attempt; `None` where it is the end of the trace. What is not born is
             FALSE for it.
-        owed: what an attempt owes from its trigger on; of an episode, all that it owes.
-        origins: for explanations, where the parts of `owed` come from.
+        required: what an attempt owes from its trigger on; of an episode, all that it owes.
+        origins: for explanations, where the parts of `required` come from.
         running: of an episode, what is FALSE where it is over; with captured values also where it
             is not known any more which these are.
         again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
@@ -57,7 +57,7 @@ class Obligation:
     """
 
     trigger: State | None
-    owed: Core
+    required: Core
     origins: Mapping[Core, Origin]
     running: State | None = None
     again: State | None = None
@@ -103,7 +103,7 @@ def lower(
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
-        owed = lowering.episode(running, lowering.owed(implied), requirement.consequent)
+        required = lowering.episode(running, lowering.required(implied), requirement.consequent)
         ahead = begin(opened=True).core(requirement.consequent, True)
         again = None if looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
@@ -111,21 +111,21 @@ def lower(
         if requirement.captures:
             doubt = factory.doubt(trigger, pulse=requirement.pulse, every=False)
         return Obligation(
-            trigger, owed, lowering.origins, running, again, unborn, determined, doubt=doubt
+            trigger, required, lowering.origins, running, again, unborn, determined, doubt=doubt
         )
-    owed = lowering.core(requirement.consequent, True)
+    required = lowering.core(requirement.consequent, True)
 
     def hidden(every: bool) -> Obligation:
         doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
         running = _running(doubt, requirement, factory)
         here = factory.state_any([factory.negation(running), factory.sure(running)])
-        either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.owed(owed)])
+        either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.required(required)])
         whole = lowering.episode(running, either, requirement.consequent)
         return Obligation(doubt, whole, lowering.origins, running)
 
     return Obligation(
         trigger,
-        owed,
+        required,
         lowering.origins,
         determined=determined,
         hidden=hidden(False),

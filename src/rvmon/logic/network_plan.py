@@ -128,14 +128,14 @@ def operands_of(node: Node) -> tuple[int, ...]:
     return (node.left, node.right) if isinstance(node, Sweep) else ()
 
 
-def plan_of(owed: Core, gap: int | None) -> NetworkPlan:
+def plan_of(required: Core, gap: int | None) -> NetworkPlan:
     """The network of what an attempt owes.
 
     Args:
-        owed: the formula.
+        required: the formula.
         gap: ticks between two positions; `None` if only samples are positions.
     """
-    return plan_of_all([owed], gap)
+    return plan_of_all([required], gap)
 
 
 def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:

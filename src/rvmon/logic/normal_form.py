@@ -91,10 +91,10 @@ class Lowering:
     def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
         """What is implied, up to where the trigger is known to be false; there nothing is."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
-        owed = self.factory.release(over, implied, 0, None)
-        for node in (implied, owed):
+        required = self.factory.release(over, implied, 0, None)
+        for node in (implied, required):
             self.origins[node] = Origin(consequent, True)
-        return owed
+        return required
 
     def core(self, formula: Formula, positive: bool) -> Core:
         """A formula, or its negation, in negation normal form."""
@@ -115,7 +115,7 @@ class Lowering:
             case Unary(op=UnaryOp.NOT, operand=operand):
                 return self.core(operand, not positive)
             case Unary(op=UnaryOp.NEXT, operand=operand):
-                return self.factory.next(self.owed(self.core(operand, positive)))
+                return self.factory.next(self.required(self.core(operand, positive)))
             case Unary(op=UnaryOp.PREVIOUS, operand=operand):
                 before = self._behind(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
@@ -162,12 +162,12 @@ class Lowering:
             low = 0
         make = self.factory.until if positive else self.factory.release
         if not isinstance(left, CoreConstant):
-            left = self.owed(left)
+            left = self.required(left)
         if low > 0 or right is not self.factory.constant(positive):
-            right = self.owed(right)
+            right = self.required(right)
         return make(left, right, low, high)
 
-    def owed(self, operand: Core) -> Core:
+    def required(self, operand: Core) -> Core:
         """What is owed at positions of which some may not be there."""
         return self._if_there(operand) if self._meets_blanks else operand
 

@@ -24,7 +24,7 @@ class PlannedRule:
     Attributes:
         requirement: as checked.
         trigger: what starts its attempts; `None` if that is the end of the trace.
-        owed: by an attempt.
+        required: by an attempt.
         alphabet: of what it owes.
         automaton: judges its attempts; `None` if a delay network does.
         in_runs: whether its open attempts are kept in runs.
@@ -49,7 +49,7 @@ class PlannedRule:
 
     requirement: Requirement
     trigger: State | None
-    owed: Core
+    required: Core
     alphabet: Alphabet
     automaton: Automaton | None
     in_runs: bool = False

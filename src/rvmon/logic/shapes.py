@@ -48,32 +48,32 @@ class Shapes:
         self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
         self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
 
-    def reduced(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
+    def reduced(self, required: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
         """The automaton of a formula; `None` if it has none, or that does not close.
 
         Its alphabet and residuals speak of the propositions of whichever formula was first asked
         for, of those that are equal but for propositions; see `residuals`.
 
         Args:
-            owed: see `rvmon.logic.construct.construct`; so are the others.
+            required: see `rvmon.logic.construct.construct`; so are the others.
             alphabet: of that formula.
             budget: when to give up.
         """
-        return self._found(owed, alphabet, budget)[0]
+        return self._found(required, alphabet, budget)[0]
 
-    def residuals(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
+    def residuals(self, required: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
         """What a formula owes in each location of its automaton, which it has; see `reduced`."""
-        automaton, nodes = self._found(owed, alphabet, budget)
+        automaton, nodes = self._found(required, alphabet, budget)
         if automaton is None:
             raise ValueError("it has no automaton")
-        own = {id(node): mine for node, mine in zip(nodes, _nodes(owed), strict=True)}
+        own = {id(node): mine for node, mine in zip(nodes, _nodes(required), strict=True)}
         return [_renamed(location.residual, own) for location in automaton.locations]
 
     def _found(
-        self, owed: Next, alphabet: Alphabet, budget: Budget
+        self, required: Next, alphabet: Alphabet, budget: Budget
     ) -> tuple[Automaton | None, Sequence[Core]]:
-        nodes = _nodes(owed)
-        if looks_back(owed):
+        nodes = _nodes(required)
+        if looks_back(required):
             return None, nodes
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
@@ -125,10 +125,10 @@ def _itself(residual: Residual) -> Residual:
     return residual
 
 
-def _nodes(owed: Core) -> list[Core]:
+def _nodes(required: Core) -> list[Core]:
     """A formula and all that it is made of, operands first."""
     found: dict[int, Core] = {}
-    stack = [owed]
+    stack = [required]
     while stack:
         node = stack.pop()
         if node.id not in found:

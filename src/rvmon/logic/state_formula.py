@@ -106,13 +106,13 @@ class Lapsed:
     """It is not known any more which values an attempt has captured; two-valued."""
 
 
-Knowledge = Lost | Unborn | Lapsed
+InputState = Lost | Unborn | Lapsed
 """What speaks of what is known, not of what is there."""
 
 Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
 """What has a name in a spec."""
 
-Leaf = Knowledge | Shown | Constant | Elapsed
+Leaf = InputState | Shown | Constant | Elapsed
 """What is read off the input; spans are dropped, so that equal leaves are one."""
 
 

@@ -10,7 +10,7 @@ from rvmon.logic.automaton import FAILED, PASSED, Token, location_of
 from rvmon.logic.progress import after, value
 from rvmon.logic.residual import NO_CLOCK, Residual
 from rvmon.logic.state_formula import UNKNOWN
-from rvmon.monitor.cause import Cause, CauseFinder, Sentence, Standing, rendered
+from rvmon.monitor.cause import Cause, CauseFinder, Sentence, TruthValues, rendered
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.explanation import (
     Explanation,
@@ -103,7 +103,7 @@ def explained(
     verdict: bool,
     t: int,
     triggered: int,
-    flow: Standing,
+    flow: TruthValues,
 ) -> Explanation:
     """Why an attempt was decided.
 
@@ -148,13 +148,17 @@ class MachineRuns:
         location, anchors = token
         ages = [now // 2 - anchor for anchor in anchors]
         compiled = attempt.compiled
-        owed = compiled.words.owed(after(self.residuals[location], ages), anchors, attempt.origin)
+        required = compiled.words.required(
+            after(self.residuals[location], ages), anchors, attempt.origin
+        )
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        lasting = longer(compiled.obligation.owed, attempt.triggered, end)
-        waiting = still_required(owed, end, attempt.origin)
+        lasting = longer(compiled.obligation.required, attempt.triggered, end)
+        waiting = still_required(required, end, attempt.origin)
         reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
         alone = (self._alone(attempt.worse), self._alone(attempt.better))
-        return Explanation(reason, owed, deadline=earlier(*alone, void=attempt.void))
+        return Explanation(
+            reason, required, deadline=earlier(*alone, cannot_pass=attempt.cannot_pass)
+        )
 
     def _alone(self, token: Token) -> tuple[int, bool] | None:
         """What time alone makes of a run, and the last instant before that."""

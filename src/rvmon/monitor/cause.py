@@ -213,7 +213,7 @@ class LastWith:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class TruthValues:
     """How the propositions of a requirement stood at a position.
 
     Attributes:
@@ -244,7 +244,9 @@ Sentence = tuple[Part, ...]
 """Its parts in order."""
 
 
-def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow: Standing) -> str:
+def rendered(
+    sentence: Sentence, decided: int, start: int, triggered: int, flow: TruthValues
+) -> str:
     """A sentence about one decision.
 
     Args:

@@ -66,15 +66,15 @@ class CompiledRequirement:
         self.gap = spec.gap
         self.requirement = requirement
         self.obligation = obligation
-        self.alphabet: Alphabet = alphabet_of(obligation.owed)
-        self._owed = factory.next(obligation.owed)
+        self.alphabet: Alphabet = alphabet_of(obligation.required)
+        self._required = factory.next(obligation.required)
 
     @cached_property
     def _built(self) -> Automaton | DoesNotCloseError:
         if self.network_plan.looks_back:
             return DoesNotCloseError("something of the future below an operator of the past")
         try:
-            return reduce(construct(self._owed, self.alphabet, self._budget), self.words.label)
+            return reduce(construct(self._required, self.alphabet, self._budget), self.words.label)
         except DoesNotCloseError as error:
             return error.with_traceback(None)  # which would keep the frames of whoever asked
 
@@ -86,12 +86,12 @@ class CompiledRequirement:
     @cached_property
     def shaped(self) -> Automaton | None:
         """Its automaton as the core has it, which those of its shape share; `None`: as above."""
-        return self._shapes.reduced(self._owed, self.alphabet, self._budget)
+        return self._shapes.reduced(self._required, self.alphabet, self._budget)
 
     @cached_property
     def shaped_residuals(self) -> Sequence[Residual]:
         """What is owed in the locations of that."""
-        return self._shapes.residuals(self._owed, self.alphabet, self._budget)
+        return self._shapes.residuals(self._required, self.alphabet, self._budget)
 
     @property
     def _budget(self) -> Budget:
@@ -143,7 +143,7 @@ class CompiledRequirement:
     @cached_property
     def network_plan(self) -> NetworkPlan:
         """The nodes of its delay network."""
-        return plan_of(self.obligation.owed, self.gap)
+        return plan_of(self.obligation.required, self.gap)
 
     @cached_property
     def reach(self) -> int | None:
@@ -151,9 +151,9 @@ class CompiledRequirement:
         return reach_of(self.network_plan)
 
     @cached_property
-    def measured_owed(self) -> Core:
+    def measured_required(self) -> Core:
         """What it owes as far as that is measured, propositions that look back taken apart."""
-        return expanded(self.measured.owed)
+        return expanded(self.measured.required)
 
     @cached_property
     def measured(self) -> Obligation:

@@ -103,16 +103,16 @@ class Explanation:
 
 
 def earlier(
-    worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, void: bool
+    worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, cannot_pass: bool
 ) -> int | None:
     """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
 
     Args:
         worse: what time alone makes of the run that takes the unknown for the worse, and when.
         better: the same of the run that takes it for the better.
-        void: whether the attempt does not pass.
+        cannot_pass: whether the attempt does not pass.
     """
-    found = [worse[0]] if worse is not None and worse[1] and not void else []
+    found = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
     found += [better[0]] if better is not None and not better[1] else []
     return min(found, default=None)
 
@@ -144,11 +144,11 @@ def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
     return "".join(f"; {outage_in_words(one, origin)}{ended}" for one in outages)
 
 
-def longer(owed: Core, triggered: int, end: int | None) -> str:
+def longer(required: Core, triggered: int, end: int | None) -> str:
     """How much longer a trace that has ended would decide an attempt, whatever it brings."""
     if end is None:
         return ""
-    reach = horizon(owed)
+    reach = horizon(required)
     if reach is None:
         return "; it has no deadline"
     latest = triggered + reach
@@ -176,7 +176,7 @@ class Undecided:
         doubt: when and why the two runs parted, or it is not known whether there was a trigger.
         unborn: which of what it reads has had no value so far.
         sure: whether its trigger was TRUE.
-        void: whether it cannot pass, since its episode was over before all was born.
+        cannot_pass: whether it cannot pass, since its episode was over before all was born.
         cut: whether it is not known any more which values it captured.
     """
 
@@ -188,7 +188,7 @@ class Undecided:
     doubt: Doubt | None
     unborn: tuple[Outage, ...]
     sure: bool
-    void: bool
+    cannot_pass: bool
     cut: bool
 
 
@@ -214,12 +214,12 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
     if attempt.sure:
         why = judged.why_open(attempt, now, end)
         # What is owed of signals without a value does not fail, and time gives them none.
-        is_unborn = attempt.void and not attempt.cut
+        is_unborn = attempt.cannot_pass and not attempt.cut
         return replace(why, deadline=None) if is_unborn else why
     if attempt.worse[0] == FAILED:
         cause = f"; {attempt.doubt}" if attempt.doubt else ""
         return Explanation(f"it is not known whether there was a trigger{cause}")
-    alone = replace(attempt, better=attempt.worse, void=False)
+    alone = replace(attempt, better=attempt.worse, cannot_pass=False)
     return replace(judged.why_open(alone, now, end), deadline=None)
 
 
@@ -228,7 +228,7 @@ def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
-    return judged.forecast(attempt, now) if attempt.sure and not attempt.void else None
+    return judged.forecast(attempt, now) if attempt.sure and not attempt.cannot_pass else None
 
 
 def why_settled(decision: Decision, policy: EndPolicy) -> str:

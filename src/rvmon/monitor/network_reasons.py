@@ -19,7 +19,7 @@ from rvmon.logic.formula import (
     Until,
 )
 from rvmon.logic.residual import TooManyClausesError
-from rvmon.monitor.cause import Cause, Standing, rendered
+from rvmon.monitor.cause import Cause, TruthValues, rendered
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.explanation import (
     Explanation,
@@ -38,7 +38,7 @@ from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Blame
 
 
-def owed_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:
+def required_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:
     """What a formula at a position asks for, as text; empty if it is decided."""
     return _Owing(network, words, origin).at(core, position)
 
@@ -191,7 +191,7 @@ def explained_by_network(
     verdict: bool,
     t: int,
     triggered: int,
-    flow: Standing,
+    flow: TruthValues,
 ) -> Explanation:
     """Why an attempt was decided.
 
@@ -207,7 +207,7 @@ def explained_by_network(
     found = None if network is None else network.truth(position)
     if network is None or found is None:
         return Explanation()
-    core, integer = compiled.obligation.owed, position // network.positions.gap
+    core, integer = compiled.obligation.required, position // network.positions.gap
     cause = NetworkCauseFinder(network, verdict, found[1]).of(core, integer)
     if cause is None:
         return Explanation("there was no obligation" if verdict else "it can never hold")
@@ -270,14 +270,14 @@ class NetworkRuns:
             return Explanation(f"left open by the input: {attempt.doubt}")
         compiled = attempt.compiled
         position = token[1][0] // network.positions.gap
-        core = compiled.obligation.owed
-        owed = owed_at(network, core, position, compiled.words, attempt.origin)
+        core = compiled.obligation.required
+        required = required_at(network, core, position, compiled.words, attempt.origin)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        waiting = still_required(owed or "what lies ahead", end, attempt.origin)
+        waiting = still_required(required or "what lies ahead", end, attempt.origin)
         lasting = longer(core, attempt.triggered, end)
         reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
         alone = (_alone(self.worse, attempt.worse), _alone(self.better, attempt.better))
-        return Explanation(reason, owed, earlier(*alone, void=attempt.void))
+        return Explanation(reason, required, earlier(*alone, cannot_pass=attempt.cannot_pass))
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """As of an automaton; `None`, too, where too much is undecided.
@@ -304,7 +304,7 @@ class NetworkRuns:
         remaining = Remaining(network, forecaster.duals)
         position = token[1][0] // network.positions.gap
         try:
-            residual, ages = remaining.of(attempt.compiled.obligation.owed, position, value)
+            residual, ages = remaining.of(attempt.compiled.obligation.required, position, value)
         except TooManyClausesError:
             return True
         return forecaster.admits(residual, ages, self.gap)

@@ -12,7 +12,7 @@ from rvmon.logic.automaton import Token
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
 from rvmon.logic.state_graph import names_of
 from rvmon.monitor.automaton_reasons import MachineRuns, Reasons, explained
-from rvmon.monitor.cause import Standing
+from rvmon.monitor.cause import TruthValues
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.explanation import (
@@ -150,7 +150,9 @@ class Told:
     def _then(self, note: Note) -> tuple[int, ...]:
         return truths(note.words[_HEAD:], len(self._texts))
 
-    def _stood(self, note: Note, origin: int) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
+    def _truth_values(
+        self, note: Note, origin: int
+    ) -> tuple[tuple[int, ...], tuple[int, ...], TruthValues]:
         """The leaves, the propositions, and how these were."""
         words, propositions = note.state, self._propositions
         leaves = truths(words[2:], len(self._texts))
@@ -167,7 +169,7 @@ class Told:
         return (
             leaves,
             values,
-            Standing(*(origin, self._gap, _instant(words[1]), held, since, before)),
+            TruthValues(*(origin, self._gap, _instant(words[1]), held, since, before)),
         )
 
     def _letters(self, values: Sequence[int]) -> tuple[int, int]:
@@ -189,7 +191,7 @@ class Told:
         else:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
-                seen = truths_shown(self._texts, self._stood(note, attempt.origin)[0])
+                seen = truths_shown(self._texts, self._truth_values(note, attempt.origin)[0])
         return {
             "reason": why.reason,
             "deadline": why.deadline,
@@ -201,7 +203,7 @@ class Told:
         }
 
     def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
-        leaves, values, flow = self._stood(note, attempt.origin)
+        leaves, values, flow = self._truth_values(note, attempt.origin)
         passed = attempt.verdict is Verdict.PASS
         if note.flags & _NETWORK:
             position = note.words[6]

@@ -17,7 +17,7 @@ from rvmon.monitor.cause import (
     LastWith,
     Place,
     Sentence,
-    Standing,
+    TruthValues,
     Turned,
 )
 from rvmon.spec.checked.classify import has_future, is_pulse
@@ -202,7 +202,7 @@ class Words:
         quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
         return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 
-    def blame(self, cause: Cause, t: int, start: int, flow: Standing) -> Blame:
+    def blame(self, cause: Cause, t: int, start: int, flow: TruthValues) -> Blame:
         """What failed at `t`, instantiated at `start`."""
         node = cause.node
         formula = self.formula(node)
@@ -219,7 +219,7 @@ class Words:
         first, last = (0, 0) if span is None else (span.start, span.end)
         return Blame(self.text(node), first, last, window, at)
 
-    def owed(self, residual: Residual, anchors: Sequence[int], origin: int) -> str:
+    def required(self, residual: Residual, anchors: Sequence[int], origin: int) -> str:
         """What a residual still asks for, as text of the spec."""
         clauses = []
         for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
@@ -234,7 +234,7 @@ class Words:
         """All that is reported of a residual, for clocks that were started at any time."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
-        return self.owed(residual, anchors, 0), deadline(residual, anchors)
+        return self.required(residual, anchors, 0), deadline(residual, anchors)
 
     def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int, origin: int) -> str:
         text = f"`{self.text(node)}`"

@@ -25,9 +25,9 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
         one: the requirement.
         measured: whether its robustness is measured as well.
     """
-    owed, alphabet, automaton = one.obligation.owed, one.alphabet, one.shaped
+    required, alphabet, automaton = one.obligation.required, one.alphabet, one.shaped
     if measured and one.counts_alone:
-        owed, alphabet, automaton = _nothing_owed()
+        required, alphabet, automaton = _nothing_required()
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
@@ -37,12 +37,12 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
             return None
         return planned_rule(other, measured=measured)
 
-    figured = one.measured_owed if measured else None
+    figured = one.measured_required if measured else None
     read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
     return PlannedRule(
         one.requirement,
         obligation.trigger,
-        owed,
+        required,
         alphabet,
         automaton,
         one.in_runs(automaton),
@@ -75,12 +75,12 @@ def _stepped(rule: PlannedRule) -> PlannedRule:
 
 
 @cache
-def _nothing_owed() -> tuple[Core, Alphabet, Automaton]:
+def _nothing_required() -> tuple[Core, Alphabet, Automaton]:
     """What attempts owe that only have to be counted, and what judges them."""
     factory = Factory()
-    owed = factory.constant(True)
-    alphabet = alphabet_of(owed)
-    return owed, alphabet, construct(factory.next(owed), alphabet, Budget())
+    required = factory.constant(True)
+    alphabet = alphabet_of(required)
+    return required, alphabet, construct(factory.next(required), alphabet, Budget())
 
 
 def _blurs(one: CompiledRequirement) -> State | None:

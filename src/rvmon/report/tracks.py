@@ -36,13 +36,13 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
-    owed = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
+    required = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
-        for atom in owed
+        for atom in required
         if atom.span is not None and blame.start <= atom.span.start < blame.end
     ]
-    return frozenset(name for atom in failed or owed for name in names_read(atom))
+    return frozenset(name for atom in failed or required for name in names_read(atom))
 
 
 def thresholds(requirement: Requirement, name: str) -> tuple[Threshold, ...]:

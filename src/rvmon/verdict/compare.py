@@ -59,7 +59,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two files of verdicts, held against each other.
+    """Two files of verdicts, compared.
 
     Attributes:
         differences: of recordings and requirements that both have; losses first.
@@ -86,7 +86,7 @@ class _Run:
 
 
 def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Comparison:
-    """Hold two files of verdicts against each other, by recording and requirement.
+    """Compare two files of verdicts, by recording and requirement.
 
     Recordings are the same that have the same name. If no name stands in both files, the folder
     that all recordings of a file lie in is left out: the recordings were moved.

@@ -96,7 +96,7 @@ def test_known_answers(analysed):
 
 
 @pytest.mark.parametrize(
-    ("time", "owed", "passes"),
+    ("time", "required", "passes"),
     [
         ("held", "for 1 s v", False),  # v ends, and what was owed at its last instant fails
         ("held", "for 1 s w", True),
@@ -106,9 +106,9 @@ def test_known_answers(analysed):
         ("sampled", "for 1 s v", True),  # so much time may lie between two samples
     ],
 )
-def test_a_clock_that_is_started_at_every_position(time, owed, passes):
+def test_a_clock_that_is_started_at_every_position(time, required, passes):
     """How much time goes by between positions counts for what can come of an episode."""
-    text = f"time {time}\nsignal v, w : bool\nrequirement R\n  whenever v\n  then {owed}\n"
+    text = f"time {time}\nsignal v, w : bool\nrequirement R\n  whenever v\n  then {required}\n"
     assert analysis_of(text).examination.possible["R"].pass_ is passes
 
 
@@ -295,7 +295,7 @@ def _random_responses(rng):
     literals = [build.p, build.q, build.f, build.no(build.p), build.no(build.q), build.no(build.f)]
     triggers = [build.e, build.f, build.two(build.e, "and", build.p), build.start]
 
-    def owed():
+    def required():
         low = rng.choice([0, 0, 0, 1, 2])
         high = low + rng.randint(0, 3)
         operator = rng.choice([build.eventually, build.always, build.always])
@@ -308,7 +308,7 @@ def _random_responses(rng):
 
     return build.spec_of(
         *(
-            build.requirement(owed(), upon=rng.choice(triggers), name=f"R{number}")
+            build.requirement(required(), upon=rng.choice(triggers), name=f"R{number}")
             for number in (1, 2, 3)
         )
     )

@@ -125,5 +125,5 @@ def test_the_window_reaches_around_the_attempt():
     attempt = monitor.finish_ns(30).attempts[0]
     breakdown = dissect(spec, samples, 30, attempt)
     assert breakdown.start <= attempt.triggered < attempt.decided <= breakdown.end
-    owed = next(s for s in breakdown.part_truths if s.part == "required" and s.depth == 0)
-    assert attempt.triggered in ticks(owed.false)
+    required = next(s for s in breakdown.part_truths if s.part == "required" and s.depth == 0)
+    assert attempt.triggered in ticks(required.false)

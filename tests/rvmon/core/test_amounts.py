@@ -280,7 +280,7 @@ def test_an_amount_is_due_between_samples():
 
 
 @pytest.mark.parametrize(
-    ("owed", "due"),
+    ("required", "due"),
     [
         ("mean(x, 10 s) <= 3", 6_000_000_000),
         ("mean(x, 4 s) <= 3", 4_666_666_667),
@@ -289,9 +289,9 @@ def test_an_amount_is_due_between_samples():
         ("duration(x > 2) <= 2 s", 4_000_000_001),
     ],
 )
-def test_what_moves_between_samples_is_due_when_it_crosses(owed, due):
+def test_what_moves_between_samples_is_due_when_it_crosses(required, due):
     """Worked out ahead, to the tick."""
-    spec = rvmon.loads(f"spec s\nsignal x : real\nrequirement R\n  always {owed}\n")
+    spec = rvmon.loads(f"spec s\nsignal x : real\nrequirement R\n  always {required}\n")
     monitor = spec.monitor()
     monitor.step(0.0, {"x": 1.0})
     monitor.step(2.0, {"x": 4.0})
@@ -318,14 +318,14 @@ def test_sums_are_those_of_the_numbers_that_there_are():
 
 def test_a_sum_goes_on_from_a_snapshot():
     """At every sample, as if nothing had been."""
-    owed = (
+    required = (
         "mean(x, 3 s) <= 2",
         "integral(x) <= 7 s",
         "distinct(x, 3 s) <= 1",
         "delta(x, 3 s) <= 1",
     )
-    owed += ("variance(last(2, x)) <= 1", "sum(last(2, x)) <= 3", "count(last(3, x > 2)) <= 1")
-    body = "".join(f"requirement R{n}\n  always {one}\n" for n, one in enumerate(owed))
+    required += ("variance(last(2, x)) <= 1", "sum(last(2, x)) <= 3", "count(last(3, x > 2)) <= 1")
+    body = "".join(f"requirement R{n}\n  always {one}\n" for n, one in enumerate(required))
     spec = rvmon.loads(f"spec s\nsignal x : real\n{body}")
     samples = [(0.0, {"x": 1.0}), (1.0, {"x": None}), (2.5, {"x": 2.5}), (4.0, {"x": 1e300})]
     whole = spec.monitor()

@@ -32,8 +32,8 @@ OWED = {
 }
 
 
-def text_of(owed, time=""):
-    return f"spec many\n{time}{HEAD}requirement R1\n  {owed}\n  for each k in order.id\n"
+def text_of(required, time=""):
+    return f"spec many\n{time}{HEAD}requirement R1\n  {required}\n  for each k in order.id\n"
 
 
 def samples(rng, count):

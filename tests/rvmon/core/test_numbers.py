@@ -8,11 +8,11 @@ import rvmon
 MOST = 2**63 - 1
 
 
-def spec_of(owed: str) -> rvmon.Spec:
+def spec_of(required: str) -> rvmon.Spec:
     """A specification of one requirement about numbers."""
     return rvmon.loads(
         "spec s\nsignal x, y : int\nsignal z : real\nevent e(k: int)\n"
-        f"requirement R1\n  always ({owed})\n"
+        f"requirement R1\n  always ({required})\n"
     )
 
 
@@ -23,7 +23,7 @@ def forms_of(x: int, y: int, z: float = 0.0):
 
 
 @pytest.mark.parametrize(
-    ("owed", "x", "y", "verdict"),
+    ("required", "x", "y", "verdict"),
     [
         ("x == y", 2**53 + 1, 2**53, "F"),
         ("x == y", 2**53, -(2**53) - 1, "F"),
@@ -43,16 +43,16 @@ def forms_of(x: int, y: int, z: float = 0.0):
         ("x / y < 0.3 or y == 0 or x > 2", 2**53, 3, "P"),
     ],
 )
-def test_whole_numbers_are_exact(owed, x, y, verdict):
+def test_whole_numbers_are_exact(required, x, y, verdict):
     """Within 64 bits the core says what Python's own numbers say."""
-    spec = spec_of(owed)
+    spec = spec_of(required)
     for trace in forms_of(x, y):
         report = spec.evaluate(trace, allow_missing=["e"])
         assert report.verdicts == {"R1": verdict}
 
 
 @pytest.mark.parametrize(
-    ("owed", "x", "y"),
+    ("required", "x", "y"),
     [
         ("x + y > 0", MOST, 1),
         ("x - y > 0", MOST, -1),
@@ -62,16 +62,16 @@ def test_whole_numbers_are_exact(owed, x, y, verdict):
         ("delta(x) - 1 < 0", -(2**63), 0),
     ],
 )
-def test_what_leaves_64_bits_is_unknown(owed, x, y):
+def test_what_leaves_64_bits_is_unknown(required, x, y):
     """No sum of two numbers that are there is one that is not."""
-    spec = spec_of(f"{owed} or x == 0")
+    spec = spec_of(f"{required} or x == 0")
     for trace in forms_of(x, y):
         report = spec.evaluate(trace, allow_missing=["e"])
         assert report.verdicts == {"R1": "I"}
 
 
 @pytest.mark.parametrize(
-    ("owed", "x", "z", "verdict"),
+    ("required", "x", "z", "verdict"),
     [
         ("x == z", 2**53 + 1, float(2**53), "F"),
         ("x > z or x == 0", 2**53 + 1, float(2**53), "P"),
@@ -79,9 +79,9 @@ def test_what_leaves_64_bits_is_unknown(owed, x, y):
         ("x == z", 2**60, 2.0**60, "P"),
     ],
 )
-def test_a_whole_number_beside_a_real_one_is_compared_exactly(owed, x, z, verdict):
+def test_a_whole_number_beside_a_real_one_is_compared_exactly(required, x, z, verdict):
     """It is not rounded to a double first."""
-    spec = spec_of(owed)
+    spec = spec_of(required)
     for trace in forms_of(x, 0, z):
         report = spec.evaluate(trace, allow_missing=["e"])
         assert report.verdicts == {"R1": verdict}

@@ -17,17 +17,19 @@ event g(k: int)
 """
 
 
-def case_of(time: str, owed: str, *actions: object, end: int | None = None) -> Case:
+def case_of(time: str, required: str, *actions: object, end: int | None = None) -> Case:
     """A case of one requirement; actions are pairs of an instant and values, or instants."""
-    spec = rvmon.loads(f"time {time}\n{NAMES}requirement R\n  {owed}\n").checked
+    spec = rvmon.loads(f"time {time}\n{NAMES}requirement R\n  {required}\n").checked
     told = (Sample(*action) if isinstance(action, tuple) else action for action in actions)
     return Case(spec, tuple(told), end)
 
 
 ENDS = [
-    case_of(time, f"upon start then {owed}", (0, {"p": True, "q": False}), (3, {}), until, end=end)
+    case_of(
+        time, f"upon start then {required}", (0, {"p": True, "q": False}), (3, {}), until, end=end
+    )
     for time in ("held", "sampled", "sampled every 2 ns")
-    for owed in ("G[5 ns, inf) p", "F[0 ns, 5 ns] q", "(G[5 ns, inf) p) or F[2 ns, 4 ns] q")
+    for required in ("G[5 ns, inf) p", "F[0 ns, 5 ns] q", "(G[5 ns, inf) p) or F[2 ns, 4 ns] q")
     for until in (3, 5, 9)
     for end in (None, 4, 6, 12)
 ]
@@ -152,7 +154,7 @@ CASES |= {
 LAST_TICKS = [
     case_of(
         "sampled every 4 ns",
-        f"upon end\n  then {owed}",
+        f"upon end\n  then {required}",
         (-2, {"x": 1.0, "g": {"k": 1}}),
         (1, {"p": True, "g": {"k": 2}}),
         *between,
@@ -161,7 +163,7 @@ LAST_TICKS = [
         (7, {"x": None, "p": False, "g": {"k": 4}}),
         end=end,
     )
-    for owed in (
+    for required in (
         "x > v or p\n  let v = x",
         "true\n  let v = prev(x)",
         "true\n  let v = g.k",
@@ -184,7 +186,7 @@ def test_what_is_captured_at_the_end_is_what_the_last_tick_saw() -> None:
 RESTARTS = [
     case_of(
         time,
-        f"whenever p then {owed} and F[3 ns, {last} ns] q\nrequirement Q\n  upon e then true",
+        f"whenever p then {required} and F[3 ns, {last} ns] q\nrequirement Q\n  upon e then true",
         (0, {"p": True, "q": True, "x": 0.0}),
         (2, {"p": False}),
         (4, {"p": True}),
@@ -194,7 +196,7 @@ RESTARTS = [
         end=45,
     )
     for time in ("held", "sampled every 2 ns")
-    for owed in ("(F[0 ns, 13 ns] x > 1)", "(F[0 ns, 18 ns] G[0 ns, 2 ns] x > 1)")
+    for required in ("(F[0 ns, 13 ns] x > 1)", "(F[0 ns, 18 ns] G[0 ns, 2 ns] x > 1)")
     for last in (4, 5)
     for told in ((), (12,), (20,))
 ]
@@ -207,7 +209,7 @@ def test_an_episode_goes_on_at_once_while_an_older_one_is_open() -> None:
     assert [text for case in RESTARTS for text in disagreements(case, make, online=True)] == []
 
 
-def long_case(time: str, owed: str, seed: int, many: int) -> Case:
+def long_case(time: str, required: str, seed: int, many: int) -> Case:
     """A case of many samples in which values change often, and now and then stay for long."""
     rng = random.Random(seed)
     actions: list[object] = []
@@ -216,13 +218,13 @@ def long_case(time: str, owed: str, seed: int, many: int) -> Case:
         values = {name: rng.random() < 0.5 for name in "pq" if rng.random() < 0.7}
         actions.append((t, {**values, "e": True} if rng.random() < 0.4 else values))
         t += rng.choice((1, 1, 1, 2, 3, 9))
-    return case_of(time, owed, *actions, end=t)
+    return case_of(time, required, *actions, end=t)
 
 
 CHAINS = [
-    long_case(time, owed, seed, 60)
+    long_case(time, required, seed, 60)
     for seed, time in enumerate(("held", "sampled", "sampled every 2 ns"))
-    for owed in (
+    for required in (
         "upon e then F[0 ns, 4 ns] G[0 ns, 3 ns] p",
         "whenever q then G[0 ns, 5 ns] F[0 ns, 3 ns] p",
         "whenever q then F[0 ns, 40 ns] G[0 ns, 2 ns] p\n  at end: strict",

@@ -16,9 +16,9 @@ from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 
 
-def spec_of(declared: str, owed: str) -> rvmon.Spec:
+def spec_of(declared: str, required: str) -> rvmon.Spec:
     """A specification of one requirement."""
-    return rvmon.loads(f"spec s\n{declared}\nrequirement R1\n  {owed}\n")
+    return rvmon.loads(f"spec s\n{declared}\nrequirement R1\n  {required}\n")
 
 
 def by_the_law(spec: rvmon.Spec, columns: dict[str, np.ndarray], ticks: np.ndarray) -> rvmon.Report:
@@ -156,10 +156,10 @@ def test_a_signal_is_not_born_by_nan():
     assert (attempt.verdict, attempt.decided) == ("I", None)
 
 
-@pytest.mark.parametrize("owed", ["delta(x) < 1", "changed(x) -> p", "updated(x) -> p"])
-def test_each_row_is_an_update(owed):
+@pytest.mark.parametrize("required", ["delta(x) < 1", "changed(x) -> p", "updated(x) -> p"])
+def test_each_row_is_an_update(required):
     """No row is passed over where an update counts that changes nothing."""
-    spec = spec_of("signal p : bool\nsignal x : real", f"always ({owed})")
+    spec = spec_of("signal p : bool\nsignal x : real", f"always ({required})")
     rows = np.arange(300)
     trace = {"t_ns": rows, "p": rows % 100 > 0, "x": np.floor(rows / 50) ** 2}
     report = spec.evaluate(trace)

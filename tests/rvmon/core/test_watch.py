@@ -30,7 +30,7 @@ from rvmon.trace.sample import Sample
 AHEAD = "signal p : bool\nsignal x : real\nrequirement R\n  upon p\n  then within 3 ns x > 1\n"
 
 
-def owed(text):
+def required(text):
     """The specification, and what its requirement owes."""
     checked = rvmon.loads(text).checked
     consequent = checked.requirements["R"].consequent
@@ -39,7 +39,7 @@ def owed(text):
 
 def truths(text, values, end):
     """Where what is owed is surely true, and surely false."""
-    checked, core = owed(text)
+    checked, core = required(text)
     samples = [Sample(t, one) for t, one in values.items()]
     (found,) = known_truths(checked, [core], samples, end, None, {})
     return found.true, found.false

@@ -64,8 +64,8 @@ def test_memory_is_bounded_however_long_windows_are_followed(tmp_path):
     """Of windows within windows what is over is given up, where samples are positions, too."""
     cases = []
     for time in ("held", "sampled", "sampled every 2 ns"):
-        owed = "always F[0 ns, 9 ns] G[0 ns, 3 ns] p"
-        spec = rvmon.loads(f"time {time}\nsignal p : bool\nrequirement R\n  {owed}\n").checked
+        required = "always F[0 ns, 9 ns] G[0 ns, 3 ns] p"
+        spec = rvmon.loads(f"time {time}\nsignal p : bool\nrequirement R\n  {required}\n").checked
         samples = [Sample(t, {"p": t % 17 > 2}) for t in range(3000)]
         cases += [Case(spec, tuple(samples[:many])) for many in (500, 3000)]
     exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
@@ -88,12 +88,12 @@ def test_notes_change_nothing_and_are_bounded(tmp_path):
     assert list(map(without_memory, bare)) == list(map(without_memory, noted))
     long = []
     for time in ("held", "sampled", "sampled every 2 ns"):
-        for owed in (
+        for required in (
             "always F[0 ns, 9 ns] G[0 ns, 3 ns] (p or not p)",
             "upon p then F[0 ns, 40 ns] q",
         ):
             spec = rvmon.loads(
-                f"time {time}\nsignal p, q : bool\nrequirement R\n  {owed}\n"
+                f"time {time}\nsignal p, q : bool\nrequirement R\n  {required}\n"
             ).checked
             turns = [Sample(t, {"p": t % 17 > 2, "q": t % 5 == 0}) for t in range(4000)]
             long += [Case(spec, tuple(turns[:many])) for many in (1000, 4000)]

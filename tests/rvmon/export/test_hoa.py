@@ -203,8 +203,8 @@ def test_letters_that_cannot_be(data):
         def randint(self, a, b, /):
             return data.draw(st.integers(a, b))
 
-    owed = format_formula(random_ltl(Drawn(), data.draw(st.integers(1, 3))))
-    text = re.sub(r"\b[pqr]\b", lambda found: f"({OWED[found[0]]})", owed)
+    required = format_formula(random_ltl(Drawn(), data.draw(st.integers(1, 3))))
+    text = re.sub(r"\b[pqr]\b", lambda found: f"({OWED[found[0]]})", required)
     when = data.draw(st.sampled_from(("start", *LIMITS)))
     spec = loads(
         f"spec s\ntime sampled\nsignal x : real\nrequirement R\n  upon {when} then {text}\n"

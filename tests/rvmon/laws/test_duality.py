@@ -151,8 +151,8 @@ def test_negation_exchanges_verdicts(subject: Any, holds: Any) -> None:
             reports = []
             for consequent, at_end in ((formula, policy), (no(formula), other)):
                 changed = with_consequent(spec, consequent)
-                [owed] = changed.requirements.values()
-                upon = requirement(consequent, upon=owed.trigger, at_end=at_end)
+                [required] = changed.requirements.values()
+                upon = requirement(consequent, upon=required.trigger, at_end=at_end)
                 one = spec_of(upon, time=spec.time, period=spec.period)
                 reports.append(
                     subject.judge(replace(case, spec=replace(one, signals=spec.signals)))

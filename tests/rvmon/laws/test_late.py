@@ -90,8 +90,8 @@ def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
     """An attempt that begins behind it, and looks back at nothing, is judged as ever."""
     whole, judged, late = cases_
     spec = judged.spec
-    [owed] = spec.requirements.values()
-    assume(late.t >= judged.samples[0].t and owed.mode is Mode.UPON)
+    [required] = spec.requirements.values()
+    assume(late.t >= judged.samples[0].t and required.mode is Mode.UPON)
     ends = [stretch_of(spec, name, judged.samples, late)[1] for name in late.values]
     assume(None not in ends)
     last = max([late.t, *(end for end in ends if end is not None)]) + (spec.period or 1)

@@ -73,8 +73,8 @@ def test_resolving_unknowns(subject: Any, holds: Any) -> None:
         probes = [part for part in subformulas(first.consequent) if isinstance(part, ProbeAtom)]
         assume(not any(part.probe is Probe.KNOWN for part in probes))
         assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
-        owed = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
-        spec = replace(spec, requirements={owed.id: owed})
+        required = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
+        spec = replace(spec, requirements={required.id: required})
         case = data.draw(traces(spec))
         # What is not there yet is not what was lost: it stays so.
         names = {*spec.signals}

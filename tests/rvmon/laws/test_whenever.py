@@ -71,7 +71,7 @@ def _asks_updates(formula: Formula) -> bool:
 
 def _known(subject: Any, case: Case) -> bool:
     """Whether the trigger has a value at every position: then `θ or not θ` holds throughout."""
-    [owed] = case.spec.requirements.values()
-    asked = requirement(always(two(owed.trigger, "or", no(owed.trigger))))
+    [required] = case.spec.requirements.values()
+    asked = requirement(always(two(required.trigger, "or", no(required.trigger))))
     spec = replace(case.spec, requirements={asked.id: asked})
     return all(a.decided is not None for a in subject.judge(replace(case, spec=spec)).attempts)

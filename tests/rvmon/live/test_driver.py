@@ -375,8 +375,8 @@ def test_what_is_open_is_in_the_status_with_its_deadline():
     door = Door()
     door.driver.offer({"knock": True})
     door.at(1)
-    (owed,) = [one for one in door.driver.status()[""].open if one.requirement == "D1"]
-    assert owed.deadline == 2 * S
+    (required,) = [one for one in door.driver.status()[""].open if one.requirement == "D1"]
+    assert required.deadline == 2 * S
 
 
 def test_closing_judges_what_waits_and_is_the_end():

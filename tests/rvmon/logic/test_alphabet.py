@@ -9,7 +9,7 @@ from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
 
 
 def alphabet(formula, **more):
-    return alphabet_of(lower(requirement(formula, **more), Factory()).owed)
+    return alphabet_of(lower(requirement(formula, **more), Factory()).required)
 
 
 def test_a_proposition_read_one_way_needs_two_digits():

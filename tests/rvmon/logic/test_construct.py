@@ -20,8 +20,8 @@ SECOND = 10**9
 
 def core(formula, **more):
     factory = Factory()
-    owed = lower(requirement(formula, **more), factory).owed
-    return factory.next(owed), alphabet_of(owed)
+    required = lower(requirement(formula, **more), factory).required
+    return factory.next(required), alphabet_of(required)
 
 
 def build(formula, budget=None, **more):
@@ -90,13 +90,13 @@ def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
     formula = eventually(names[0], 0, 1)
     for number, name in enumerate(names[1:], 2):
         formula = two(formula, "or", eventually(name, 0, number))
-    owed, alphabet = core(formula)
-    automaton = reduce(construct(owed, alphabet, Budget()))
+    required, alphabet = core(formula)
+    automaton = reduce(construct(required, alphabet, Budget()))
     assert alphabet.size == 2**18
     assert isinstance(automaton.class_of, LetterDiagram)
     assert automaton.classes == 19
     rng = Random(1)
-    table, worked_out = TableMachine(automaton), Progression(owed, alphabet)
+    table, worked_out = TableMachine(automaton), Progression(required, alphabet)
     for _ in range(40):
         tokens = table.start, worked_out.start
         for t in range(20):

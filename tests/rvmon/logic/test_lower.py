@@ -23,8 +23,8 @@ from rvmon.logic.formula import Factory, Literal, Release, Sense, Since, Until, 
 from rvmon.logic.lower import UnmonitorableError, lower
 
 
-def owed(formula, **more):
-    return lower(requirement(formula, **more), Factory()).owed
+def required(formula, **more):
+    return lower(requirement(formula, **more), Factory()).required
 
 
 def test_equal_meanings_become_one_object():
@@ -40,21 +40,23 @@ def test_equal_meanings_become_one_object():
         (no(two(p, "xor", eventually(q))), no(no(no(two(p, "xor", eventually(q)))))),
     ]
     for left, right in pairs:
-        first = lower(requirement(left), factory).owed
-        assert first is lower(requirement(right), factory).owed
+        first = lower(requirement(left), factory).required
+        assert first is lower(requirement(right), factory).required
 
 
 def test_present_and_past_become_one_proposition():
     """What is known at once is not taken apart, so that letters stay few."""
-    node = owed(eventually(two(two(p, "and", no(q)), "or", once(compared(x, ">", 1), 0, 5)), 0, 3))
+    node = required(
+        eventually(two(two(p, "and", no(q)), "or", once(compared(x, ">", 1), 0, 5)), 0, 3)
+    )
     assert isinstance(node, Until)
     assert isinstance(node.right, Literal)
 
 
 def test_what_is_decided_late_is_not_folded():
     """`G[0,3] true` is decided when its window is over, `p or not p` may be unknown."""
-    assert isinstance(owed(always(two(p, "or", no(p)), 0, 3)), Release)
-    tautology = owed(two(p, "or", no(p)))
+    assert isinstance(required(always(two(p, "or", no(p)), 0, 3)), Release)
+    tautology = required(two(p, "or", no(p)))
     assert isinstance(tautology, Literal)
 
 
@@ -63,7 +65,7 @@ def test_constants_are_folded_where_that_changes_no_instant():
     factory = Factory()
 
     def made(formula):
-        return lower(requirement(formula), factory).owed
+        return lower(requirement(formula), factory).required
 
     always_true = two(p, "or", always(two(q, "and", no(q)), 0, 3))
     assert made(eventually(two(start, "->", start), 0, 3)) is not factory.true
@@ -72,7 +74,7 @@ def test_constants_are_folded_where_that_changes_no_instant():
 
 def test_an_episode_ends_where_its_trigger_is_known_to_be_false():
     """`whenever θ then ψ` is a release by the two-valued reading of not θ."""
-    node = owed(eventually(q, 0, 2), whenever=p)
+    node = required(eventually(q, 0, 2), whenever=p)
     assert isinstance(node, Release)
     assert isinstance(node.left, Literal)
     assert node.left.sense is Sense.KNOWN_FALSE
@@ -91,14 +93,14 @@ def test_an_episode_ends_where_its_trigger_is_known_to_be_false():
 )
 def test_horizon(formula, ticks):
     """The horizon is the sum of nested bounds, none if anything is unbounded."""
-    assert horizon(owed(formula)) == ticks
+    assert horizon(required(formula)) == ticks
 
 
 def test_a_trigger_that_speaks_of_the_future_is_refused():
     """Nothing is known at once of what lies ahead; in what is owed it may stand anywhere."""
     with pytest.raises(UnmonitorableError):
-        owed(p, upon=once(eventually(p, 0, 2), 0, 3))
-    assert isinstance(owed(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
+        required(p, upon=once(eventually(p, 0, 2), 0, 3))
+    assert isinstance(required(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
 
 
 @pytest.mark.slow

@@ -21,7 +21,9 @@ from rvmon.testing.strategies import formulas
 def built(formula, **more):
     factory = Factory()
     obligation = lower(requirement(formula, **more), factory)
-    automaton = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
+    automaton = construct(
+        factory.next(obligation.required), alphabet_of(obligation.required), Budget()
+    )
     return automaton, Words(obligation.origins).label
 
 

@@ -19,11 +19,11 @@ from rvmon.testing.generate.spec import Profile, random_spec
 BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
 
 
-def owed_by(requirement: Requirement, factory: Factory) -> Iterator[tuple[Next, Alphabet]]:
+def required_by(requirement: Requirement, factory: Factory) -> Iterator[tuple[Next, Alphabet]]:
     """What the attempts of a requirement owe, those in doubt too."""
     obligation: Obligation | None = lower(requirement, factory)
     while obligation is not None:
-        yield factory.next(obligation.owed), alphabet_of(obligation.owed)
+        yield factory.next(obligation.required), alphabet_of(obligation.required)
         obligation = obligation.hidden
 
 
@@ -43,10 +43,10 @@ def tables(automaton: Automaton | None) -> object:
     )
 
 
-def constructed(owed: Next, alphabet: Alphabet) -> Automaton | None:
+def constructed(required: Next, alphabet: Alphabet) -> Automaton | None:
     """The automaton of a formula, made for it alone."""
     try:
-        return reduce(construct(owed, alphabet, BUDGET), lambda residual: residual)
+        return reduce(construct(required, alphabet, BUDGET), lambda residual: residual)
     except DoesNotCloseError:
         return None
 
@@ -61,13 +61,13 @@ def test_an_automaton_of_a_known_shape_is_that_of_its_formula(part):
         spec = random_spec(Random(seed), Profile(mixed=False, captures=False, for_each=False))
         # A tick more or less makes a difference to the first of them alone.
         for factor in (1, 500, 1_000_000, 7_000_001):
-            for owed, alphabet in _retimed(spec, factor):
-                made = shapes.reduced(owed, alphabet, BUDGET)
-                alone = constructed(owed, alphabet)
+            for required, alphabet in _retimed(spec, factor):
+                made = shapes.reduced(required, alphabet, BUDGET)
+                alone = constructed(required, alphabet)
                 assert tables(made) == tables(alone)
                 if alone is not None:
                     owing = [place.residual for place in alone.locations]
-                    assert shapes.residuals(owed, alphabet, BUDGET) == owing
+                    assert shapes.residuals(required, alphabet, BUDGET) == owing
                 found.append(made)
     assert sum(made is not None for made in found) >= 100
 
@@ -76,4 +76,4 @@ def _retimed(spec: CheckedSpec, factor: int) -> Iterator[tuple[Next, Alphabet]]:
     factory = Factory()
     for one in spec.requirements.values():
         formulas = [scaled(part, factor) for part in (one.trigger, one.consequent)]
-        yield from owed_by(Requirement(one.id, one.mode, *formulas, pulse=one.pulse), factory)
+        yield from required_by(Requirement(one.id, one.mode, *formulas, pulse=one.pulse), factory)

@@ -111,12 +111,12 @@ def test_the_blamed_sample_is_the_one_that_changed_the_value():
     assert failed.blame.at == (10**9,)
 
 
-@pytest.mark.parametrize("owed", ["false since near", "slow since near", "once near"])
+@pytest.mark.parametrize("required", ["false since near", "slow since near", "once near"])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 s"])
-def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(owed, time):
+def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(required, time):
     """Not as it stood when all was born, from when on some of what is asked rests."""
     head = HEAD.replace("held", time, 1)
-    monitor = rvmon.loads(f"{head}requirement R\nupon near\nthen {owed}\n").monitor()
+    monitor = rvmon.loads(f"{head}requirement R\nupon near\nthen {required}\n").monitor()
     for t, near in enumerate([False, True, False, True, None, True, False]):
         monitor.step(t, {"near": near, "slow": True})
     found = [(one.in_doubt, one.at_trigger["near"]) for one in monitor.finish().attempts]
@@ -169,8 +169,8 @@ def test_what_is_owed_is_told_once():
     monitor = rvmon.loads(text).monitor()
     monitor.step(0, {"p": False, "q": False})
     monitor.step(2, {"p": True})
-    [owed] = monitor.open
-    assert owed.required == "`within 5 s q` by 7 s"
+    [required] = monitor.open
+    assert required.required == "`within 5 s q` by 7 s"
 
 
 @pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])

@@ -64,14 +64,14 @@ def random_case(rng, time):
     bounds = [BoundAtom(bound) for bound in Bound]
     trigger = rng.choice((*bounds, random_formula(rng, time, 0)))
     mode = rng.choice((Mode.UPON, Mode.WHENEVER)) if isinstance(trigger, Compare) else Mode.UPON
-    owed = random_formula(rng, time, rng.randint(0, 3))
+    required = random_formula(rng, time, rng.randint(0, 3))
     spec = CheckedSpec(
         name="whole",
         title="",
         time=time,
         signals={name: Signal(name, Type(Kind.REAL)) for name in "xy"},
         events={"e": Event("e")},
-        requirements={"R": Requirement("R", mode, trigger, owed)},
+        requirements={"R": Requirement("R", mode, trigger, required)},
     )
     gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
     times = np.cumsum(rng.choices(gaps, k=rng.randint(1, 25)))

@@ -90,8 +90,8 @@ def test_the_sample_before_is_kept(at):
 
 def test_time_that_passes_in_one_go_leaves_out_no_failure():
     """Within a silence each failure is followed by the next attempt, though an older one waits."""
-    owed = "always (a -> (c and F[1 s, 20 s] b) or F[1 s, 3 s] b)"
-    spec = rvmon.loads(f"spec s\nsignal a, b, c : bool\nrequirement R1\n  {owed}\n")
+    required = "always (a -> (c and F[1 s, 20 s] b) or F[1 s, 3 s] b)"
+    spec = rvmon.loads(f"spec s\nsignal a, b, c : bool\nrequirement R1\n  {required}\n")
     begun = [
         (0, {"a": True, "b": False, "c": True}),
         (1, {"a": False}),

@@ -31,7 +31,7 @@ def requirement(checked):
 
 
 @pytest.fixture
-def owed(requirement):
+def required(requirement):
     """A formula, checked and printed again."""
     return lambda formula: format_formula(requirement(f"upon start then {formula}").consequent)
 

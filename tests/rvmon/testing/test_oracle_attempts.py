@@ -158,16 +158,16 @@ def test_pulse_is_cross_checked() -> None:
 
 def test_overlap(judge: Any) -> None:
     """Attempts overlap freely and are judged each by its own window."""
-    owed = requirement(eventually(p, 0, 3), upon=e)
-    assert judge(owed, p="0...1", e="1.1") == ["0 F 4", "2 P 4"]
-    assert judge(owed, p="0.....1", e="11") == ["0 F 4", "1 F 5"]
+    required = requirement(eventually(p, 0, 3), upon=e)
+    assert judge(required, p="0...1", e="1.1") == ["0 F 4", "2 P 4"]
+    assert judge(required, p="0.....1", e="11") == ["0 F 4", "1 F 5"]
 
 
 def test_order_of_the_report(judge: Any) -> None:
     """Decided attempts come by instant, then by number; the undecided last."""
-    owed = requirement(two(q, "or", eventually(p, 0, 3)), upon=e)
+    required = requirement(two(q, "or", eventually(p, 0, 3)), upon=e)
     # Triggered at 0, q false: waits until 4. At 1 q is true at once. At 5 it is false again.
-    assert judge(owed, p="0", q="010", e="11...1", end=7) == ["1 P 1", "0 F 4", "5 I"]
+    assert judge(required, p="0", q="010", e="11...1", end=7) == ["1 P 1", "0 F 4", "5 I"]
 
 
 @pytest.mark.parametrize(
@@ -222,8 +222,8 @@ def test_whenever_a_pulse(judge: Any, rows: Any, expected: list[str]) -> None:
 
 def test_whenever_sampled(judge: Any) -> None:
     """In `sampled` time the next sample ends the episode of an event."""
-    owed = requirement(q, whenever=e)
-    assert judge(owed, e="1", q="1....1", time=TimeModel.SAMPLED) == ["0 P 5"]
+    required = requirement(q, whenever=e)
+    assert judge(required, e="1", q="1....1", time=TimeModel.SAMPLED) == ["0 P 5"]
 
 
 @pytest.mark.parametrize(
@@ -269,23 +269,25 @@ CAPTURED = (Capture("v", x),)
 )
 def test_let(judge: Any, rows: Any, expected: list[str]) -> None:
     """`let v = x` keeps the value of x at the trigger for the life of the attempt."""
-    owed = requirement(eventually(compared(x, ">", Captured("v")), 0, 3), upon=e, captures=CAPTURED)
-    assert judge(owed, **rows) == expected
+    required = requirement(
+        eventually(compared(x, ">", Captured("v")), 0, 3), upon=e, captures=CAPTURED
+    )
+    assert judge(required, **rows) == expected
 
 
 def test_let_is_recorded() -> None:
     """The report holds what was captured; `None` if it was not known."""
-    owed = requirement(true, upon=e, captures=(*CAPTURED, Capture("w", k)))
-    report = evaluate(spec_of(owed), timeline(x="5.6", e="1.1", g="..7"))
+    required = requirement(true, upon=e, captures=(*CAPTURED, Capture("w", k)))
+    report = evaluate(spec_of(required), timeline(x="5.6", e="1.1", g="..7"))
     captured = [attempt.captured for attempt in report.attempts]
     assert captured == [{"v": 5, "w": None}, {"v": 6, "w": 7}]
 
 
 def test_let_in_an_episode(judge: Any) -> None:
     """An episode captures where it starts."""
-    owed = requirement(compared(x, "<=", Captured("v")), whenever=p, captures=CAPTURED)
-    assert judge(owed, x="535", p="1..0") == ["0 P 3"]
-    assert judge(owed, x="5362", p="01.0") == ["1 F 2"]
+    required = requirement(compared(x, "<=", Captured("v")), whenever=p, captures=CAPTURED)
+    assert judge(required, x="535", p="1..0") == ["0 P 3"]
+    assert judge(required, x="5362", p="01.0") == ["1 F 2"]
 
 
 EACH = ForEach("id", k)
@@ -305,21 +307,21 @@ EACH = ForEach("id", k)
 )
 def test_for_each(judge: Any, consequent: Formula, rows: Any, expected: Any) -> None:
     """`for each id in g.k` judges the requirement once per value."""
-    owed = requirement(consequent, upon=g, for_each=EACH)
-    assert judge(owed, **rows, end=9) == (expected or ["2 P 2", "0 F 3"])
+    required = requirement(consequent, upon=g, for_each=EACH)
+    assert judge(required, **rows, end=9) == (expected or ["2 P 2", "0 F 3"])
 
 
 def test_for_each_sees_both() -> None:
     """Two payloads at one instant start an attempt each, in their order."""
-    owed = requirement(true, upon=g, for_each=EACH)
-    report = evaluate(spec_of(owed), [Sample(0, {"g": ({"k": 2}, {"k": 1})})])
+    required = requirement(true, upon=g, for_each=EACH)
+    report = evaluate(spec_of(required), [Sample(0, {"g": ({"k": 2}, {"k": 1})})])
     assert [(a.number, a.captured) for a in report.attempts] == [(1, {"id": 2}), (2, {"id": 1})]
 
 
 def test_instances_begin_with_their_value(judge: Any) -> None:
     """No attempt of an instance starts before its value has occurred."""
-    owed = requirement(true, upon=p, for_each=EACH)
-    assert judge(owed, p="01.0.1.0", g="...7") == ["5 P 5"]
+    required = requirement(true, upon=p, for_each=EACH)
+    assert judge(required, p="01.0.1.0", g="...7") == ["5 P 5"]
 
 
 def test_upon_end(judge: Any) -> None:
@@ -349,13 +351,13 @@ def test_advance_before_the_first_sample(judge: Any) -> None:
 
 def test_fold() -> None:
     """F if any attempt failed, else I if any is, else P if any passed, else NT."""
-    owed = [
+    required = [
         requirement(eventually(p, 0, 2), upon=e, name="failed"),
         requirement(eventually(p, 0, 9), upon=e, name="open"),
         requirement(true, upon=e, name="passed"),
         requirement(true, upon=f, name="idle"),
     ]
-    report = evaluate(spec_of(*owed), timeline(p="1.0", e="1..1..1", r="......1"))
+    report = evaluate(spec_of(*required), timeline(p="1.0", e="1..1..1", r="......1"))
     assert report.verdicts == {
         "failed": Verdict.FAIL,
         "open": Verdict.INCONCLUSIVE,

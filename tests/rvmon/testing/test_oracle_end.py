@@ -206,14 +206,14 @@ def test_policies_and_unknown_input(
 )
 def test_policies_of_episodes(judge: Any, policy: str, rows: Any, expected: str) -> None:
     """A running episode is a pending obligation."""
-    owed = requirement(eventually(q, 0, 2), whenever=p, at_end=EndPolicy(policy))
-    assert judge(owed, **rows) == [expected]
+    required = requirement(eventually(q, 0, 2), whenever=p, at_end=EndPolicy(policy))
+    assert judge(required, **rows) == [expected]
 
 
 def test_each_attempt_for_itself(judge: Any) -> None:
     """The end settles the attempts that it finds open, each at its own trigger."""
-    owed = requirement(always(p), upon=e)
-    assert judge(owed, e="1.1", p="01", end=4) == ["0 F 0", "2 P 4 held"]
+    required = requirement(always(p), upon=e)
+    assert judge(required, e="1.1", p="01", end=4) == ["0 F 0", "2 P 4 held"]
 
 
 @pytest.mark.parametrize("time", [{}, SAMPLED, EVERY_3])

@@ -50,8 +50,8 @@ def test_specs_are_read_back() -> None:
 
 def test_a_case_is_shown_with_its_calls() -> None:
     """A case is shown as a specification and the calls that a monitor gets."""
-    owed = requirement(eventually(p, 0, 3), upon=e)
-    case = Case(spec_of(owed, stale={"x": 2}), (*timeline(p="0", e="1"), 4), 9, frozenset("pe"))
+    required = requirement(eventually(p, 0, 3), upon=e)
+    case = Case(spec_of(required, stale={"x": 2}), (*timeline(p="0", e="1"), 4), 9, frozenset("pe"))
     text = show_case(case)
     for line in (
         "time held",

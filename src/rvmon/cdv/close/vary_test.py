@@ -119,12 +119,12 @@ class Mutator:
             value = _built(test, self._type)
             for _ in range(rng.choice(CHANGES)):
                 field = self._learned.choose(rng, "field", self._places(value), choices)
-                lent = _built(rng.choice(others), self._type) if others else value
+                donor = _built(rng.choice(others), self._type) if others else value
                 found = self._type_of(field)
                 value[field] = (
                     rng.randrange(_SEEDS)
                     if field == "seed"
-                    else self._changed(value[field], found, lent[field], field, rng, choices)
+                    else self._changed(value[field], found, donor[field], field, rng, choices)
                 )
             try:
                 made = msgspec.convert(value, self._kind)
@@ -150,7 +150,7 @@ class Mutator:
         self,
         value: Any,
         kind: inspect.Type,
-        lent: Any,
+        donor: Any,
         path: str,
         rng: random.Random,
         drawn: list[Draw],
@@ -160,7 +160,7 @@ class Mutator:
         Args:
             value: as plain data.
             kind: its type.
-            lent: the value at the same place of another test.
+            donor: the value at the same place of another test.
             path: that place, the same for all elements of a sequence.
             rng: draws.
             drawn: gets the choices.
@@ -178,17 +178,17 @@ class Mutator:
                 name = self._learned.choose(rng, path, names, drawn)
                 of = next(field.type for field in fields if field.encode_name == name)
                 whole = _filled(value, kind)
-                beside = _filled(lent, kind) if isinstance(lent, dict) else whole
+                beside = _filled(donor, kind) if isinstance(donor, dict) else whole
                 inner = beside.get(name, whole[name])
                 new = self._changed(whole[name], of, inner, f"{path}.{name}", rng, drawn)
                 return {**whole, name: new}
             case inspect.VarTupleType() | inspect.ListType():
-                others = list(lent) if isinstance(lent, list | tuple) else []
+                others = list(donor) if isinstance(donor, list | tuple) else []
                 return self._sequence(list(value), kind.item_type, others, path, rng, drawn)
             case inspect.UnionType():
                 own = _member(value, kind)
                 if own is not None and _can_change(own) and rng.random() < 0.5:
-                    return self._changed(value, own, lent, path, rng, drawn)
+                    return self._changed(value, own, donor, path, rng, drawn)
                 options = [one for one in kind.types if _can_make(one)]
                 return self._fresh(rng.choice(options), path, rng, drawn) if options else value
             case inspect.IntType() | inspect.FloatType() if rng.random() < 0.5:
@@ -200,13 +200,13 @@ class Mutator:
         self,
         values: list[Any],
         kind: inspect.Type,
-        lent: list[Any],
+        donor: list[Any],
         path: str,
         rng: random.Random,
         drawn: list[Draw],
     ) -> list[Any]:
         """A sequence with an element more, less, moved or changed, or with a tail of another."""
-        ways = ["insert", *(["borrow", "tail"] if lent else [])]
+        ways = ["insert", *(["borrow", "tail"] if donor else [])]
         ways += ["remove", "move", *["change"] * len(values)] if values else []
         way = self._learned.choose(rng, f"{path}[]", ways, drawn)
         place = rng.randrange(len(values) + (way in ("insert", "borrow", "tail")))
@@ -214,15 +214,15 @@ class Mutator:
             case "insert":
                 values.insert(place, self._fresh(kind, f"{path}[]", rng, drawn))
             case "borrow":
-                values.insert(place, rng.choice(lent))
+                values.insert(place, rng.choice(donor))
             case "tail":
-                return values[:place] + lent[rng.randrange(len(lent)) :]
+                return values[:place] + donor[rng.randrange(len(donor)) :]
             case "remove":
                 del values[place]
             case "move":
                 values.insert(rng.randrange(len(values)), values.pop(place))
             case _:
-                other = rng.choice(lent) if lent else values[place]
+                other = rng.choice(donor) if donor else values[place]
                 values[place] = self._changed(values[place], kind, other, f"{path}[]", rng, drawn)
         return values
 

@@ -1,4 +1,4 @@
-"""A suite played on the code as it is, with all that is recorded: what mutants are held against."""
+"""A suite played on the code as it is, with all that is recorded: what mutants are compared to."""
 
 from __future__ import annotations
 

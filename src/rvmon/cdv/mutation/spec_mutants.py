@@ -293,8 +293,8 @@ def _changed(requirement: Requirement) -> Iterator[tuple[str, Requirement]]:
 
 
 def _text(requirement: Requirement) -> str:
-    trigger, owed = format_formula(requirement.trigger), format_formula(requirement.consequent)
-    return f"{requirement.mode} {trigger} then {owed}"
+    trigger, required = format_formula(requirement.trigger), format_formula(requirement.consequent)
+    return f"{requirement.mode} {trigger} then {required}"
 
 
 def try_spec_mutants(
@@ -344,7 +344,8 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
         replace(spec, requirements={name: replace(one, id=name) for name, one in pair.items()})
     ).requirements
     if any(
-        horizon(one.obligation.owed) is None or one.automaton is None for one in compiled.values()
+        horizon(one.obligation.required) is None or one.automaton is None
+        for one in compiled.values()
     ):
         return False
     before, after = (

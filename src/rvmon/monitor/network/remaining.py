@@ -52,7 +52,7 @@ class Remaining:
         known = positions.last if positions.sparse else (network.limit - 1) // positions.slope
         self.now = min(known, positions.last)
         self._looked = 0
-        self._owed: Core | None = None
+        self._required: Core | None = None
 
     def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
         """What a formula, or its negation, at a position asks for at least.
@@ -69,7 +69,7 @@ class Remaining:
             TooManyClausesError: it may have more than `MOST_CLAUSES` clauses.
         """
         self._looked = 0
-        self._owed = core
+        self._required = core
         found = self._at(core, position, positive)
         anchors = sorted({c for clause in found for _, c in clause if c != NO_CLOCK})
         number = {anchor: clock for clock, anchor in enumerate(anchors)}
@@ -90,7 +90,7 @@ class Remaining:
         value = self._value(core, position, positive)
         if value is not None:
             return HOLDS if value else FAILS
-        unheard = position < self.network.start and core is not self._owed
+        unheard = position < self.network.start and core is not self._required
         if unheard or self._looked > MOST_POSITIONS:
             return HOLDS
         match core:

@@ -265,8 +265,8 @@ def _state(checker: Checker, expression: Expression, foreign: frozenset[str]) ->
             interval = checker.interval(window, EVERYWHERE)
             first, second = _both(checker, left, right, foreign)
             response = PathUnary(True, UnaryOp.EVENTUALLY, second, interval, right.span)
-            owed = StateBinary(BinaryOp.IMPLIES, first, response, span)
-            return PathUnary(True, UnaryOp.ALWAYS, owed, Interval(), span)
+            required = StateBinary(BinaryOp.IMPLIES, first, response, span)
+            return PathUnary(True, UnaryOp.ALWAYS, required, Interval(), span)
     return _connected(checker, expression, foreign)
 
 

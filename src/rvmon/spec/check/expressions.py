@@ -329,8 +329,8 @@ class Checker:
         if operand is None:
             raise Reported
         if bound is not None:
-            owed = formula_of(operand, prefix.operand.span)
-            return bounded_prefix(prefix.op, owed, bound, prefix.span)
+            required = formula_of(operand, prefix.operand.span)
+            return bounded_prefix(prefix.op, required, bound, prefix.span)
         return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
 
     def _interval_of(

@@ -36,14 +36,18 @@ def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
     `G(θ → ψ)` is `whenever θ then ψ`, any other unbounded `G ψ` is `whenever true then ψ`, the
     rest is `upon start then φ`.
     """
-    owed = _always(formula)
-    if owed is None:
+    required = _always(formula)
+    if required is None:
         return Mode.UPON, BoundAtom(Bound.START, formula.span), formula
     trigger: Formula | None = None
-    while isinstance(owed, Binary) and owed.op is BinaryOp.IMPLIES and not future_part(owed.left):
-        trigger = owed.left if trigger is None else _both(trigger, owed.left)
-        owed = owed.right
-    return Mode.WHENEVER, trigger or Constant(True, formula.span), owed
+    while (
+        isinstance(required, Binary)
+        and required.op is BinaryOp.IMPLIES
+        and not future_part(required.left)
+    ):
+        trigger = required.left if trigger is None else _both(trigger, required.left)
+        required = required.right
+    return Mode.WHENEVER, trigger or Constant(True, formula.span), required
 
 
 def _always(formula: Formula) -> Formula | None:
@@ -98,19 +102,19 @@ def derived_response(
         raise Refusal(rules.no_output(span))
     inputs = by_role[Role.INPUT]
     trigger = _conjunction(inputs) if inputs else BoundAtom(Bound.START, place)
-    return trigger, _owed(by_role[Role.OUTPUT], Interval(0, within))
+    return trigger, _required(by_role[Role.OUTPUT], Interval(0, within))
 
 
-def _owed(outputs: Sequence[Formula], interval: Interval) -> Formula:
+def _required(outputs: Sequence[Formula], interval: Interval) -> Formula:
     """Positive outputs have to come together, each negated one has to stay away."""
     negated = [part for part in outputs if isinstance(part, Unary) and part.op is UnaryOp.NOT]
     positive = [part for part in outputs if part not in negated]
-    owed: list[Formula] = []
+    required: list[Formula] = []
     if positive:
         goal = _conjunction(positive)
-        owed.append(Unary(UnaryOp.EVENTUALLY, goal, interval, goal.span))
-    owed += [Unary(UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
-    return _conjunction(owed)
+        required.append(Unary(UnaryOp.EVENTUALLY, goal, interval, goal.span))
+    required += [Unary(UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
+    return _conjunction(required)
 
 
 def _role(table: Table, conjunct: Formula, place: Span) -> Role:
@@ -165,11 +169,11 @@ def scoped_consequent(consequent: Formula, closing: Formula | None, *, must_clos
     """What is owed within the scope."""
     if closing is None:
         return consequent
-    owed = _until_closed(consequent, closing)
+    required = _until_closed(consequent, closing)
     if not must_close:
-        return owed
+        return required
     never = Unary(UnaryOp.ALWAYS, _not(closing), _ALL, closing.span)
-    return Binary(BinaryOp.OR, owed, never, None, consequent.span)
+    return Binary(BinaryOp.OR, required, never, None, consequent.span)
 
 
 def _inside(opening: Formula | None, closing: Formula | None) -> Formula:

@@ -209,8 +209,8 @@ def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts)
         ]
         if end_part(trigger):
             raise Refusal(rules.end_in_scope(clause.span))
-        owed = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
-        return mode, scoped_trigger(trigger, *ends), owed
+        required = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
+        return mode, scoped_trigger(trigger, *ends), required
     return parts
 
 

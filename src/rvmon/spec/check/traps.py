@@ -47,7 +47,7 @@ def traps_at_trigger(
         span: of the requirement, for what has no place of its own.
     """
     facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
-    for part in _owed_at_once(consequent):
+    for part in _required_at_once(consequent):
         if truth_at(part, {}) is None:
             yield from _at_trigger(part, facts, time, part.span or span)
 
@@ -66,7 +66,7 @@ def traps_at_start(
     always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
     if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):
         return
-    for part in _owed_at_once(consequent):
+    for part in _required_at_once(consequent):
         place = part.span or span
         if truth_at(part, {}) is not None:
             continue
@@ -97,16 +97,16 @@ def capture_traps(
                 yield rules.captured_once(clause.span, shown)
 
 
-def _owed_at_once(formula: Formula) -> Iterator[Formula]:
+def _required_at_once(formula: Formula) -> Iterator[Formula]:
     """The parts of what is owed that have to hold at the instant at which it is owed."""
     match formula:
         case Binary(op=BinaryOp.AND, left=left, right=right):
-            yield from _owed_at_once(left)
-            yield from _owed_at_once(right)
+            yield from _required_at_once(left)
+            yield from _required_at_once(right)
         case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=window) if not (
             window and window.low
         ):
-            yield from _owed_at_once(operand)
+            yield from _required_at_once(operand)
         case _:
             yield formula
 

@@ -191,10 +191,10 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
     trigger = _trigger(rng, seen, for_each)
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
     how = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
-    owed = consequent(rng, shape, rng.randint(1, profile.depth))
+    required = consequent(rng, shape, rng.randint(1, profile.depth))
     if captures and chance(rng, 70):
         op = pick(rng, (BinaryOp.AND, BinaryOp.OR))
-        owed = Binary(op, owed, comparison(rng, shape))
+        required = Binary(op, required, comparison(rng, shape))
     policy = EndPolicy.DEFAULT
     if profile.policies and chance(rng, 35):
         policy = pick(rng, tuple(EndPolicy)[1:])
@@ -202,7 +202,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         name,
         how,
         trigger,
-        owed,
+        required,
         at_end=policy,
         pulse=is_pulse(trigger),
         captures=captures,

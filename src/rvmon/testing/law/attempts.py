@@ -293,12 +293,12 @@ def obligation(start: Start, readings: Readings) -> Truth:
         return Truth.UNKNOWN if value is Truth.FALSE and start.sure is None else value
     truths = readings.of(start.captured)
     ended = start.stop is not None and start.stop < truths.known
-    owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
+    required = [_required(start, readings, k) for k in start.owes if k < truths.known]
     if requirement.mode is Mode.UPON and start.sure is not None:
-        return owed[0]
+        return required[0]
     blurred = start.blurred is not None and start.blurred < truths.known
     rest = Truth.UNKNOWN if blurred else truths.release_rest(opened=True)
-    value = conjunction([*owed, Truth.TRUE if ended else rest])
+    value = conjunction([*required, Truth.TRUE if ended else rest])
     if value is Truth.FALSE and start.sure is None:
         return Truth.UNKNOWN
     if value is Truth.TRUE and counts_in_favour(requirement):
@@ -307,7 +307,7 @@ def obligation(start: Start, readings: Readings) -> Truth:
     return value
 
 
-def _owed(start: Start, readings: Readings, k: int) -> Truth:
+def _required(start: Start, readings: Readings, k: int) -> Truth:
     requirement = start.view.requirement
     if start.blurred is not None and k >= start.blurred:
         return Truth.UNKNOWN

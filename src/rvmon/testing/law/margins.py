@@ -46,13 +46,13 @@ def margins(
             in_doubt = one.start.sure is None
             key = (name, in_doubt, one.doubtful_number if in_doubt else one.number)
             if key in recorded:
-                low, high = _owed(one.start, kept=False)
-                kept, _ = _owed(one.start, kept=True)
+                low, high = _required(one.start, kept=False)
+                kept, _ = _required(one.start, kept=True)
                 found[key] = (low, TOP[1] if in_doubt else high, kept)
     return found
 
 
-def _owed(start: Start, *, kept: bool) -> Range:
+def _required(start: Start, *, kept: bool) -> Range:
     requirement = start.view.requirement
     favour = counts_in_favour(requirement)
 
@@ -65,7 +65,7 @@ def _owed(start: Start, *, kept: bool) -> Range:
         return consequent(start.position)
     trigger = Past(start.word, start.captured)
 
-    def owed(k: int) -> Range:
+    def required(k: int) -> Range:
         if start.blurred is not None and k >= start.blurred:
             return ANY
         if requirement.mode is Mode.UPON:
@@ -73,7 +73,7 @@ def _owed(start: Start, *, kept: bool) -> Range:
         excused = negated(trigger.range(requirement.trigger, k, Truth.FALSE))
         return most([excused, consequent(k)])
 
-    return least([*map(owed, start.owes), TOP if kept or start.stop is not None else ANY])
+    return least([*map(required, start.owes), TOP if kept or start.stop is not None else ANY])
 
 
 class _Ranges:

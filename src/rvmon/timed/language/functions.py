@@ -54,7 +54,7 @@ MAX_LOCALS = 100_000
 """The most parameters and local variables of all functions together."""
 
 _NOTHING = ResolvedType(BaseType.INT, 0, 0)
-"""What a `void` function returns."""
+"""What a `cannot_pass` function returns."""
 
 _CHOSEN = InLocation(-1, -1)
 """Stands for an index that is not constant, in the key of a function."""

@@ -312,7 +312,7 @@ Statement = UpdateText | Call | Branch | Loop | Each | ReturnText | Block | Decl
 
 @dataclass(frozen=True, slots=True)
 class FunctionText:
-    """`type name(parameters) { … }`; `type` is `None` for `void`."""
+    """`type name(parameters) { … }`; `type` is `None` for `cannot_pass`."""
 
     type: TypeText | None
     name: str

@@ -220,7 +220,7 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """The end of a function, with its value; that of a `void` one is 0."""
+    """The end of a function, with its value; that of a `cannot_pass` one is 0."""
 
     value: Expression
 

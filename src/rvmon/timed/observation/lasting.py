@@ -24,12 +24,12 @@ _Node = Node[ObservedSite, ObservedLink]
 _Arc = tuple[int, ObservedLink, bool]
 
 
-def open_means(owed: Core) -> bool | None:
+def open_means(required: Core) -> bool | None:
     """Whether an attempt that stays open for ever is met; `None` if that depends on more.
 
     Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
     """
-    nodes = list(nodes_of(owed))
+    nodes = list(nodes_of(required))
     unbounded = {
         isinstance(node, Release)
         for node in nodes

@@ -130,10 +130,10 @@ def _problem(
         raise NotExpressibleError("it captures values")
     factory = Factory()
     obligation = lower(requirement, factory)
-    alphabet = alphabet_of(obligation.owed)
+    alphabet = alphabet_of(obligation.required)
     labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
-    if looks_back(obligation.owed):
+    if looks_back(obligation.required):
         raise NotExpressibleError("it looks back from what lies ahead")
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
@@ -142,7 +142,7 @@ def _problem(
     for proposition in alphabet.propositions:
         labelling.reader(proposition)
     try:
-        automaton = construct(factory.next(obligation.owed), alphabet, TableBudget())
+        automaton = construct(factory.next(obligation.required), alphabet, TableBudget())
     except DoesNotCloseError as error:
         raise NotExpressibleError(f"it has no finite monitor: {error}") from None
     unit = network.unit or 1
@@ -158,12 +158,12 @@ def _in_the_end(
 ) -> tuple[bool | None, Run | None, str]:
     """Whether what has no deadline is met, where no finite run fails it; else a run."""
     network, problem, obligation = _problem(network, spec, requirement, ticks=True)
-    met = open_means(obligation.owed)
+    met = open_means(obligation.required)
     if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
         # Within a stretch without actions what one attempt meets the others do.
         attempts = replace(requirement, mode=Mode.UPON, pulse=True)
         network, problem, obligation = _problem(network, spec, attempts, ticks=True)
-        met = open_means(obligation.owed)
+        met = open_means(obligation.required)
     if met is not False:
         return True, None, "" if met else UNDECIDED_IN_THE_END
     found = Lasting(problem, meter).find()
@@ -199,7 +199,7 @@ def _observe(
         holds, remark = None, f"not decided: {meter.stopped}"
     elif holds and "triggered" not in first:
         remark = "vacuous: no run triggers it"
-    elif holds and horizon(obligation.owed) is None:
+    elif holds and horizon(obligation.required) is None:
         holds, run, remark = _in_the_end(original, spec, requirement, meter)
         runs.update({} if run is None else {"failing": run})
     return Observation(

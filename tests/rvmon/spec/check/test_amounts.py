@@ -13,7 +13,7 @@ HEAD = (
 )
 
 
-def owed(text):
+def required(text):
     """What is owed, as it is printed."""
     spec = rvmon.loads(f"{HEAD}({text})\n  let v = x\n")
     return format_formula(spec.checked.requirements["R"].consequent)
@@ -61,7 +61,7 @@ def owed(text):
 )
 def test_all_comparisons_are_made_of_a_few(text, printed):
     """What grows with what there is; a `max` of times is the greater of two."""
-    assert owed(text) == printed
+    assert required(text) == printed
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
 def test_what_is_refused(text, message):
     """With what says it instead."""
     with pytest.raises(rvmon.SpecError, match=re.escape(message)):
-        owed(text)
+        required(text)
 
 
 def test_printed_amounts_are_read_back():
@@ -132,7 +132,7 @@ def test_printed_amounts_are_read_back():
         "duration((a or x > 1) since trigger) >= 2 s",
         "mean(x since trigger) > v",
     ):
-        assert owed(text) == text
+        assert required(text) == text
 
 
 def test_each_occurrence_says_whether_it_is_added():
@@ -142,8 +142,8 @@ def test_each_occurrence_says_whether_it_is_added():
         "(sum({}, 5 s) <= 2) for each k in e.k\n"
     )
     chosen = "if e.k == k and e.ok then e.x else 0"
-    owed = rvmon.loads(text.format(chosen)).checked.requirements["R"].consequent
-    assert format_formula(owed) == f"within 3 s not sum({chosen}, 5 s) > 2"
+    required = rvmon.loads(text.format(chosen)).checked.requirements["R"].consequent
+    assert format_formula(required) == f"within 3 s not sum({chosen}, 5 s) > 2"
     with pytest.raises(rvmon.SpecError, match="`for each` may see several"):
         rvmon.loads(text.format("if e.k == k or e.ok then e.x else 0"))
 

@@ -199,8 +199,8 @@ def test_translation(scope, condition, timing):
         seen.add(failed)
         if number >= 25 and len(seen) > 1:
             break
-    owed = "always, never" if scope.startswith("only") else "eventually"
-    never = timing in owed and scope in TO_THE_END  # no run fails for certain
+    required = "always, never" if scope.startswith("only") else "eventually"
+    never = timing in required and scope in TO_THE_END  # no run fails for certain
     assert seen == ({False} if never else {True, False})
 
 

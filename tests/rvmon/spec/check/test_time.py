@@ -68,9 +68,9 @@ def test_intervals_in_ticks(checked, text, interval):
         ("age(e) > 1 s", "not once[0, 1 s] (updated(e) or start)"),
     ],
 )
-def test_age(owed, text, printed):
+def test_age(required, text, printed):
     """An age is: neither an update within the last D, nor the beginning of the trace."""
-    assert owed(text) == printed
+    assert required(text) == printed
 
 
 def test_time_models(checked):

@@ -166,7 +166,7 @@ def test_the_fix_is_of_the_language(time, body, codes):
     assert not {f.code for f in compile_text(head + before + fixed)[1]} & {"RV047", "RV048"}
 
 
-def owed_first():
+def required_first():
     """Random formulas of the past, owed at each instant from the first on."""
     rng = random.Random(5)
     for _ in range(300):
@@ -190,14 +190,14 @@ def born(case):
 def test_what_is_said_of_the_first_instant_holds_on_every_run():
     """Where a warning says that it fails there, the law says so of random runs."""
     warned = 0
-    for number, (time, period, owed) in enumerate(owed_first()):
-        requirement = build.requirement(owed, whenever=Constant(True))
+    for number, (time, period, required) in enumerate(required_first()):
+        requirement = build.requirement(required, whenever=Constant(True))
         parts = (requirement.mode, requirement.trigger, requirement.consequent)
-        if isinstance(owed, Unary) and owed.op in (UnaryOp.RISE, UnaryOp.FALL):
+        if isinstance(required, Unary) and required.op in (UnaryOp.RISE, UnaryOp.FALL):
             continue
         if not list(traps_at_start(*parts, NOWHERE)):
             continue
-        if any(isinstance(one, UpdateValue | Arithmetic) for one in numerics(owed)):
+        if any(isinstance(one, UpdateValue | Arithmetic) for one in numerics(required)):
             continue  # it is born with the second update, or may have no value, and fails nothing
         warned += 1
         own = build.spec_of(requirement, time=time, period=period)

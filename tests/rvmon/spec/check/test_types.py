@@ -85,9 +85,9 @@ def test_constants_are_converted_once_to_the_nearest_float(requirement, text, va
     assert type(right.value) is type(value)
 
 
-def test_comparison_is_made_in_the_unit_of_the_signal(owed, checked):
+def test_comparison_is_made_in_the_unit_of_the_signal(required, checked):
     """The constant takes the unit of the signal, wherever it stands; signals get a factor."""
-    assert owed("5 cm < d") == "0.05 m < d"
+    assert required("5 cm < d") == "0.05 m < d"
     spec = checked("signal z : real [cm]\nrequirement R always d < z")
     args = spec.requirements["R"].consequent.right.args
     assert args[1] == Literal(0.01)
@@ -115,9 +115,9 @@ def test_constant_comparison_is_settled(requirement):
     assert requirement("upon start then eventually 3 s < 200 ms").consequent.operand.value is False
 
 
-def test_bool_fields_are_propositions(owed):
+def test_bool_fields_are_propositions(required):
     """A bool field or its last value stands as it is."""
-    assert owed("pick.ok or prev(a)") == "pick.ok or prev(a)"
+    assert required("pick.ok or prev(a)") == "pick.ok or prev(a)"
 
 
 def test_label_equals_its_own_signal_first(checked):

@@ -22,7 +22,7 @@ def first_finding(text):
 
 
 @pytest.mark.parametrize(
-    ("owed", "fix"),
+    ("required", "fix"),
     [
         ("within -1 s released", "write it without `-`"),
         ("within -T released", "write it without `-`"),
@@ -47,9 +47,9 @@ def first_finding(text):
         ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
     ],
 )
-def test_what_is_owed(owed, fix):
+def test_what_is_owed(required, fix):
     """Durations, numbers and names that are written as they are elsewhere."""
-    assert fix in first_finding(f"requirement R\n  upon asked\n  then {owed}\n").help
+    assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
 
 
 @pytest.mark.parametrize(

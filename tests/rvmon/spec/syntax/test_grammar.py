@@ -101,9 +101,9 @@ def test_grammar_has_no_conflicts():
         ("always (a) and b", "(always a) and b"),
     ],
 )
-def test_operators(owed, text, printed):
+def test_operators(required, text, printed):
     """Words and symbols mean the same, precedence is as stated, printing uses few brackets."""
-    assert owed(text) == printed
+    assert required(text) == printed
 
 
 @pytest.mark.parametrize(
@@ -134,9 +134,9 @@ def test_a_connective_beside_until_needs_brackets(text, help_):
         ("a until[<= 2 s] b", "a until[0, 2 s] b"),
     ],
 )
-def test_what_is_read_as_people_mean_it(owed, text, printed):
+def test_what_is_read_as_people_mean_it(required, text, printed):
     """Windows behind `within`, the same operator on both sides, bounds as in models."""
-    assert owed(text) == printed
+    assert required(text) == printed
 
 
 @pytest.mark.parametrize(
@@ -160,11 +160,11 @@ def test_sets_and_choices(text, same):
         "spec s\nsignal a, b, c : bool\nsignal x : real\nsignal mode : {red, blue, green}\n"
         "define define_d(y) = if a then y else 2\n"
     )
-    owed = [
+    required = [
         rvmon.loads(f"{head}requirement R upon start then {one}\n").checked.requirements["R"]
         for one in (text, same)
     ]
-    assert len({format_formula(one.consequent) for one in owed}) == 1
+    assert len({format_formula(one.consequent) for one in required}) == 1
 
 
 def test_clauses_between_trigger_and_consequent():
@@ -254,9 +254,9 @@ def test_infix_and_clause_words_may_be_names(codes, name):
     assert codes(f"signal {name} : bool\nrequirement R always ({name} and {name})") == []
 
 
-def test_infix_words_may_be_labels(owed):
+def test_infix_words_may_be_labels(required):
     """A label may be called `S`, and the operator still works beside it."""
-    assert owed("state == S S state != S") == "state == S since state != S"
+    assert required("state == S S state != S") == "state == S since state != S"
 
 
 @pytest.mark.parametrize(
@@ -275,9 +275,9 @@ def test_infix_words_may_be_labels(owed):
         ("x < 50 %", "x < 0.5"),
     ],
 )
-def test_numbers_and_units(owed, text, printed):
+def test_numbers_and_units(required, text, printed):
     """A name behind a number is its unit; a compound unit has known parts and no spaces."""
-    assert owed(text) == printed
+    assert required(text) == printed
 
 
 def test_division_by_a_signal_called_like_a_unit(checked):
@@ -366,9 +366,9 @@ def test_words_in_texts_and_comments_are_no_operators():
 
 
 @pytest.mark.parametrize("many", [90, 99, 150])
-def test_brackets_that_only_enclose_are_no_levels(owed, many):
+def test_brackets_that_only_enclose_are_no_levels(required, many):
     """What is in them means the same with them."""
-    assert owed("(" * many + "a" + ")" * many) == "a"
+    assert required("(" * many + "a" + ")" * many) == "a"
 
 
 @pytest.mark.parametrize("opening", ["not (", "("])
