@@ -140,7 +140,8 @@ def _unit_of(declared: str, one: Candidate, largest: float) -> tuple[str, str]:
         return told[0], ""
     if one.unit is not None:
         return one.unit.symbol, "  # by the name of the field"
-    plain = _plain_unit(dimension) or "1"
+    is_plain = declared not in ("", "1") and parse_unit(declared).factor == 1
+    plain = declared if is_plain else _plain_unit(dimension) or "1"
     if (plain == "1" and largest > _WHOLE) or (plain == "rad" and largest > _TURN):
         return {"1": "%", "rad": "deg"}[plain], "  # a guess: by its values"
     return plain, "  # a guess: the messages do not say"

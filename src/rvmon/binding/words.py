@@ -80,7 +80,7 @@ MODIFIERS = _set(
     "command error tolerance limit minimum maximum offset bias variance accuracy delta",
     "reset counter design time timestamp stamp increment last home initial origin average",
     "mean derivative integral raw scaling covariance confidence quality valid health",
-    "full nominal rated",
+    "full nominal rated input output",
     "fault innovation drift index id device",
 )
 """Words that make another quantity of what they stand beside."""

@@ -28,7 +28,7 @@ _SPOKEN = {
     "mA": "milliamp milliampere",
     "W": "watt",
     "N": "newton",
-    "N*m": "newton-meter nm",
+    "N*m": "newton-meter nm n-m",
     "Pa": "pascal",
     "kPa": "kpa",
     "hPa": "hpa",
