@@ -63,7 +63,7 @@ class Size:
     seconds: int = 300
     counts: tuple[int, ...] = (10, 100, 1000)
     traces: int = 2
-    step_seconds: float = 90
+    step_seconds: float = 30
     repeats: int = 5
     processes: int = 3
     file_rows: int = 10_000_000
