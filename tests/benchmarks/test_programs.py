@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+import sys
 
 import pytest
 from benchmarks.__main__ import BENCHMARKS, main
@@ -24,6 +25,7 @@ def test_each_helps(
 ) -> None:
     """`--help` is answered, and names the program."""
     monkeypatch.setattr("sys.argv", ["it", "--help"])
+    monkeypatch.delitem(sys.modules, f"benchmarks.{name}", raising=False)
     with pytest.raises(SystemExit) as ended:
         runpy.run_module(f"benchmarks.{name}", run_name="__main__", alter_sys=True)
     assert ended.value.code == 0
