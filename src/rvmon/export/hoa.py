@@ -62,7 +62,8 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
             "fill pages; write `--to json`"
         )
     first, later = inputs_of(compiled, spec, letters)
-    states = _Machine(compiled, automaton, letters, later).least(first)
+    # Where the trigger cannot be, a word begins with any letter.
+    states = _Machine(compiled, automaton, letters, later).least(first or later)
     propositions = automaton.alphabet.propositions
     shown = [(word, [*_disjoint(edges, range(len(propositions)))]) for word, edges in states]
     read = [

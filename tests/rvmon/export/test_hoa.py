@@ -245,3 +245,13 @@ def test_what_cannot_be_stands_in_no_label():
     assert "[!0&!1] 0\n[0&!1 | 0&1] 1" not in written(spec.checked)
     assert Read(written(spec.checked)).propositions == ["x > 2", "x > 3"]
     assert "AP: 0\n" in written(spec.checked, "S")
+
+
+def test_a_trigger_that_cannot_be():
+    """What would be owed is written for words that begin with anything."""
+    spec = loads(
+        "spec s\ntime sampled\nsignal x : real\nrequirement R\n"
+        "  upon x > 3 and x < 2 then eventually x > 1\n"
+    )
+    read = Read(written(spec.checked))
+    assert [read.run([set(), {"x > 1"}]), read.run([set()])] == ["P", "?"]
