@@ -15,7 +15,7 @@ from tests.tools.timed_ctl import holds_at_start, random_formulas
 from tests.tools.timed_damage import damaged, survives
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
-from tests.tools.timed_regions import TooManyRegionsError, decide
+from tests.tools.timed_regions import Steps, TooManyRegionsError, decide
 from tests.tools.timed_runs import shows
 
 from rvmon.errors import ModelError
@@ -55,6 +55,7 @@ def judge_queries(seed: int, numbers: range) -> Found:
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
         network, policy = _network(seed, number), tuple(Policy)[number % 3]
+        steps: Steps = {}
         for kind, query in zip(KINDS, network.queries, strict=True):
             outcome = verify(network, query, policy=policy)
             if outcome.run is not None:
@@ -62,7 +63,7 @@ def judge_queries(seed: int, numbers: range) -> Found:
                 if not shows(network, outcome):
                     texts.append(f"network {number}: the run does not show that {query.text}")
             try:
-                expected = decide(network, query, MOST_REGIONS)
+                expected = decide(network, query, MOST_REGIONS, steps)
             except TooManyRegionsError:
                 counts["left out: too many regions"] += 1
                 continue

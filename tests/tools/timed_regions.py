@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
+from typing import Any
 
 import networkx as nx
 
@@ -89,6 +90,11 @@ class Region:
     timer: Fraction
 
 
+Steps = dict[tuple[int, bool, str, "Region"], Any]
+"""What follows on regions, as far as it was asked, by the largest constant and whether there is a
+timer: questions on one network share it."""
+
+
 class RegionGraph:
     """The regions of a network.
 
@@ -97,6 +103,7 @@ class RegionGraph:
         formulas: whose clock constants count too.
         bound: the largest number that the timer is compared with; `None`: there is no timer.
         limit: the most regions to walk through.
+        steps: what other graphs of the network have found.
     """
 
     def __init__(
@@ -105,6 +112,7 @@ class RegionGraph:
         formulas: Iterable[Expression] = (),
         bound: int | None = None,
         limit: int = 5_000,
+        steps: Steps | None = None,
     ) -> None:
         compares = [
             *(c for a in network.automata for place in a.locations for c in place.invariant.clocks),
@@ -116,6 +124,13 @@ class RegionGraph:
         self._largest = max([0, *constants, bound or 0])
         self._timed = bound is not None
         self._limit = limit
+        self._steps: Steps = {} if steps is None else steps
+
+    def _known(self, kind: str, region: Region, find: Callable[[Region], Any]) -> Any:
+        key = (self._largest, self._timed, kind, region)
+        if key not in self._steps:
+            self._steps[key] = find(region)
+        return self._steps[key]
 
     def start(self) -> Region:
         """The region of the initial configuration."""
@@ -129,8 +144,11 @@ class RegionGraph:
         """The same region with the timer at 0."""
         return self._canonical(region.now, Fraction(0))
 
-    def actions(self, region: Region) -> Iterator[Region]:
+    def actions(self, region: Region) -> list[Region]:
         """The regions behind all actions that are possible now."""
+        return list(self._known("actions", region, lambda one: [*self._actions(one)]))
+
+    def _actions(self, region: Region) -> Iterator[Region]:
         for action in every_action(self._network, region.now):
             try:
                 after = act(self._network, region.now, action)
@@ -140,6 +158,10 @@ class RegionGraph:
 
     def later(self, region: Region) -> Region | None:
         """The next region that time leads to, the same one if none is left; `None` if it stops."""
+        found: Region | None = self._known("later", region, self._later)
+        return found
+
+    def _later(self, region: Region) -> Region | None:
         clocks = [*region.now.clocks, *([region.timer] if self._timed else [])]
         finite = [clock for clock in clocks if clock <= self._largest]
         step = Fraction(1)
@@ -175,7 +197,7 @@ class RegionGraph:
     def is_dead(self, region: Region) -> bool:
         """Whether no action is possible now or after any delay."""
         while True:
-            if next(self.actions(region), None) is not None:
+            if self.actions(region):
                 return False
             later = self.later(region)
             if later is None or later == region:
@@ -243,43 +265,51 @@ def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:
     return found
 
 
-def decide(network: Network, query: Query, limit: int = 5_000) -> bool:
+Regions = Callable[..., RegionGraph]
+"""Makes the regions of a network, for formulas and a bound."""
+
+
+def decide(network: Network, query: Query, limit: int = 5_000, steps: Steps | None = None) -> bool:
     """Whether a query holds, by walking through all regions.
 
     Raises:
         TooManyRegionsError: there are more than `limit`.
     """
+
+    def regions(formulas: Iterable[Expression], bound: int | None = None) -> RegionGraph:
+        return RegionGraph(network, formulas, bound, limit, steps)
+
     match query.formula:
         case LeadsToFormula(left, right, bound):
-            return _responds(network, left, right, bound, limit)
+            return _responds(regions, left, right, bound)
         case PathFormula(PathOp.POSSIBLY, body, None) if has_paths(body):
-            return bool(_satisfying(network, normal_form(body), limit))
+            return bool(_satisfying(regions, normal_form(body)))
         case PathFormula(PathOp.INVARIANTLY, body, None) if has_paths(body):
-            return not _satisfying(network, normal_form(body, positive=False), limit)
+            return not _satisfying(regions, normal_form(body, positive=False))
         case PathFormula(PathOp.POSSIBLY, body, bound):
-            return _reaches(network, normal_form(body), bound, limit)
+            return _reaches(regions, normal_form(body), bound)
         case PathFormula(PathOp.INVARIANTLY, body, bound):
-            return not _reaches(network, normal_form(body, positive=False), bound, limit)
+            return not _reaches(regions, normal_form(body, positive=False), bound)
         case PathFormula(PathOp.EVENTUALLY, body, bound):
-            return not _avoids(network, normal_form(body, positive=False), bound, limit)
+            return not _avoids(regions, normal_form(body, positive=False), bound)
         case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, bound):
-            return _avoids(network, normal_form(body), bound, limit)
+            return _avoids(regions, normal_form(body), bound)
         case _:
             raise AssertionError(f"{query.text} has no path operator")
 
 
-def _reaches(network: Network, formula: Expression, bound: int | None, limit: int) -> bool:
-    graph = RegionGraph(network, [formula], bound, limit)
-    regions = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
+def _reaches(regions: Regions, formula: Expression, bound: int | None) -> bool:
+    graph = regions([formula], bound)
+    found = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
     if not speaks_of_deadlock(formula):
-        return any(satisfies(region.now, formula) for region in regions)
+        return any(satisfies(region.now, formula) for region in found)
     by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
-    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in regions)
+    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in found)
 
 
-def _avoids(network: Network, formula: Expression, bound: int | None, limit: int) -> bool:
+def _avoids(regions: Regions, formula: Expression, bound: int | None) -> bool:
     """Whether some run stays inside a formula for ever, or until the bound is over."""
-    graph = RegionGraph(network, [formula], bound, limit)
+    graph = regions([formula], bound)
     starts = [graph.start()]
     if bound is not None and _is_late(graph, starts, formula, bound):
         return True
@@ -287,10 +317,8 @@ def _avoids(network: Network, formula: Expression, bound: int | None, limit: int
     return bool(graph.staying(inside) & set(starts))
 
 
-def _responds(
-    network: Network, left: Expression, right: Expression, bound: int | None, limit: int
-) -> bool:
-    graph = RegionGraph(network, [left, right], bound, limit)
+def _responds(regions: Regions, left: Expression, right: Expression, bound: int | None) -> bool:
+    graph = regions([left, right], bound)
     missing = normal_form(right, positive=False)
     everywhere = graph.reachable([graph.start()])
     starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
@@ -300,9 +328,9 @@ def _responds(
     return not graph.staying(inside) & set(starts)
 
 
-def _satisfying(network: Network, formula: Expression, limit: int) -> set[Region]:
+def _satisfying(make: Regions, formula: Expression) -> set[Region]:
     """The regions that can be reached and satisfy a formula that speaks of runs."""
-    regions = RegionGraph(network, [formula], None, limit)
+    regions = make([formula])
     graph = regions.whole()
 
     def where(part: Expression) -> set[Region]:

@@ -123,8 +123,13 @@ def _template(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
         x, y = column * _GRID[0], row * _GRID[1]
         yield f'    <location id="id{index}_{place}" x="{x}" y="{y}">'
         yield f'      <name x="{x - 10}" y="{y - 30}">{names.location(index, place)}</name>'
-        if condition := condition_text(names, location.invariant):
+        rates = [f"{names.clock(r.clock)}' == {names.expression(r.value)}" for r in location.rates]
+        bounds = [condition_text(names, location.invariant)]
+        if condition := " && ".join([*filter(None, bounds), *rates]):
             yield f'      <label kind="invariant" x="{x}" y="{y + 15}">{_text(condition)}</label>'
+        if location.leaving is not None:
+            share = " : ".join(map(names.expression, location.leaving))
+            yield f'      <label kind="exponentialrate">{share}</label>'
         if location.kind is not LocationKind.NORMAL:
             yield f"      <{location.kind}/>"
         yield "    </location>"

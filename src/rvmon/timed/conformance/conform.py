@@ -25,7 +25,7 @@ from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.outcome import UNLIMITED, Budget
 from rvmon.timed.zones.dbm import Zone, constrain, cut, normalise
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps, check_start
+from rvmon.timed.zones.symbolic import Steps, check_clocks, check_start
 from rvmon.trace.time import TICKS_PER_UNIT
 
 RESOLUTION = TICKS_PER_UNIT["ms"]
@@ -57,6 +57,7 @@ def conform(
         ModelError: the network has no such unit, or cannot start.
     """
     check_start(network)
+    check_clocks(network)
     if network.unit is None or network.unit % RESOLUTION:
         fix = "write its unit of time, such as `unit 50 ms`"
         raise model_error("TA023", "time is not in whole milliseconds", None, fix)

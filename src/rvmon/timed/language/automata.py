@@ -12,8 +12,9 @@ from rvmon.timed.language.bodies import updates_of
 from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
 from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
+from rvmon.timed.language.operations import binary, refuse_clocks
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.model.expressions import Expression
+from rvmon.timed.model.expressions import TRUE, Expression
 from rvmon.timed.model.guards import guards_of, refuse_changes, split_guard
 from rvmon.timed.model.network import (
     Automaton,
@@ -21,9 +22,10 @@ from rvmon.timed.model.network import (
     Edge,
     Guard,
     Location,
+    Rate,
     Sync,
 )
-from rvmon.timed.model.operators import BaseType
+from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ConstantSymbol,
@@ -58,12 +60,10 @@ def automaton_of(
     template, scope = process.template, process.scope
     locations = []
     for written in template.locations:
-        invariant = Guard()
+        place = Location(written.name, written.kind, Guard(), written.span)
         with findings.collect():
-            if written.invariant is not None:
-                condition = _condition(written.invariant, scope, resolver)
-                invariant = split_guard(condition, written.invariant.span)
-        locations.append(Location(written.name, written.kind, invariant, written.span))
+            place = _place(written, scope, resolver)
+        locations.append(place)
     edges: list[Edge] = []
     for edge in template.edges:
         with findings.collect():
@@ -78,6 +78,68 @@ def automaton_of(
     return Automaton(
         scope.prefix.removesuffix("."), tuple(locations), tuple(edges), initial, template.span
     )
+
+
+def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resolver) -> Location:
+    """A location with its invariant, from which the rates of clocks are taken."""
+    condition: Expression = TRUE
+    rates, leaving = list[Rate](), None
+    parts = [] if written.invariant is None else _parts(written.invariant, scope, resolver)
+    for part, inner in parts:
+        match part:
+            case syntax.Binary(BinaryOp.EQ, syntax.Rate(target), value):
+                is_cost = isinstance(target, syntax.Name) and target.name == "cost"
+                if is_cost and inner.find("cost") is None:
+                    continue  # that of priced automata, which nothing compares
+                clock = resolver.clock(target, inner)
+                if clock is None:
+                    raise model_error("TA004", "this is no clock", target.span, "declare it")
+                rates.append(Rate(clock, _number(value, inner, resolver)))
+            case _:
+                condition = binary(
+                    BinaryOp.AND, condition, _condition(part, inner, resolver), part.span
+                )
+    if written.leaving is not None:
+        one, other = (_number(share, scope, resolver) for share in written.leaving)
+        leaving = (one, other)
+    guard = split_guard(
+        condition, written.span if written.invariant is None else written.invariant.span
+    )
+    return Location(written.name, written.kind, guard, written.span, tuple(rates), leaving)
+
+
+def _number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
+    number = _condition(written, scope, resolver)
+    refuse_clocks(number, written.span)
+    return number
+
+
+def _has_rate(written: syntax.Expression) -> bool:
+    match written:
+        case syntax.Binary(BinaryOp.AND, left, right):
+            return _has_rate(left) or _has_rate(right)
+        case syntax.Quantified(BinaryOp.AND, body=body):
+            return _has_rate(body)
+        case syntax.Binary(BinaryOp.EQ, syntax.Rate(), _):
+            return True
+        case _:
+            return False
+
+
+def _parts(
+    written: syntax.Expression, scope: Scope, resolver: Resolver
+) -> Iterator[tuple[syntax.Expression, Scope]]:
+    """What an invariant joins, as far as rates are among it."""
+    match written:
+        case syntax.Binary(BinaryOp.AND, left, right) if _has_rate(written):
+            yield from _parts(left, scope, resolver)
+            yield from _parts(right, scope, resolver)
+        case syntax.Quantified(BinaryOp.AND, name, kind, body) if _has_rate(body):
+            for value in values_of(resolver.type(kind, scope), kind.span):
+                inner = scope.inner({name: ConstantSymbol(value)})
+                yield from _parts(body, inner, resolver)
+        case _:
+            yield written, scope
 
 
 def _location(name: syntax.Name, names: Mapping[str, int]) -> int:

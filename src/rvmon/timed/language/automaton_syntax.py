@@ -19,12 +19,13 @@ from rvmon.timed.model.operators import LocationKind
 
 @dataclass(frozen=True, slots=True)
 class LocationText:
-    """A location of a template."""
+    """A location of a template; `leaving` is a rate, as a share."""
 
     name: str
     kind: LocationKind
     invariant: Expression | None
     span: Span
+    leaving: tuple[Expression, Expression] | None = None
 
 
 @dataclass(frozen=True, slots=True)

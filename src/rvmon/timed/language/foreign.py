@@ -31,10 +31,6 @@ _FRACTIONS: Reason = (
     "numbers are whole: floating point is not supported",
     "choose a finer unit of time",
 )
-_RATES: Reason = (
-    "rates of clocks (stop-watches, hybrid models) are not supported",
-    "all clocks run all the time: reset one where it would be stopped",
-)
 _TEXTS: Reason = ("texts are not supported", "use numbers")
 
 _DECLARING: dict[str, Reason] = {
@@ -101,8 +97,6 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
         return _FRACTIONS
     if found in ("=", ":=") and rule in ("updates", "declarations"):
         return "an assignment is no value", "write one assignment after the other"
-    if found == "'":
-        return _RATES
     return None
 
 

@@ -25,6 +25,7 @@ STARTS = (
     "parameters",
     "selections",
     "conditions",
+    "leaving",
     "sync",
     "updates",
     "instances",

@@ -98,6 +98,9 @@ class Resolver:
                 if (location := self._location(written, scope)) is not None:
                     return location
                 return value_of(self.symbol(written, scope), written.span)
+            case syntax.Rate(_, span):
+                fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
+                raise model_error("TA009", "the rate of a clock stands here", span, fix)
             case syntax.Unary(op, operand, span):
                 return unary(op, self.expression(operand, scope), span)
             case syntax.Binary(op, left, right, span):

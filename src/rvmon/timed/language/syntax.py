@@ -48,6 +48,14 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
+class Rate:
+    """`target'`: how fast a clock runs."""
+
+    target: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Call:
     """`name(arguments)`: a function's value, or in a query an instance of a template."""
 
@@ -165,6 +173,7 @@ Expression = (
     | Name
     | Index
     | Member
+    | Rate
     | Call
     | Unary
     | Binary

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from typing import Any
 
 from lark import Token, Tree, v_args
@@ -112,10 +113,11 @@ class SyntaxBuilder(QueryBuilder):
         kind = LocationKind.NORMAL
         if items[0].type in ("URGENT", "COMMITTED"):
             kind, *items = LocationKind(items[0]), *items[1:]
-        invariant = items[1] if len(items) > 1 else None
-        return automaton_syntax.LocationText(
-            str(items[0]), kind, invariant, self._token_span(items[0])
-        )
+        name, *rest = items
+        leaving = rest.pop() if rest and isinstance(rest[-1], tuple) else None
+        invariant = rest[0] if rest else None
+        span = self._token_span(name)
+        return automaton_syntax.LocationText(str(name), kind, invariant, span, leaving)
 
     def edge(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.EdgeText:
         source, target, *clauses = items
@@ -297,6 +299,23 @@ class SyntaxBuilder(QueryBuilder):
 
     def member(self, meta: Meta, items: Sequence[Any]) -> syntax.Member:
         return syntax.Member(items[0], str(items[1]), self._span(meta))
+
+    def rate(self, meta: Meta, items: Sequence[Any]) -> syntax.Rate:
+        return syntax.Rate(items[0], self._span(meta))
+
+    def leaving(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
+        shares = [*items, "1"] if len(items) == 1 else list(items)
+        if not any(isinstance(share, str) for share in shares):
+            return shares[0], shares[1]
+        span = self._span(meta)
+        if not all(isinstance(share, str | syntax.Number) for share in shares):
+            fix = "write whole numbers as a share, such as 1:20"
+            raise model_error("TA017", "this is no rate", span, fix)
+        one, other = (
+            Fraction(share if isinstance(share, str) else share.value) for share in shares
+        )
+        rate = one / other if other else Fraction(0)
+        return syntax.Number(rate.numerator, span), syntax.Number(rate.denominator, span)
 
     def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
         return syntax.Call(str(items[0]), items[1], self._span(meta))

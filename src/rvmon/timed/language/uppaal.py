@@ -1,11 +1,10 @@
 """UPPAAL's XML to syntax.
 
-Read: declarations, templates with parameters, locations (invariant, urgent, committed), edges
-(select, guard, synchronisation, assignment), instances, the system line, queries. Rates of
-locations without invariant (`exponentialrate`), colours, coordinates and test code do not change
-which runs there are: they are passed over. Refused, with place and reason: stop-watches, and what
-`ta.lark` has no rule for. A query that cannot be read, or that names what is not there, is a
-warning, and left out.
+Read: declarations, templates with parameters, locations (invariant, rate of leaving, urgent,
+committed), edges (select, guard, synchronisation, assignment), instances, the system line, queries.
+Colours, coordinates and test code do not change which runs there are: they are passed over.
+Refused, with place and reason: what `ta.lark` has no rule for. A query that cannot be read, or that
+names what is not there, is a warning, and left out.
 
 A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
 comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
@@ -137,7 +136,8 @@ def _location(element: Element, findings: Findings) -> automaton_syntax.Location
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
     invariant = _part(labels.get("invariant"), "conditions", findings, None)
-    return automaton_syntax.LocationText(_location_name(element), kind, invariant, span)
+    leaving = _part(labels.get("exponentialrate"), "leaving", findings, None)
+    return automaton_syntax.LocationText(_location_name(element), kind, invariant, span, leaving)
 
 
 def _labels(element: Element) -> dict[str, Element]:

@@ -6,11 +6,19 @@ tuples of `Network`. Arrays are spread over neighbouring indices.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.timed.model.expressions import TRUE, ClockCompare, Expression, Slot, Statement, Variable
+from rvmon.timed.model.expressions import (
+    TRUE,
+    ClockCompare,
+    Constant,
+    Expression,
+    Slot,
+    Statement,
+    Variable,
+)
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
 from rvmon.timed.model.scope import Names
 
@@ -51,13 +59,29 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True)
+class Rate:
+    """How fast a clock runs: in units of it for each unit of time."""
+
+    clock: int
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
 class Location:
-    """A location; its invariant bounds clocks from above only."""
+    """A location; its invariant bounds clocks from above only.
+
+    Attributes:
+        rates: of clocks, while the automaton is there; others run at 1.
+        leaving: how often a random run leaves it in a unit of time if it may stay for ever, as a
+            share; `None`: as `statistics` says.
+    """
 
     name: str
     kind: LocationKind
     invariant: Guard
     span: Span | None = field(default=None, compare=False)
+    rates: tuple[Rate, ...] = ()
+    leaving: tuple[Expression, Expression] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,6 +245,17 @@ class Network:
     names: Names = field(compare=False, repr=False)
     priorities: Priorities | None = None
     has_split_edges: bool = field(default=False, compare=False)
+
+    @property
+    def rates(self) -> Iterator[tuple[Location, Rate]]:
+        """All rates of clocks that are not 1, with their locations."""
+        return (
+            (place, rate)
+            for automaton in self.automata
+            for place in automaton.locations
+            for rate in place.rates
+            if rate.value != Constant(1)
+        )
 
     @property
     def locals(self) -> tuple[Variable, ...]:

@@ -41,7 +41,7 @@ from rvmon.timed.search.explore import Node, explore
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.zones.dbm import STRICT
-from rvmon.timed.zones.symbolic import check_start
+from rvmon.timed.zones.symbolic import check_clocks, check_start
 from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -107,6 +107,7 @@ def observe(
     if network.unit is None:
         raise model_error("TA023", "the model has no unit of time", None, "write `unit 50 ms`")
     check_start(network)
+    check_clocks(network)
     bound = [signal_on(network, name, text) for name, text in (bindings or {}).items()]
     network = replace(network, signals=(*network.signals, *bound))
     for requirement in spec.requirements.values():

@@ -2,7 +2,9 @@
 
 How chance decides: each automaton draws one of the moves that it begins and that are possible now
 or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
-which it is possible, or, if that has no end, from an exponential distribution behind its beginning.
+which it is possible, or, if that has no end, from an exponential distribution behind its beginning,
+at the rate of the location that it leaves (`rate`, UPPAAL's exponential rates) if it has one. A
+clock runs at the rate that an invariant gives it: times stay whole grid steps, so that is exact.
 Weights that add up to less than 1 leave the rest to doing nothing this time. The automaton with the
 shortest delay moves, and all draw anew. A move that several windows make possible, as where one of
 higher priority comes between, is drawn from all of them.
@@ -13,13 +15,14 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import ceil, inf, prod
 from random import Random
 
+from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import Expression
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.network import Location, Network
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
@@ -54,8 +57,8 @@ def trial_of(
     def meets() -> bool:
         run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
         return any(
-            _window(constraint, clocks, 0, stay) is not None
-            for state, clocks, stay in run
+            _window(constraint, clocks, rates, 0, stay) is not None
+            for state, clocks, rates, stay in run
             for constraint in constraints(state.vector.locations, state.values)
         )
 
@@ -64,28 +67,31 @@ def trial_of(
 
 def stretches(
     space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
-) -> Iterator[tuple[State, list[int], int]]:
-    """One random run: each state, the clocks as it begins and how long it lasts, in grid steps.
+) -> Iterator[tuple[State, list[int], Sequence[int], int]]:
+    """One random run: each state, the clocks as it begins, their rates and how long it lasts.
+
+    Clocks and times are in grid steps.
 
     Raises:
         CutShortError: it may not go on.
     """
-    state = space.initial()
+    state, paces = space.initial(), _Paces(space.network)
     assert state is not None  # noqa: S101 - the network can start
     clocks, now = [0] * space.dim, 0
     for number in range(1, MOST_MOVES + 1):
         if number % CHECK_EVERY == 0 and not goes_on():
             raise CutShortError
-        drawn = _draw(space, state, clocks, random, mean_wait)
+        rates = paces.rates(state)
+        drawn = _draw(space, state, clocks, rates, random, paces.waits(state, mean_wait))
         # If nothing is left to do, time passes as long as it may.
-        most = _longest(state, clocks) if drawn is None else drawn[1]
+        most = _longest(state, clocks, rates) if drawn is None else drawn[1]
         stay = int(min(most, horizon - now))
-        yield state, clocks, stay
+        yield state, clocks, rates, stay
         if drawn is None or most > stay:
             return
         now += stay
         move = drawn[0]
-        clocks = [0, *(clock + stay for clock in clocks[1:])]
+        clocks = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
         for clock, value in move.resets:
             clocks[clock] = int(value) * GRID
         state = move.target
@@ -95,30 +101,87 @@ def stretches(
 
 
 def _draw(
-    space: Space, state: State, clocks: list[int], random: Random, mean_wait: float
+    space: Space,
+    state: State,
+    clocks: list[int],
+    rates: Sequence[int],
+    random: Random,
+    mean_waits: Sequence[float],
 ) -> tuple[Move, int] | None:
     """A move and its delay in grid steps; `None` if none is possible any more."""
-    longest = _longest(state, clocks)
+    longest = _longest(state, clocks, rates)
     begun: dict[int, dict[tuple[int, ...], _Choice]] = {}
     for move in space.moves(state):
-        window = _move_window(move, clocks, longest)
+        window = _move_window(move, clocks, rates, longest)
         if window is not None:
             own = begun.setdefault(move.edges[0].automaton, {})
             own.setdefault(tuple(map(id, move.edges)), _Choice(move)).add(*window)
     draws: list[tuple[int, float, Move]] = []
     while begun and not draws:
-        for choices in begun.values():
+        for automaton, choices in begun.items():
             possible = [*choices.values()]
             weights = [prod(edge.edge.weight for edge in one.move.edges) for one in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)
-                draws.append((one.delay(random, mean_wait), random.random(), one.move))
+                draws.append((one.delay(random, mean_waits[automaton]), random.random(), one.move))
     if not draws:
         return None
     delay, _, move = min(draws, key=lambda draw: draw[:2])
     if move.failure is not None:
         raise move.failure
     return move, delay
+
+
+class _Paces:
+    """How fast clocks run in states, and how long runs wait there that may wait for ever."""
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._ones = (1,) * (1 + len(network.clocks))
+        self._are_changed = next(network.rates, None) is not None
+        self._known: dict[int, tuple[State, tuple[int, ...]]] = {}
+
+    def _places(self, state: State) -> Iterator[Location]:
+        for automaton, place in zip(self._network.automata, state.vector.locations, strict=True):
+            yield automaton.locations[place]
+
+    def rates(self, state: State) -> tuple[int, ...]:
+        """Of each clock, counted from 1.
+
+        Raises:
+            ModelError: two automata disagree, or a rate is below 0.
+        """
+        if not self._are_changed:
+            return self._ones
+        if id(state) not in self._known:
+            self._known[id(state)] = (state, self._found(state))
+        return self._known[id(state)][1]
+
+    def _found(self, state: State) -> tuple[int, ...]:
+        found: dict[int, int] = {}
+        for place in self._places(state):
+            for rate in place.rates:
+                value = evaluator(rate.value)(state.vector.locations, state.values)
+                name = self._network.clocks[rate.clock].name
+                if value < 0 or found.setdefault(rate.clock + 1, value) != value:
+                    problem = "below 0" if value < 0 else "set by two automata at once"
+                    message = f"the rate of `{name}` is {problem}"
+                    raise model_error("TA007", message, place.span, "give it one, from 0 up")
+        return tuple(found.get(clock, 1) for clock in range(len(self._ones)))
+
+    def waits(self, state: State, default: float) -> list[float]:
+        """The mean of each automaton's waits without end, in grid steps."""
+        return [
+            default if place.leaving is None else self._wait(place, place.leaving, state)
+            for place in self._places(state)
+        ]
+
+    def _wait(self, place: Location, leaving: tuple[Expression, Expression], state: State) -> float:
+        often, units = (evaluator(one)(state.vector.locations, state.values) for one in leaving)
+        if often <= 0 or units <= 0:
+            message = f"`{place.name}` is left at a rate that is not above 0"
+            raise model_error("TA017", message, place.span, "write one above 0, such as 1:20")
+        return GRID * units / often
 
 
 @dataclass(slots=True)
@@ -150,34 +213,43 @@ class _Choice:
         return self.windows[place][0] + drawn
 
 
-def _longest(state: State, clocks: list[int]) -> float:
+def _longest(state: State, clocks: list[int], rates: Sequence[int]) -> float:
     """How long time may pass in a state."""
     if not state.delays:
         return 0
-    return min((_limit(bound) - clocks[clock] for clock, bound in state.invariant), default=inf)
+    atoms = tuple((0, clock, bound) for clock, bound in state.invariant)
+    window = _window(atoms, clocks, rates, 0, inf)
+    return 0 if window is None else window[1]
 
 
-def _move_window(move: Move, clocks: list[int], longest: float) -> tuple[int, float] | None:
+def _move_window(
+    move: Move, clocks: list[int], rates: Sequence[int], longest: float
+) -> tuple[int, float] | None:
     """The delays after which a move is possible."""
-    set_now = dict(move.resets)
+    set_now, atoms = dict(move.resets), list(move.guard)
     for clock, bound in move.target.invariant:
-        if clock in set_now:
-            if set_now[clock] > bound:
-                return None
-        else:
-            longest = min(longest, _limit(bound) - clocks[clock])
-    return _window(move.guard, clocks, 0, longest)
+        if clock not in set_now:
+            atoms.append((0, clock, bound))
+        elif set_now[clock] > bound:
+            return None
+    return _window(tuple(atoms), clocks, rates, 0, longest)
 
 
 def _window(
-    atoms: Constraint, clocks: list[int], low: int, high: float
+    atoms: Constraint, clocks: list[int], rates: Sequence[int], low: int, high: float
 ) -> tuple[int, float] | None:
     """The delays in [low, high] after which all bounds hold; `None` if there are none."""
     for x, y, bound in atoms:
-        if x == 0:
-            high = min(high, _limit(bound) - clocks[y])
+        clock = y if x == 0 else x
+        rate = rates[clock]
+        left = _limit(bound) - clocks[clock] if x == 0 else -_limit(bound) - clocks[clock]
+        if rate == 0:
+            if (left < 0) if x == 0 else (left > 0):
+                return None
+        elif x == 0:
+            high = min(high, left // rate)
         else:
-            low = max(low, -_limit(bound) - clocks[x])
+            low = max(low, -(-left // rate))
     return (low, high) if low <= high else None
 
 

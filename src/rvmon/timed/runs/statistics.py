@@ -162,7 +162,7 @@ def _mean(network: Network, query: Query, mean: Mean, random: Random, runs: _Run
 
     def reached() -> int:
         run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.goes_on)
-        return best([value(state.vector.locations, state.values) for state, _, _ in run])
+        return best([value(state.vector.locations, state.values) for state, *_ in run])
 
     found = list(runs.drawn(reached, mean.runs or RUNS))
     if len(found) < 2:

@@ -19,7 +19,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Expression,
 )
-from rvmon.timed.model.guards import is_discrete, normal_form
+from rvmon.timed.model.guards import compares_of, is_discrete, normal_form
 from rvmon.timed.model.network import Extremes, Network, Query, Term
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
@@ -31,7 +31,7 @@ from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.zones.clock_bounds import value_range
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.symbolic import check_start
+from rvmon.timed.zones.symbolic import check_clocks, check_start
 
 FARTHEST = 1_000_000
 """A clock that goes beyond so many units is said to do so; a larger bound is not looked for."""
@@ -83,6 +83,8 @@ def extremes(
     if not isinstance(query.formula, Extremes):
         raise model_error("TA020", "this asks for no extreme value", query.span)
     check_start(network)
+    terms = (term.clock for term in query.formula.terms if term.clock is not None)
+    check_clocks(network, (*terms, *(one.clock for one in compares_of(query.formula.where))))
     for term in query.formula.terms:
         for largest in query.formula.ends:
             yield _Climb(network, query, term, largest, Meter(budget, watch)).run()

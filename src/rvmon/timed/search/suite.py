@@ -22,7 +22,7 @@ from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.zones.dbm import Zone
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps, check_start
+from rvmon.timed.zones.symbolic import Steps, check_clocks, check_start
 
 
 class Criterion(StrEnum):
@@ -127,6 +127,7 @@ def build_suite(
         ModelError: the network cannot start, or a run of it leaves a variable's range.
     """
     check_start(network)
+    check_clocks(network)
     meter = Meter(budget, watch)
     ways: dict[Item, _Node] = {}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.timed.language.elaborate import query_on
@@ -10,11 +10,27 @@ from rvmon.timed.model.expressions import (
     FALSE,
     TRUE,
     BinaryOperation,
+    ClockCompare,
     Expression,
     PathFormula,
 )
-from rvmon.timed.model.guards import has_paths, is_linear, is_plain, normal_form, with_deadlock
-from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.guards import (
+    compares_of,
+    has_paths,
+    is_linear,
+    is_plain,
+    normal_form,
+    with_deadlock,
+)
+from rvmon.timed.model.network import (
+    Chance,
+    Extremes,
+    LeadsToFormula,
+    Mean,
+    Network,
+    Query,
+    QueryFormula,
+)
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
@@ -23,7 +39,7 @@ from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Outcome, Policy, Watch
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.symbolic import check_start
+from rvmon.timed.zones.symbolic import check_clocks, check_start
 from rvmon.timed.zones.zone_unions import together
 
 
@@ -59,6 +75,7 @@ def verify(
     """
     asked = query_on(network, query) if isinstance(query, str) else query
     check_start(network)
+    check_clocks(network, (one.clock for one in compares_in(asked.formula)))
     question = _Question(network, Meter(budget, watch), policy)
     found = _search(question, asked)
     meter, run = question.meter, found.run
@@ -69,6 +86,18 @@ def verify(
     if run is not None and found.chosen not in (None, policy):
         remark = f"no {policy} run was found: {meter.stopped}"
     return Outcome(asked, holds, run, found.chosen, meter.statistics(), remark)
+
+
+def compares_in(formula: QueryFormula) -> Iterator[ClockCompare]:
+    """All comparisons of clocks in what a query asks."""
+    match formula:
+        case LeadsToFormula(left, right):
+            yield from compares_of(left)
+            yield from compares_of(right)
+        case Chance() | Mean() | Extremes():
+            pass
+        case _:
+            yield from compares_of(formula)
 
 
 def _remark(run: Run | None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.diagnostics import Label
 from rvmon.timed.model.network import Network
@@ -62,6 +62,35 @@ def check_start(network: Network) -> None:
         message = "an invariant of the initial locations is false at time 0"
         fix = "weaken it, or start elsewhere"
         raise model_error("TA014", message, span, fix, others=others)
+
+
+def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
+    """Refuse to decide what depends on clocks that stop, or run at other rates.
+
+    Args:
+        network: of the clocks.
+        asked: those that a query speaks of.
+
+    Raises:
+        ModelError: such a clock is compared. Source: Henzinger, Kopke, Puri, Varaiya, What's
+            Decidable about Hybrid Automata, 1998 (one stop-watch makes reaching undecidable).
+    """
+    if next(network.rates, None) is None:
+        return
+    guards = [
+        *(place.invariant for a in network.automata for place in a.locations),
+        *(edge.guard for a in network.automata for edge in a.edges),
+    ]
+    compared = {one.clock for guard in guards for one in guard.clocks} | set(asked)
+    found = [(p, r) for p, r in network.rates if r.clock in compared or network.has_split_edges]
+    if found:
+        place, rate = found[0]
+        message = (
+            f"`{network.clocks[rate.clock].name}` stops or changes its rate and is compared "
+            f"({len(found)} places): what such clocks can reach is not decidable"
+        )
+        fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
+        raise model_error("TA016", message, place.span, fix)
 
 
 def fire(move: Move, zone: Zone, dim: int) -> Zone | None:

@@ -28,7 +28,6 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
         ({"declaration": "dynamic T();"}, "templates that are started by runs"),
         ({"declaration": "before_update { i = 0 }"}, "updates around every step"),
         ({"declaration": "const N 5;"}, "a constant without a type"),
-        ({"declaration": "clock x;", "invariant": "x' == 0"}, "rates of clocks"),
         ({"declaration": "clock x;", "guard": "x &gt; 0.5"}, "floating point"),
         ({"assignment": "if (1) { }"}, "statements"),
         ({"declaration": "void f() { break; }"}, "break"),

@@ -142,7 +142,7 @@ def test_unit_weight_and_label_come_from_comments():
         (wrap('<location id="a"/>'), ("TA013", "T")),
         (wrap(ONE, declaration="hybrid clock x;"), ("TA016", ";")),
         (wrap(ONE, declaration="clock x, y;") .replace(
-            "</location>", "<label kind='invariant'>x' == 0</label></location>"), ("TA016", "'")),
+            "</location>", "<label kind='invariant'>x' != 0</label></location>"), ("TA009", "x'")),
         (wrap(ONE + edge(guard="x + y &lt; 3"), declaration="clock x, y;"),
          ("TA008", "x + y &lt; 3")),
         (wrap(ONE + edge(comments="weight 2")), ("TA017", "<label")),

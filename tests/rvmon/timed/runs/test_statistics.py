@@ -6,9 +6,11 @@ import pytest
 
 from rvmon.cli import main
 from rvmon.errors import ModelError
+from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.statistics import MARGIN, sample
+from rvmon.timed.search.extremes import extremes
 from rvmon.timed.search.verify import verify
 
 COIN = """
@@ -130,3 +132,86 @@ def test_the_command_says_figures(tmp_path, capsys):
     (one,) = json.loads(capsys.readouterr().out)["simulated"]
     assert one["holds"] is False
     assert one["error"] == 0.05
+
+
+STOPPED = """
+clock x, used, cost
+bool left
+automaton A {
+  location a invariant x <= 10 and used' == 0
+  location b invariant x <= 10 and used' == 2 and cost' == 3
+  location c rate 1:4
+  location d
+  start a
+  edge a -> b when x == 4
+  edge b -> c when x >= 10
+  edge c -> d do left = true
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "share"),
+    [
+        ("Pr[<=10](<> A.c and used >= 12)", 1.0),
+        ("Pr[<=10](<> A.c and used > 12)", 0.0),
+        ("Pr[<=7](<> used > 6)", 0.0),
+        ("Pr[<=8](<> used > 6)", 1.0),
+        ("Pr[<=4](<> used > 0)", 0.0),
+    ],
+)
+def test_clocks_stop_and_run_at_other_rates(query, share):
+    """Simulated exactly: 4 units stopped, then 6 at a rate of 2."""
+    network = loads_network(STOPPED)
+    assert sample(network, query_on(network, query)).value == share
+
+
+def test_a_wait_without_end_has_the_rate_of_its_location():
+    """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
+    network = loads_network(STOPPED)
+    found = sample(network, query_on(network, "Pr[<=14; 4000](<> left)"))
+    assert found.low < 0.632 < found.high
+
+
+def test_what_stop_watches_reach_is_not_decided():
+    """A clock that stops and is compared is refused with the reason; one that is not may stop."""
+    network = loads_network(STOPPED)
+    assert verify(network, "E<> A.c").holds
+    for query in ("E<> used > 3", "A<> cost > 3", "G (cost < 9)"):
+        with pytest.raises(ModelError, match="not decidable"):
+            verify(network, query)
+    with pytest.raises(ModelError, match="not decidable"):
+        list(extremes(network, query_on(network, "sup: cost")))
+    guarded = loads_network(STOPPED.replace("when x >= 10", "when x >= 10 and used > 3"))
+    with pytest.raises(ModelError, match="2 places"):
+        verify(guarded, "E<> A.c")
+
+
+@pytest.mark.parametrize(
+    ("invariant", "message"),
+    [("used' == n - 1", "below 0"), ("cost' == 1 + n", "set by two automata")],
+)
+def test_rates_that_have_no_meaning_are_told(invariant, message):
+    """A run that gets there says which clock and where."""
+    text = STOPPED.replace("bool left", "int[0,3] n\nbool left")
+    text += f"automaton B {{ location l invariant {invariant} start l }}"
+    network = loads_network(text.replace("used' == 0", "x <= 10"))
+    with pytest.raises(ModelError, match=message):
+        sample(network, query_on(network, "Pr[<=10](<> left)"))
+
+
+def test_rates_come_back_from_uppaal():
+    """Rates of clocks and of leaving are written and read."""
+    network = loads_network(STOPPED)
+    assert loads_network(uppaal_xml(network)).automata == network.automata
+
+
+def test_rates_may_be_told_for_all_elements():
+    """`forall` in an invariant tells the rate of each clock of an array."""
+    text = """
+    clock y[2]
+    automaton A { location l invariant forall (i : int[0,1]) y[i]' == i and y[i] <= 9 start l }
+    """
+    (place,) = loads_network(text).automata[0].locations
+    assert [(rate.clock, rate.value.value) for rate in place.rates] == [(0, 0), (1, 1)]
+    assert [compare.clock for compare in place.invariant.clocks] == [0, 1]
