@@ -19,6 +19,8 @@ def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["nothing"]) == 2
 
 
+# Other tests of the same process have imported some of them.
+@pytest.mark.filterwarnings("ignore:.*found in sys.modules:RuntimeWarning")
 @pytest.mark.parametrize("name", BENCHMARKS)
 def test_each_helps(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
