@@ -97,7 +97,8 @@ class Labelling:
 
     def _signal(self, name: str) -> Callable[[State], int]:
         if name not in self._signals:
-            raise NotExpressibleError(f"the network has no signal `{name}`")
+            fix = f"`--bind '{name}=…'` gives it a meaning"
+            raise NotExpressibleError(f"the network has no signal `{name}`: {fix}")
         read = self._signals[name]
         return lambda state: read(state.vector.locations, state.values)
 
