@@ -15,6 +15,7 @@ from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
+from rvmon.monitor.records import RecordedAttempts
 from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
@@ -187,6 +188,7 @@ def judge_all(
             each of these says so.
     """
     done = 0
+    first: RecordedAttempts | None = None
     is_alone = len(traces) == 1
     begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
     try:
@@ -196,6 +198,9 @@ def judge_all(
                 done += 1
                 if not is_alone:  # that one shows how far it is read
                     show(done)
+                if one.report is not None and isinstance(one.report.attempts, RecordedAttempts):
+                    first = first or one.report.attempts
+                    one.report.attempts.told_with(first)
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
