@@ -41,7 +41,9 @@ def test_page_is_as_the_rule(code):
     shown, message = page(code), message_about(found_in_example(code))
     if os.environ.get("RVMON_UPDATE_GOLDEN"):
         file = PAGES / f"{code[:4]}.md"
-        file.write_text(file.read_text("utf-8").replace(shown.message, message), "utf-8")
+        fences = (f"```text\n{text}\n```" for text in (shown.message, message))
+        written = shown.text.replace(*fences)
+        file.write_text(file.read_text("utf-8").replace(shown.text, written), "utf-8")
     assert shown.message == message
     rule = RULES[code]
     assert (shown.code, shown.name, shown.severity) == (code, rule.name, str(rule.severity))
