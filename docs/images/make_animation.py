@@ -18,7 +18,7 @@ from handover.checker import spec_path
 from handover.driver import run_test
 from handover.driver.play import SampleValues
 from handover.generator.abstract_test import directed
-from rvmon.report.markup import e
+from rvmon.report.pages import e
 from rvmon.report.run_html import UNITS, scene_svg
 from rvmon.report.style import MARKS, verdict_colours
 from rvmon.trace.time import TICKS_PER_SECOND

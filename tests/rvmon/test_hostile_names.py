@@ -37,8 +37,7 @@ from rvmon.diagnostics import (
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
-from rvmon.report.markup import e
-from rvmon.report.pages import component, data, table_html
+from rvmon.report.pages import component, data, e, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.spec.checked.specification import CheckedSpec

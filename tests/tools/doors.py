@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.readers import line_chunks, parquet
+from rvmon.readers import parquet, places
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate import Rng, chance
 from rvmon.testing.generate.trace import Case
@@ -308,9 +308,9 @@ def bare(report: Report) -> tuple[object, ...]:
 @contextmanager
 def in_pieces(size: int) -> Iterator[None]:
     """Files are read in pieces of so many bytes, however short they are."""
-    kept = line_chunks.BLOCK, parquet.ROWS
-    line_chunks.BLOCK, parquet.ROWS = size, 5
+    kept = places.BLOCK, parquet.ROWS
+    places.BLOCK, parquet.ROWS = size, 5
     try:
         yield
     finally:
-        line_chunks.BLOCK, parquet.ROWS = kept
+        places.BLOCK, parquet.ROWS = kept

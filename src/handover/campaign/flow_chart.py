@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 from handover.collector.code import COMMON, TRANSITIONS
 from handover.robot.handover import STATES
 from rvmon.cdv.summary import BlockCoverage, StrategySummary, Transition
-from rvmon.report.markup import e
-from rvmon.report.percent import percent_text
+from rvmon.report.pages import e
+from rvmon.texts import percent_text
 
 LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 200, 34, 54
 LANE = 13

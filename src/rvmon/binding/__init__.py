@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 from rvmon.binding.expression import term_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.readers.messages.forms import DATABASES
-from rvmon.readers.messages.measured import expect_units
+from rvmon.readers.messages.meaning import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec

@@ -24,8 +24,8 @@ from rvmon.cdv.tables import (
 )
 from rvmon.cdv.test import save
 from rvmon.files import write_whole
-from rvmon.report.percent import percent_text
 from rvmon.report.table import table_latex, table_text, tables_csv
+from rvmon.texts import percent_text
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
 from rvmon.files import write_whole
-from rvmon.report.markup import Child, e
+from rvmon.report.pages import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec, load

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.test import Test
 from rvmon.coverage import Ending, Hits
-from rvmon.report.percent import percent
 from rvmon.report.table import Counts
+from rvmon.texts import percent
 from rvmon.verdict import Verdict
 
 Transition = tuple[str, str]

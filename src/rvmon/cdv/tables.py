@@ -16,8 +16,8 @@ from rvmon.cdv.test import Test
 from rvmon.confidence import CONFIDENCE, interval
 from rvmon.coverage import Ending
 from rvmon.report.pages import component
-from rvmon.report.percent import percent_text
 from rvmon.report.table import Counts, RunGroup, VerdictTable
+from rvmon.texts import percent_text
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
 

@@ -28,7 +28,7 @@ from rvmon.cli.output import warn
 from rvmon.cli.parser import Parser
 from rvmon.errors import UnknownNameError
 from rvmon.report.folder import refuse_no_file, write_file
-from rvmon.report.percent import counted
+from rvmon.texts import counted
 
 SHOWN = 20
 """Lines about what is wrong; `--junit` has all of them."""

@@ -12,8 +12,7 @@ from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.parser import duration
 from rvmon.cli.reading import add_binding
-from rvmon.report.percent import counted
-from rvmon.texts import cannot_read, text_of_file, text_of_input
+from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 if TYPE_CHECKING:
     from rvmon.diagnostics import Diagnostic

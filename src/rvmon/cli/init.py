@@ -13,7 +13,7 @@ from rvmon.cli.output import busy, say, warn
 from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
 from rvmon.files import write_whole
-from rvmon.report.percent import counted
+from rvmon.texts import counted
 
 if TYPE_CHECKING:
     from rvmon.starter.column import Profile

@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         write_file(arguments.output, look_page(profile, requirements))
         say(f"wrote {arguments.output}: {len(profile.columns):,} names")
         return 0
-    from rvmon.report.look_text import look_tables
+    from rvmon.report.look_page import look_tables
     from rvmon.report.terminal import Terminal
 
     terminal = Terminal()

@@ -25,8 +25,8 @@ from rvmon.evidence.keep import (
     texts_of,
     write_evidence,
 )
+from rvmon.readers.batch import HeldRecording
 from rvmon.readers.found import files_of
-from rvmon.readers.held import HeldRecording
 from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file

@@ -16,8 +16,7 @@ from pathlib import Path
 
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.jsonl_rows import jsonl_samples
-from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.places import created, opened
+from rvmon.readers.places import bounded_lines, created, opened
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp

@@ -137,7 +137,7 @@ class Findings:
 
     def note_batch(self, batch: Batch) -> None:
         """Look through rows."""
-        from rvmon.readers.batch_notes import unknown_rows
+        from rvmon.readers.batch import unknown_rows
 
         times = batch.times
         if self._log.began is None:

@@ -14,11 +14,11 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.native.csv import read
-from rvmon.readers import line_chunks
+from rvmon.readers import places
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.readers.cells import batch_of, cells_of_labels, kept
 from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines
-from rvmon.readers.line_chunks import LONGEST_LINE, bounded_lines
+from rvmon.readers.places import LONGEST_LINE, bounded_lines
 from rvmon.readers.rows import Row
 from rvmon.readers.values import as_declared, scalar_of_text
 from rvmon.trace.schema import Kind
@@ -92,7 +92,7 @@ class _Text:
             return False
         if len(self.rest) - self.start > LONGEST_LINE:
             self._refuse_long()
-        piece = self._file.read(line_chunks.BLOCK)
+        piece = self._file.read(places.BLOCK)
         if self._decoder.getstate()[0] or not piece.isascii():
             self._decoder.decode(piece, final=not piece)
         self.rest = self.rest[self.start :] + piece

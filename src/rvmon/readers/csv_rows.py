@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.line_chunks import LONGEST_LINE
 from rvmon.readers.naming import aliases_of, stamps_among
+from rvmon.readers.places import LONGEST_LINE
 from rvmon.readers.values import as_declared, scalar_of_text, shorten
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps

@@ -13,14 +13,14 @@ import msgspec
 import numpy as np
 
 from rvmon.errors import TraceError
-from rvmon.readers import line_chunks
+from rvmon.readers import places
 from rvmon.readers.batch import NO, YES, Batch, NotPlainError, Occurrences
 from rvmon.readers.cells import cells_of_values
+from rvmon.readers.columns import ticks_of_column
 from rvmon.readers.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
-from rvmon.readers.line_chunks import bounded_lines, whole_pieces
 from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.readers.places import bounded_lines, whole_pieces
 from rvmon.readers.rows import Row
-from rvmon.readers.table_batch import ticks_of_column
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
@@ -50,7 +50,7 @@ def jsonl_batches(
         TraceError: with the line's number.
     """
     line = 0
-    for text in whole_pieces(file, line_chunks.BLOCK):
+    for text in whole_pieces(file, places.BLOCK):
         if not line and schema.stamps is None:
             first = text.partition(b"\n")[0]
             found_stamps(stamps_of("t_ns" if b'"t_ns"' in first else "t"))

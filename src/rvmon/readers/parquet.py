@@ -14,7 +14,7 @@ from rvmon.errors import TraceError, not_installed
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.columns import rows_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
-from rvmon.readers.line_chunks import is_short_of_memory
+from rvmon.readers.places import is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.tables import arrow_cells, is_of_dates, is_of_durations, nanoseconds_of
 from rvmon.readers.values import first_line
@@ -133,7 +133,7 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         TraceError: with the row's number, or it is damaged.
     """
     from rvmon.readers.cells import batch_of, cells_of_arrow
-    from rvmon.readers.table_batch import instants
+    from rvmon.readers.columns import instants
 
     layout = parquet_layout(path, schema)
     row = 0

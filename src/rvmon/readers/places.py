@@ -7,10 +7,10 @@ import re
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import lru_cache, partial
 from io import BufferedReader, RawIOBase
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TextIO
 
 from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.values import first_line
@@ -257,3 +257,56 @@ def _remote_errors(address: str) -> Iterator[None]:
         raise RvmonError(f"{address}: {first_line(error)}{how}") from None
     except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
         raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None
+
+
+BLOCK = 1 << 20
+"""Bytes of a piece."""
+
+
+LONGEST_LINE = 1 << 26
+"""Characters of a line; longer ones are refused."""
+
+
+def bounded_lines(text: TextIO) -> Iterator[str]:
+    """The lines of a text, which never fill the memory.
+
+    Raises:
+        TraceError: a line is too long.
+    """
+    for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1):
+        if len(line) > LONGEST_LINE:
+            raise TraceError(
+                f"line {number}: longer than {LONGEST_LINE:,} characters: is this a recording? "
+                "Put each sample on a line of its own"
+            )
+        yield line
+
+
+def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
+    r"""A file in pieces of whole lines; the last line may lack its end.
+
+    What follows a line that is too long is not read: who reads the line refuses it.
+    """
+    parts: list[bytes] = []
+    length = 0
+    while length <= LONGEST_LINE and (piece := file.read(size)):
+        whole, newline, tail = piece.rpartition(b"\n")
+        if newline:
+            yield b"".join([*parts, whole, newline])
+            parts, length = [], 0
+        parts.append(tail)
+        length += len(tail)
+    if length:
+        yield b"".join(parts)
+
+
+def is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
+
+    A thread of it that gets none may end the process.
+    """
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY

@@ -21,14 +21,21 @@ from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
 from rvmon.readers.found import files_of
 from rvmon.readers.joined import Joined, schemas_of
-from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import (
     ARRAYS,
     FORMATS,
     MESSAGE_FORMS,
     form_of_folder,
 )
-from rvmon.readers.places import JOINT, endings_of, is_address, local_path, named_errors, opened
+from rvmon.readers.places import (
+    JOINT,
+    bounded_lines,
+    endings_of,
+    is_address,
+    local_path,
+    named_errors,
+    opened,
+)
 from rvmon.readers.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.texts import cannot_read
 from rvmon.trace.sample import Health, HealthKind, Outage, Sample

@@ -8,8 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.alternation import Alternations
-from rvmon.readers.coalesce import Conflicts, merged, updates_in
+from rvmon.readers.coalesce import Alternations, Conflicts, merged, updates_in
 from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
@@ -123,8 +122,7 @@ class Rows:
         Raises:
             TimeOrderError: a row is before the one above it; those of columns are never sorted.
         """
-        from rvmon.readers.batch import Batch
-        from rvmon.readers.batch_notes import note_batch, without_ignored
+        from rvmon.readers.batch import Batch, note_batch, without_ignored
 
         self._begin()
         held: Sample | None = None

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
+from rvmon.readers.batch import HeldRecording
 from rvmon.readers.coalesce import updates_in
-from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar, Value
 
@@ -156,7 +156,7 @@ class Changes:
         """Add what rows say of a signal."""
         import numpy as np
 
-        from rvmon.readers.batch_notes import last_said, unknown_in
+        from rvmon.readers.batch import last_said, unknown_in
 
         rows = last_said(batch, cells)
         if not len(rows):

@@ -15,11 +15,10 @@ from markupsafe import Markup
 from rvmon.coverage import Group, Item, TestRecord, combination
 from rvmon.coverage.questions import Step
 from rvmon.report.coverage_summary import LISTED, Summary, cell_text, is_grid, strategy_name
-from rvmon.report.markup import Child, e
-from rvmon.report.pages import render, table_html
-from rvmon.report.percent import counted, share_text
+from rvmon.report.pages import Child, e, render, table_html
 from rvmon.report.table import VerdictTable
 from rvmon.spec.checked.goals import BinKind
+from rvmon.texts import counted, share_text
 from rvmon.verdict import Verdict
 
 WIDTH, HEIGHT = 1000, 100

@@ -13,10 +13,10 @@ from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, Te
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
 from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
-from rvmon.report.percent import counted
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.rules.properties import MOST_COMBINATIONS
+from rvmon.texts import counted
 from rvmon.trace.time import format_ticks
 from rvmon.verdict import Verdict
 

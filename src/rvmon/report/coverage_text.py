@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from rvmon.coverage import UNKNOWN, Group, combination
 from rvmon.coverage.questions import Comparison
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
-from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
+from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rvmon.analysis.subformulas import PartTruth
 from rvmon.report.changes import Course
-from rvmon.report.markup import Child, e
+from rvmon.report.pages import Child, e
 from rvmon.report.panels import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.time_axis import moment, with_moments

@@ -13,7 +13,7 @@ from rvmon.analysis.subformulas import PartTruth, late_in, part_truths_of, waits
 from rvmon.analysis.truths import Question, Seen, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.report.changes import Changes, changes_of, shifted
-from rvmon.report.markup import Child
+from rvmon.report.pages import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt

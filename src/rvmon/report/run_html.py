@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby, islice
 
-from rvmon.report.markup import e
-from rvmon.report.pages import render
+from rvmon.report.pages import e, render
 from rvmon.report.panel_html import (
     has_unknown,
     headline,

@@ -7,10 +7,10 @@ from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.report.percent import counted
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import forecast_sentence, full_reason, instants_of, without_attempts
 from rvmon.spec.checked.goals import BinKind
+from rvmon.texts import counted
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict

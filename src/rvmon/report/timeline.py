@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.report.markup import Child, e
+from rvmon.report.pages import Child, e
 from rvmon.report.style import MARKS
 from rvmon.report.time_axis import View, moment, round_instants, with_moments
 from rvmon.report.tracks import (

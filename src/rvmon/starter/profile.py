@@ -15,10 +15,9 @@ from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.found import files_of
 from rvmon.readers.joined import topics_of
-from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
-from rvmon.readers.places import local_path, named_errors, opened
+from rvmon.readers.places import bounded_lines, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
 from rvmon.starter.column import Column, Profile, Shape, Shapes
 from rvmon.starter.declared import Seen, message_shapes, shapes_seen

@@ -9,7 +9,7 @@ import pytest
 from tests.rvmon.readers.csv_reference import samples_of_csv
 
 import rvmon
-from rvmon.readers import csv_batch, line_chunks
+from rvmon.readers import csv_batch, places
 from rvmon.readers.batch import Batch
 
 SPEC = rvmon.loads("""
@@ -105,7 +105,7 @@ def test_columns_say_what_rows_say(seed, tmp_path, monkeypatch):
     rng = random.Random(seed)
     (tmp_path / "a.csv").write_text(csv_text(rng, rng.choice([0, 0.01, 0.1])), newline="")
     expected = read(samples_of_csv(SPEC, tmp_path / "a.csv"))
-    monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([1, 7, 100, 999, 1 << 20]))
+    monkeypatch.setattr(places, "BLOCK", rng.choice([1, 7, 100, 999, 1 << 20]))
     monkeypatch.setattr(csv_batch, "_ODD", 1)
     monkeypatch.setattr(csv_batch, "_LABELS", 1)
     assert read(of_pieces(tmp_path / "a.csv")) == expected

@@ -7,7 +7,7 @@ import pytest
 import rvmon
 from rvmon.cli import main
 from rvmon.errors import MissingNameError
-from rvmon.readers import line_chunks
+from rvmon.readers import places
 
 SPEC = """
 spec flight
@@ -63,7 +63,7 @@ def attempts(report):
 def test_joined_files_give_what_one_file_with_empty_cells_gives(tmp_path, seed, monkeypatch):
     """Nothing of one file is carried into the rows of another, row by row or in blocks."""
     rng = random.Random(seed)
-    monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([300, 3_000, 1 << 20]))
+    monkeypatch.setattr(places, "BLOCK", rng.choice([300, 3_000, 1 << 20]))
     files, whole, count = written(tmp_path, rng, 40 if seed < 8 else 1_500)
     if not count:
         return

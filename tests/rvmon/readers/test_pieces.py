@@ -8,8 +8,8 @@ import pytest
 from tests.rvmon.readers.csv_reference import samples_of_csv
 
 import rvmon
-from rvmon.readers import line_chunks
 from rvmon.readers import parquet as parquet_module
+from rvmon.readers import places
 from rvmon.readers.batch import Batch
 from rvmon.readers.source import Source
 
@@ -66,7 +66,7 @@ def in_columns(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Re
 @pytest.fixture
 def cut_into(monkeypatch):
     """Has files read in pieces of so many bytes."""
-    return partial(monkeypatch.setattr, line_chunks, "BLOCK")
+    return partial(monkeypatch.setattr, places, "BLOCK")
 
 
 @pytest.mark.law

@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rvmon.report.percent import percent, percent_text
+from rvmon.texts import percent, percent_text
 
 
 @settings(deadline=None)

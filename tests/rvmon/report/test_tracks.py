@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
-from rvmon.readers import line_chunks
-from rvmon.readers.held import HeldRecording
+from rvmon.readers import places
+from rvmon.readers.batch import HeldRecording
 from rvmon.report.changes import Course, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
@@ -195,7 +195,7 @@ def test_held_columns_give_the_tracks_of_samples(seed, tmp_path, monkeypatch):
         cells = [gap, mode, rng.choice(["0", "1", ""]), rng.choice("01"), rng.choice(["3", ""])]
         rows.append(f"{t // SECOND}.{t % SECOND:09d}," + ",".join(cells))
     (tmp_path / "a.csv").write_text("\n".join(rows))
-    monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([100, 1 << 20]))
+    monkeypatch.setattr(places, "BLOCK", rng.choice([100, 1 << 20]))
     recording = rvmon.loads(SPEC_TEXT).recording(tmp_path / "a.csv")
     held = HeldRecording(recording.pieces(), SPEC.events)
     assert repr(list(held)) == repr(list(recording))

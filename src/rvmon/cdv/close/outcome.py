@@ -10,8 +10,8 @@ from rvmon.cdv.plan import Played
 from rvmon.coverage import Group
 from rvmon.coverage.holes import Goal, Hole
 from rvmon.report.coverage_summary import name_of
-from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
+from rvmon.texts import counted, percent_text, share_text
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, not_installed
+from rvmon.readers.columns import ticks_of_column
 from rvmon.readers.messages.columns import (
     ColumnMessages,
     ColumnTopic,
@@ -19,7 +20,6 @@ from rvmon.readers.messages.columns import (
     path_of,
 )
 from rvmon.readers.messages.topic import Topic, errors_as_damage
-from rvmon.readers.table_batch import ticks_of_column
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 from rvmon.errors import TraceError
 from rvmon.readers.messages.by_names import arrays_with_names
 from rvmon.readers.messages.fields import expect_kinds, field_of
-from rvmon.readers.messages.meaning import plain_type
-from rvmon.readers.messages.measured import expect_units
+from rvmon.readers.messages.meaning import expect_units, plain_type
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 

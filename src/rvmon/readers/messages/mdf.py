@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, not_installed
+from rvmon.readers.columns import ticks_of_column
 from rvmon.readers.messages.columns import (
     ColumnMessages,
     ColumnTopic,
@@ -23,7 +24,6 @@ from rvmon.readers.messages.columns import (
     path_of,
 )
 from rvmon.readers.messages.topic import Topic, errors_as_damage
-from rvmon.readers.table_batch import ticks_of_column
 from rvmon.trace.schema import Stamps
 
 _STAMPS = Stamps("its time", "s", is_stated=True)

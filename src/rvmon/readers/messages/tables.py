@@ -20,10 +20,9 @@ from typing import Any
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
-from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.places import endings_of, named_errors
+from rvmon.readers.places import bounded_lines, endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.texts import did_you_mean, text_of_file
 from rvmon.trace.schema import Kind, Schema, Stamps
