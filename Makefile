@@ -47,7 +47,7 @@ format: $(VENV)/.dev  ## lay the code out and sort imports
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
-bench: $(VENV)/.dev  ## time monitors against peers, 25 minutes; writes benchmarks/RESULTS.md; R2U2=FOLDER: a clone
+bench: $(VENV)/.dev  ## time monitors against peers, 17 minutes; writes benchmarks/RESULTS.md; R2U2=FOLDER: a clone
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,arrow]' \
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
 	@$(BIN)/python -m benchmarks.results $(if $(R2U2),--r2u2 $(R2U2))
