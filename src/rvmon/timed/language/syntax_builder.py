@@ -304,7 +304,7 @@ class SyntaxBuilder(QueryBuilder):
         return syntax.Rate(items[0], self._span(meta))
 
     def leaving(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
-        shares = [*items, "1"] if len(items) == 1 else list(items)
+        shares = [*items, syntax.Number(1, self._span(meta))][:2]
         if not any(isinstance(share, str) for share in shares):
             return shares[0], shares[1]
         span = self._span(meta)

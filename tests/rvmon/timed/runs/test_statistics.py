@@ -215,3 +215,21 @@ def test_rates_may_be_told_for_all_elements():
     (place,) = loads_network(text).automata[0].locations
     assert [(rate.clock, rate.value.value) for rate in place.rates] == [(0, 0), (1, 1)]
     assert [compare.clock for compare in place.invariant.clocks] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("written", "share"),
+    [
+        ("4", (4, 1)),
+        ("OFTEN", (10, 1)),
+        ("1 : OFTEN * 2", (1, 20)),
+        ("0.25", (1, 4)),
+        ("1e2", (100, 1)),
+        ("1:2.5", (2, 5)),
+    ],
+)
+def test_how_often_a_location_is_left_is_a_share(written, share):
+    """Whole numbers, constants, decimals, and one for another."""
+    text = f"const int OFTEN = 10 automaton A {{ location l rate {written} start l }}"
+    (place,) = loads_network(text).automata[0].locations
+    assert tuple(number.value for number in place.leaving) == share
