@@ -69,6 +69,12 @@ AMOUNTS = {
     "integral": "upon integral(x, {d} s) < 0 s then e",
     "mean, moving": "upon mean(x, {d} s) > x then e",
     "integral()": "upon integral(x) < 0 s then e",
+    "delta": "upon delta(x, {d} s) > 100 then e",
+    "distinct": "upon distinct(x, {d} s) > 1000000000 then e",
+    "count(last)": "upon count(last({d}, a)) >= 1000000000 then e",
+    "sum(last)": "upon sum(last({d}, x)) < 0 then e",
+    "variance(last)": "upon variance(last({d}, x)) > 100 then e",
+    "sum since trigger": "upon start then for 1000000 s sum(x since trigger) >= 0",
 }
 """Over a window of so many samples."""
 

@@ -70,6 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
         checked, found = _checked(text, name, constants)
         findings += found
         broken += checked is None
+        remarks += [] if checked is None else _memory(checked)
         if arguments.binding is not None and checked is not None:
             remarks += _bound(arguments.binding, checked)
         if arguments.analyse and checked is not None:
@@ -112,6 +113,13 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
     analysis = analyse(compile_spec(checked), seconds=seconds)
     return analysis.findings, analysis_lines(analysis, checked)
+
+
+def _memory(checked: CheckedSpec) -> list[str]:
+    """What windows of the past keep."""
+    from rvmon.report.memory_text import memory_lines
+
+    return memory_lines(checked)
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:

@@ -173,7 +173,10 @@ class Reader(Reading[Four]):
 
     def _amount(self, formula: Amount) -> Four:
         """What is not born adds nothing; a limit, and what a mean is of, are born first."""
-        states = [self.four(part).read(FALSE) for part in formula.operands]
+        states = [
+            self.four(part).read(UNKNOWN if part is formula.known else FALSE)
+            for part in formula.operands
+        ]
         return self._born_with(self.factory.amount(formula, *states), formula.born_with)
 
     def _born_with(self, value: State, asked: Sequence[Formula]) -> Four:

@@ -5,6 +5,7 @@ from tests.tools.differential import campaign, disagreements
 from tests.tools.forms import Compiler, Maker
 
 import rvmon
+from rvmon.spec.checked.measured import Measured
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
@@ -267,6 +268,30 @@ def test_what_is_never_true_is_unknown_where_a_sample_may_have_been(amount):
     assert monitor.finish().verdicts["R"] == "I"
 
 
+@pytest.mark.parametrize(
+    ("measured", "text"),
+    [
+        (Measured.COUNT, "count(last(20000, x > 5)) > 30000"),
+        (Measured.SUM, "sum(x, 20000 s) < 0"),
+        (Measured.MEAN, "mean(x, 20000 s) < 0"),
+        (Measured.INTEGRAL, "integral(x, 20000 s) < 0 s"),
+        (Measured.VARIANCE, "variance(last(20000, x)) < 0"),
+        (Measured.DELTA, "delta(x, 20000 s) > 30000"),
+        (Measured.DISTINCT, "distinct(x, 20000 s) > 30000"),
+    ],
+)
+def test_members_take_the_memory_that_is_stated(measured, text):
+    """At most, when each is another number."""
+    spec = rvmon.loads(f"signal x : real\nrequirement R\n  always not {text}\n")
+    monitor = spec.monitor()
+    monitor.step(0.0, {"x": 0.5})
+    begun = monitor._core.memory_used()
+    for t in range(1, 16_400):  # one ring was just made twice as large
+        monitor.step(float(t), {"x": float(t)})
+    taken = monitor._core.memory_used() - begun
+    assert 16 * 16_400 < taken <= measured.each * 16_400 + 6 * 16_384  # and rings before these
+
+
 def test_an_amount_is_due_between_samples():
     """The tick at which a duration crosses its bound is a deadline."""
     spec = rvmon.loads(
@@ -359,6 +384,21 @@ def test_another_instant_of_the_trigger_may_be_captured_at_the_next_tick():
     for t, p in ((1.0, False), (3.0, None), (7.0, False)):
         monitor.step(t, {"p": p})
     assert monitor.finish().verdicts["R"].value == "I"
+
+
+def test_a_limit_that_is_lost_hides_no_attempt():
+    """Each edge has one, whatever is known of what it owes."""
+    spec = rvmon.loads(
+        "spec s\nsignal q : bool\nsignal y : int\nevent h(m: real)\nrequirement R\n"
+        "  upon q then immediately mean(h.m, 3 ns) > y\n"
+    )
+    monitor = spec.monitor()
+    for t, sample in ((5, {"q": True}), (14, {"y": 0}), (17, {"q": False})):
+        monitor.step_ns(t, sample)
+    monitor.lose_ns(["y"], 23)
+    monitor.found_ns(["y"], 23)
+    monitor.step_ns(23, {"q": True})
+    assert [one.triggered for one in monitor.finish().attempts] == [5, 23]
 
 
 def test_a_loss_leaves_open_what_it_may_have_held():

@@ -37,7 +37,7 @@ class Measured(StrEnum):
         dimension: of what comes out.
         doc: its value in a few words.
         unknown: what becomes of it where something in the window is not known.
-        each: bytes that a member takes, or a stretch of equal ones.
+        each: bytes that a member takes at most, or a stretch of equal ones.
         fixed: bytes besides.
         steady: whether it takes no more without D, however long the run.
 
@@ -47,41 +47,41 @@ class Measured(StrEnum):
 
     COUNT = (
         *("count", Members.TRUTHS, Dimension.PLAIN, "how often φ was true in the last D"),
-        *("between what it may be", 32, 0),
+        *("between what it may be", 64, 128),
     )
     DURATION = (
         *("duration", Members.TIME, Dimension.TIME),
         "for how long φ was true in the last D, up to this instant",
-        *("between what it may be", 32, 0),
+        *("between what it may be", 64, 128),
     )
     SUM = (
         *("sum", Members.EVENTS, Dimension.SAME, "what x came to in the last D, together"),
-        *("unknown; between what it may be where a condition is not known", 32, 856),
+        *("unknown; between what it may be where a condition is not known", 64, 980),
     )
     MEAN = (
         *("mean", Members.EITHER, Dimension.SAME),
         "the mean of x at all instants of the last D, of a field at its occurrences",
-        *("unknown, as of nothing", 32, 856),
+        *("unknown, as of nothing", 64, 980),
     )
     INTEGRAL = (
         *("integral", Members.HELD, Dimension.TIMES_TIME),
         "x times the time for which it was held, in the last D, up to this instant",
-        *("unknown; between what it may be where a condition is not known", 32, 856),
+        *("unknown; between what it may be where a condition is not known", 64, 980),
     )
     VARIANCE = (
         *("variance", Members.EITHER, Dimension.SQUARE),
         "the mean square of how far x was from its mean, in the last D; in `time held` of fields",
-        *("unknown, as of nothing", 32, 856),
+        *("unknown, as of nothing", 64, 980),
     )
     DELTA = (
         *("delta", Members.HELD, Dimension.SAME),
         "by how much x is more than at the first instant of the last D",
-        *("unknown if one of both is", 32, 0),
+        *("unknown if one of both is", 64, 128),
     )
     DISTINCT = (
         *("distinct", Members.EVENTS, Dimension.PLAIN),
         "how many different values x had in the last D",
-        *("at least as many as are known", 48, 0, False),
+        *("at least as many as are known", 96, 128, False),
     )
 
     of: Members
@@ -113,8 +113,7 @@ class Measured(StrEnum):
     @property
     def memory(self) -> str:
         """What it takes, in words."""
-        besides = f", and {self.fixed}" if self.fixed else ""
-        return f"{self.each} bytes a member, or stretch of equal ones{besides}"
+        return f"{self.fixed} bytes, and up to {self.each} a member, or stretch of equal ones"
 
     @property
     def of_numbers(self) -> bool:

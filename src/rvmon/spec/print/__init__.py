@@ -116,11 +116,16 @@ def _amount(formula: Amount) -> str:
     if formula.measured is Measured.DURATION and isinstance(formula.limit, Literal):
         limit = format_duration(int(formula.limit.value))
     sign = ">" if formula.strict else ">="
-    return f"{_measured(formula)} {sign} {limit}"
+    return f"{format_measured(formula)} {sign} {limit}"
 
 
-def _measured(formula: Amount) -> str:
-    """What is measured, without what it is compared with."""
+def format_measured(formula: Amount) -> str:
+    """What is measured, without what it is compared with.
+
+    >>> from rvmon.spec.checked.formula import EventAtom
+    >>> format_measured(Amount(Measured.COUNT, EventAtom("e"), 5 * 10**9, Literal(3)))
+    'count(e, 5 s)'
+    """
     word, what = str(formula.measured), ""
     conditions = _conditions(formula)
     since = since_trigger() in conditions

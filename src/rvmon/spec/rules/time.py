@@ -41,8 +41,8 @@ def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
 moving = Breach(
     NO_DURATION,
     "`{}` comes from data, and is no constant duration",
-    "it is counted from a trigger, right behind that: `upon e then within (x) φ`; elsewhere "
-    "compare with `let t0 = now`: `φ until now >= t0 + x`",
+    "it is counted from a trigger: `upon e then within (x) φ`, or `(within (x) φ) and ψ`; below "
+    "another operator of time compare with `let t0 = now`: `φ until now >= t0 + x`",
 )
 part_of_tick = Breach(
     PART_OF_TICK,

@@ -141,9 +141,6 @@ class Past:
             yield finite(found), there is Truth.TRUE
             return
         (event,) = events
-        if letter.events[event].lost:
-            yield None, False
-            return
         for occurrence in letter.events[event].occurrences:
             payloads = {event: occurrence.payload}
             chosen = [compare_at(one, letter, payloads, self.captured) for one in formula.chosen]

@@ -1,7 +1,7 @@
 /* Which members of a window have the same number: a table of the places of the latest ones in their ring.
  *
- * Places of members that have left, or are not the latest any more, stay until the table is made anew;
- * what stands at a place tells whether it is one. */
+ * Places of members that have left stay until others need theirs, or the table is made anew; what stands at
+ * a place tells whether it is one. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
 #include "input/input.h"
@@ -25,16 +25,12 @@ static uint32_t hash_of(const rv_number *number)
     return (uint32_t)(bits >> 32);
 }
 
-static bool is_latest(const window *w, int32_t place, const rv_number *number)
+/* Which member stands at a place, if it is the latest with its number; -1: none. */
+static int32_t latest_at(const window *w, int32_t place)
 {
     const stretches *own = w->s + 1;
     const int32_t i = (place - own->head) & (own->room - 1);
-    rv_number found;
-    if ((i >= own->count) || ((own->at[place].begin & MEMBER_OLDER) != 0)) {
-        return false;
-    }
-    found = member_number(w, i, false);
-    return compare_numbers(CMP_EQ, &found, number) == IS_TRUE;
+    return ((i < own->count) && ((own->at[place].begin & MEMBER_OLDER) == 0)) ? i : -1;
 }
 
 static void put_place(stretches *s, const rv_number *number, int32_t place)
@@ -55,12 +51,13 @@ static bool make_table(window *w)
     int32_t i;
     if (s->slot_room < 4 * wanted) {
         arena *a = &w->r->home->monitor->memory;
-        int32_t *made = (wanted < INT32_MAX / 16) ? arena_take(a, 4 * (size_t)wanted * sizeof *made) : NULL;
+        const size_t size = 4 * (size_t)wanted * sizeof *s->slots;
+        const size_t was = (size_t)s->slot_room * sizeof *s->slots;
+        int32_t *made = (wanted < INT32_MAX / 16) ? arena_enlarge(a, s->slots, was, size) : NULL;
         if (made == NULL) {
             w->r->home->monitor->spoilt = true;
             return false;
         }
-        arena_give(a, s->slots, (size_t)s->slot_room * sizeof *made);
         s->slots = made;
         s->slot_room = 4 * wanted;
     }
@@ -77,29 +74,44 @@ static bool make_table(window *w)
     return true;
 }
 
-/* The place of the latest member with a number; -1: there is none. */
+/* The place of the latest member with a number; -1: there is none. The window learns where the next one
+ * is to be noted. */
 int32_t latest_with(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     uint32_t slot;
+    w->slot = -1;
     if (((s->known_slots < 0) || (s->slot_room == 0) || (s->known_slots > s->slot_room / 2)) && !make_table(w)) {
         return -1;
     }
     slot = hash_of(number) & (uint32_t)(s->slot_room - 1);
     while (s->slots[slot] >= 0) {
-        if (is_latest(w, s->slots[slot], number)) {
-            return s->slots[slot];
+        const int32_t i = latest_at(w, s->slots[slot]);
+        if (i >= 0) {
+            const rv_number found = member_number(w, i, false);
+            if (compare_numbers(CMP_EQ, &found, number) == IS_TRUE) {
+                w->slot = (int32_t)slot;
+                return s->slots[slot];
+            }
+        } else if (w->slot < 0) {
+            w->slot = (int32_t)slot; /* what stood there has left */
+        } else {
+            /* An earlier one serves. */
         }
         slot = (slot + 1) & (uint32_t)(s->slot_room - 1);
+    }
+    if (w->slot < 0) {
+        w->slot = (int32_t)slot;
+        s->known_slots++;
     }
     return -1;
 }
 
-/* The last member is the latest with its number. */
-void note_latest(window *w, const rv_number *number)
+/* The last member is the latest with the number that was looked for. */
+void note_latest(window *w)
 {
     stretches *s = w->s;
-    if (s->known_slots >= 0) {
-        put_place(s, number, (s[1].head + s[1].count - 1) & (s[1].room - 1));
+    if ((s->known_slots >= 0) && (w->slot >= 0)) {
+        s->slots[w->slot] = (s[1].head + s[1].count - 1) & (s[1].room - 1);
     }
 }

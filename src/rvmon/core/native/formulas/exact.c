@@ -3,7 +3,6 @@
  * Source: Kulisch, Computer Arithmetic and Validity, 2008 (the long accumulator). */
 #include "formulas/exact.h"
 
-#include <math.h>
 #include <string.h>
 
 #define LOWEST 1088 /* minus the exponent of the lowest bit of a sum; of squares it is twice that */
@@ -19,20 +18,20 @@ typedef struct {
 static fixed_point fixed_of(const rv_number *number)
 {
     fixed_point found;
-    int exponent = 0;
     if (number->kind == RV_WHOLE) {
         found.negative = number->as.whole < 0;
         found.size = found.negative ? UINT64_C(0) - (uint64_t)number->as.whole : (uint64_t)number->as.whole;
+        found.bit = LOWEST;
     } else {
-        found.negative = number->as.real < 0.0;
-        found.size = (uint64_t)ldexp(frexp(fabs(number->as.real), &exponent), 53);
-        exponent -= 53;
+        const int32_t smallest = LOWEST - 1074; /* the lowest bit of the smallest doubles */
+        uint64_t bits;
+        int32_t exponent;
+        (void)memcpy(&bits, &number->as.real, sizeof bits);
+        exponent = (int32_t)((bits >> 52) & 0x7FF);
+        found.negative = (bits >> 63) != 0;
+        found.size = (bits & ((UINT64_C(1) << 52) - 1)) | ((exponent > 0) ? UINT64_C(1) << 52 : 0);
+        found.bit = smallest + ((exponent > 0) ? exponent - 1 : 0);
     }
-    if (exponent < -LOWEST) {
-        found.size >>= -LOWEST - exponent; /* of the smallest, these bits are 0 */
-        exponent = -LOWEST;
-    }
-    found.bit = exponent + LOWEST;
     return found;
 }
 

@@ -198,7 +198,7 @@ bool member_comes(window *w, const rv_number *number, bool maybe)
             return false;
         }
         if ((w->fold == FOLD_DISTINCT) && (own.kind != RV_UNKNOWN)) {
-            note_latest(w, &own);
+            note_latest(w);
         }
     }
     if (!w->of_ticks) {

@@ -15,6 +15,7 @@ typedef struct {
     int64_t unit;              /* ticks of a member */
     int32_t fold;
     bool of_ticks;             /* each tick is one, up to the one before */
+    int32_t slot;              /* of the table of distinct.c */
 } window;
 
 /* What stands of a member beside the kind of its number: it may be none; a later one has the same. */
@@ -37,7 +38,7 @@ void forget_members(window *w);
 
 /* ---- distinct.c */
 int32_t latest_with(window *w, const rv_number *number);
-void note_latest(window *w, const rv_number *number);
+void note_latest(window *w);
 
 /* ---- folds.c */
 uint8_t folded(window *w, int64_t *due);

@@ -9,27 +9,16 @@ static stretch *stretch_at(const stretches *s, int32_t i)
     return &s->at[(s->head + i) & (s->room - 1)];
 }
 
+/* Make a ring twice as large; what stood before its head goes behind what was its end. */
 static bool make_room(rv_monitor *m, stretches *s)
 {
-    const int32_t room = (s->room > 0) ? 2 * s->room : 4;
-    stretch *made;
-    int32_t i;
-    if (s->room >= INT32_MAX / 4) {
-        m->spoilt = true;
-        return false;
-    }
-    made = arena_take(&m->memory, (size_t)room * sizeof *made);
+    const int32_t was = s->room;
+    stretch *made = widened(m, s->at, &s->room, (int64_t)was + 1, sizeof *made);
     if (made == NULL) {
-        m->spoilt = true;
         return false;
     }
-    for (i = 0; i < s->count; i++) {
-        made[i] = *stretch_at(s, i);
-    }
-    arena_give(&m->memory, s->at, (size_t)s->room * sizeof *made);
+    (void)memcpy(made + was, made, (size_t)s->head * sizeof *made);
     s->at = made;
-    s->room = room;
-    s->head = 0;
     return true;
 }
 

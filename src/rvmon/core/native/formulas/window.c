@@ -109,7 +109,7 @@ static void members_come(window *w, uint8_t operand, bool blank)
 /* Forget what was before. */
 void window_begins(run *r, const node_plan *n)
 {
-    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false};
+    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false, -1};
     forget_members(&w);
     w.s->growing = false;
 }
@@ -126,7 +126,7 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
     const int32_t fold = n->b & WINDOW_FOLD;
     const bool of_ticks = (fold == FOLD_DURATION) || (fold == FOLD_INTEGRAL);
     window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], t,
-                of_ticks ? 1 : step_of(r), fold, of_ticks};
+                of_ticks ? 1 : step_of(r), fold, of_ticks, -1};
     int64_t due;
     uint8_t found;
     w.s->apart = true; /* there is a second ring */

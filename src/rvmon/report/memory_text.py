@@ -1,0 +1,56 @@
+"""How much memory the windows of requirements take, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.spec.checked.classify import subformulas
+from rvmon.spec.checked.formula import Amount
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.print import format_duration, format_measured
+
+
+def memory_lines(spec: CheckedSpec) -> list[str]:
+    r"""A line for each window of each requirement, and one for what it keeps in all, in bytes.
+
+    >>> import rvmon
+    >>> text = "event e\nrequirement R\n  always count(e, 5 s) <= 3\n"
+    >>> memory_lines(rvmon.loads(text).checked)
+    ['memory: R keeps count(e, 5 s) in 128 bytes, and up to 64 a member in the last 5 s']
+    """
+    return [line for one in spec.requirements.values() for line in _lines(one)]
+
+
+def _lines(requirement: Requirement) -> Iterator[str]:
+    windows = {
+        format_measured(part): part
+        for whole in (requirement.trigger, requirement.consequent)
+        for part in subformulas(whole)
+        if isinstance(part, Amount)
+    }
+    again = ""
+    if requirement.for_each is not None:
+        again = f", for each {requirement.for_each.name} anew"
+    elif requirement.captures:
+        again = ", for each open attempt anew"
+    for text, window in windows.items():
+        yield f"memory: {requirement.id} keeps {text} in {_of(window)}{again}"
+    if len(windows) > 1:
+        fixed = sum(_fixed(one) for one in windows.values())
+        yield f"memory: {requirement.id} keeps {fixed:,} bytes in all, and what is in its windows"
+
+
+def _fixed(window: Amount) -> int:
+    """Bytes that it takes whatever comes."""
+    return window.measured.fixed + window.measured.each * (window.most or 0)
+
+
+def _of(window: Amount) -> str:
+    each = f"and up to {window.measured.each} a member"
+    if window.most is not None:
+        return f"{_fixed(window):,} bytes at most"
+    if window.window is not None:
+        return f"{_fixed(window):,} bytes, {each} in the last {format_duration(window.window)}"
+    if not window.measured.steady:
+        return f"{_fixed(window):,} bytes, {each} of another value"
+    return f"{_fixed(window):,} bytes, however long the run"
