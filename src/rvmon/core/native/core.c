@@ -292,17 +292,24 @@ void settle_margins(rv_monitor *m, int64_t t)
     }
 }
 
-int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+/* Why a run takes nothing at `t`; RV_OK: it does. */
+static inline int refusal(const rv_monitor *m, int64_t t)
 {
-    int32_t i;
     if (m->finished) {
         return RV_FINISHED;
     }
     if (m->spoilt) {
         return RV_NO_MEMORY;
     }
-    if (!is_in_range(t)) {
-        return RV_OUT_OF_RANGE;
+    return is_in_range(t) ? RV_OK : RV_OUT_OF_RANGE;
+}
+
+int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    const int refused = refusal(m, t);
+    if (refused != RV_OK) {
+        return refused;
     }
     if (t <= m->after) {
         return RV_TOO_EARLY;
@@ -339,14 +346,9 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 int rv_advance(rv_monitor *m, int64_t t)
 {
     int32_t i;
-    if (m->finished) {
-        return RV_FINISHED;
-    }
-    if (m->spoilt) {
-        return RV_NO_MEMORY;
-    }
-    if (!is_in_range(t)) {
-        return RV_OUT_OF_RANGE;
+    const int refused = refusal(m, t);
+    if (refused != RV_OK) {
+        return refused;
     }
     if (t > m->reached) {
         if (m->dense_until != RV_NO_TIME) {
@@ -363,18 +365,6 @@ int rv_advance(rv_monitor *m, int64_t t)
         sort_records(m);
     }
     return m->spoilt ? RV_NO_MEMORY : RV_OK;
-}
-
-int64_t rv_end(const rv_monitor *m, int64_t t)
-{
-    int64_t end = (m->heard > m->last) ? m->heard : m->last;
-    if (end != RV_NO_TIME) {
-        end = (t > end) ? t : end;
-        if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {
-            end = m->reached - 1;
-        }
-    }
-    return end;
 }
 
 int rv_finish(rv_monitor *m, int64_t t)
@@ -400,23 +390,4 @@ int rv_finish(rv_monitor *m, int64_t t)
         sort_records(m);
     }
     return m->spoilt ? RV_NO_MEMORY : RV_OK;
-}
-
-int64_t rv_next_due(rv_monitor *m)
-{
-    int64_t found = NEVER;
-    int32_t i;
-    for (i = 0; !m->finished && !m->spoilt && (i < m->plan.part_count); i++) {
-        found = least(found, home_due(&m->homes[i]));
-    }
-    return found;
-}
-
-rv_times rv_times_of(const rv_monitor *m)
-{
-    rv_times found;
-    found.began = m->began;
-    found.last = m->last;
-    found.reached = m->reached;
-    return found;
 }

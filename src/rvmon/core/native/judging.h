@@ -158,6 +158,13 @@ struct rv_piece {
     int64_t words[];           /* the position, then the truths of propositions there */
 };
 
+/* Letters that a note refers to. */
+typedef struct {
+    rv_piece *first;
+    rv_piece *last;
+    int32_t last_count;
+} span_of_letters;
+
 /* What a judge remembers for notes. */
 typedef struct {
     truths triggers;           /* at triggers, where they are others than at the one before */
@@ -174,5 +181,75 @@ typedef struct {
     int64_t doubted_at;        /* the last doubt */
     int64_t undecidable_since;        /* the first of those that stay open for good; NEVER: there are none */
 } noting;
+
+/* A node that notes tell of: since when it has its truth, and the last positions at which it was false
+ * and true before; RV_NO_TIME: there is none. */
+typedef struct {
+    int64_t since;
+    int64_t last[2];
+} truth_times;
+
+/* The same, now and before the position at which it changed last. */
+typedef struct {
+    truth_times now;
+    truth_times was;
+    int64_t moved_at;          /* that position; RV_NO_TIME: it never did */
+    uint8_t truth;             /* before it */
+} logged_node;
+
+/* Such nodes of a run. */
+typedef struct {
+    logged_node *nodes;
+    int64_t moved_at;          /* the last position at which one changed */
+    int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
+} truth_log;
+
+/* What becomes of a judge at a position. */
+enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
+
+typedef struct {
+    int64_t position;          /* that its attempts have come to */
+    int64_t lag;               /* what is decided so long before it is due is still to be found */
+    int64_t failed_at;         /* when the attempt of the episode that runs did */
+    int64_t again_at;          /* when the last one began that followed such a failure */
+    networks *net;
+    chain *chain;
+    queue *queue;              /* NULL: its attempts are driven one by one */
+    noting *noting;            /* NULL: nothing is noted */
+    int32_t first;
+    int32_t last;
+    int32_t undecidable;              /* the first of those that stay open for good */
+    int32_t current;           /* the attempt of the episode that runs */
+    int32_t letter;            /* the class of letters that they stepped with */
+    int32_t other;             /* the same, the unknown taken for the better */
+    int32_t worse;             /* the letter as the nodes stand now, summed up */
+    int32_t better;
+    uint32_t count;
+    uint32_t doubts;
+    uint32_t passed;
+    uint32_t failed;
+    uint32_t inconclusive;
+    uint8_t before;            /* the truth of its trigger at the position before */
+    uint8_t touched;
+    bool running;
+    bool restless;             /* whether an attempt may move at the next position, whatever comes */
+    bool slides;
+    bool sorted;               /* whether no attempt is due before an older one */
+    bool is_restless_listed;
+    bool is_failing_listed;
+    bool blind;                /* whether its network, which looks back, missed positions: nothing more
+                                * is said of attempts */
+} judge;
+
+/* Why a signal was not known, behind what core.h says of numbers. */
+enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
+
+/* A stretch over which a signal was not known. */
+typedef struct {
+    int64_t since;             /* of no meaning if it was never known */
+    int64_t until;             /* NEVER: it still is not */
+    int32_t local;
+    int32_t why;
+} unknown_stretch;
 
 #endif

@@ -1,4 +1,4 @@
-/* The state of a monitor; what the files of the core call of each other stands in calls.h. */
+/* The state of a monitor. */
 #ifndef RVMON_STATE_H
 #define RVMON_STATE_H
 
@@ -103,76 +103,6 @@ typedef struct {
 typedef struct {
     uint32_t limb[TALLY_LIMBS];
 } tally;
-
-/* A node that notes tell of: since when it has its truth, and the last positions at which it was false
- * and true before; RV_NO_TIME: there is none. */
-typedef struct {
-    int64_t since;
-    int64_t last[2];
-} truth_times;
-
-/* The same, now and before the position at which it changed last. */
-typedef struct {
-    truth_times now;
-    truth_times was;
-    int64_t moved_at;          /* that position; RV_NO_TIME: it never did */
-    uint8_t truth;             /* before it */
-} logged_node;
-
-/* Such nodes of a run. */
-typedef struct {
-    logged_node *nodes;
-    int64_t moved_at;          /* the last position at which one changed */
-    int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
-} truth_log;
-
-/* Why a signal was not known, behind what core.h says of numbers. */
-enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
-
-/* A stretch over which a signal was not known. */
-typedef struct {
-    int64_t since;             /* of no meaning if it was never known */
-    int64_t until;             /* NEVER: it still is not */
-    int32_t local;
-    int32_t why;
-} unknown_stretch;
-
-/* What becomes of a judge at a position. */
-enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
-
-typedef struct {
-    int64_t position;          /* that its attempts have come to */
-    int64_t lag;               /* what is decided so long before it is due is still to be found */
-    int64_t failed_at;         /* when the attempt of the episode that runs did */
-    int64_t again_at;          /* when the last one began that followed such a failure */
-    networks *net;
-    chain *chain;
-    queue *queue;              /* NULL: its attempts are driven one by one */
-    noting *noting;            /* NULL: nothing is noted */
-    int32_t first;
-    int32_t last;
-    int32_t undecidable;              /* the first of those that stay open for good */
-    int32_t current;           /* the attempt of the episode that runs */
-    int32_t letter;            /* the class of letters that they stepped with */
-    int32_t other;             /* the same, the unknown taken for the better */
-    int32_t worse;             /* the letter as the nodes stand now, summed up */
-    int32_t better;
-    uint32_t count;
-    uint32_t doubts;
-    uint32_t passed;
-    uint32_t failed;
-    uint32_t inconclusive;
-    uint8_t before;            /* the truth of its trigger at the position before */
-    uint8_t touched;
-    bool running;
-    bool restless;             /* whether an attempt may move at the next position, whatever comes */
-    bool slides;
-    bool sorted;               /* whether no attempt is due before an older one */
-    bool is_restless_listed;
-    bool is_failing_listed;
-    bool blind;                /* whether its network, which looks back, missed positions: nothing more
-                                * is said of attempts */
-} judge;
 
 /* The state of a part: of all requirements without values of their own, of an instance, or of an
  * attempt with captured values. What a fork copies stands in one block. */
@@ -405,13 +335,6 @@ struct home {
     covering *covering;        /* of a part with watches; else NULL */
     rv_hit **moves;            /* by judge, from each location to each; NULL: of none */
 };
-
-/* Letters that a note refers to. */
-typedef struct {
-    rv_piece *first;
-    rv_piece *last;
-    int32_t last_count;
-} span_of_letters;
 
 /* Where an attempt stood before it moved. */
 typedef struct {

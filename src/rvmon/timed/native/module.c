@@ -148,20 +148,4 @@ static int execute(PyObject *module)
     return PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH);
 }
 
-static PyModuleDef_Slot slots[] = {
-    {Py_mod_exec, RVMON_SLOT(execute)},
-#ifdef Py_GIL_DISABLED
-    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
-#endif
-    {0, NULL},
-};
-
-static PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_zones", NULL, 0, methods, slots, NULL, NULL, NULL,
-};
-
-PyMODINIT_FUNC PyInit__zones(void);
-PyMODINIT_FUNC PyInit__zones(void)
-{
-    return PyModuleDef_Init(&definition);
-}
+RVMON_MODULE(_zones, methods, execute)

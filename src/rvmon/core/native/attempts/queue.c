@@ -8,7 +8,6 @@
  *
  * Source: AUTOMATA 3. */
 #include "attempts/attempts.h"
-#include "attempts/queue.h"
 #include "notes/notes.h"
 #include "results/results.h"
 

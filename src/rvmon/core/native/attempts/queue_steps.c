@@ -1,6 +1,5 @@
 /* Attempts of a queue through positions and time: a letter moves a segment at once. */
 #include "attempts/attempts.h"
-#include "attempts/queue.h"
 #include "results/results.h"
 
 #include <string.h>
@@ -31,6 +30,13 @@ static const int64_t *cuts_of(const machine *a, int32_t location, int32_t *count
 static int32_t row_of_region(const machine *a, int32_t location, int32_t region)
 {
     return a->bases[location] + region * a->strides[location * a->clocks];
+}
+
+/* Where time alone leads those of a row. */
+static int32_t settled_at(const machine *a, int32_t row, int32_t location)
+{
+    const int32_t truth = a->time_values[row];
+    return (truth == IS_UNKNOWN) ? location : ((truth == IS_TRUE) ? PASSED : FAILED);
 }
 
 /* The end of the items from one on that are in one region at `t`, and that region. The oldest are in
@@ -161,8 +167,9 @@ static void set_queue_due(const queueing *g, int64_t t, bool moving)
     set_rule_due(g->r, g->index, due);
 }
 
-/* Step all that are queued at the position at `t`. */
-static void step_queue(const queueing *g, int64_t t)
+/* Take all that are queued through what the letter says at the position at `t`, or, between positions, what
+ * time alone decides then. */
+static void sort_queue(const queueing *g, int64_t t, bool is_position)
 {
     sorting s;
     int32_t from = 0;
@@ -175,7 +182,8 @@ static void step_queue(const queueing *g, int64_t t)
             int32_t region;
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t row = row_of_region(g->a, location, region);
-            const int32_t target = g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]];
+            const int32_t target = is_position ? g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]]
+                                               : settled_at(g->a, row, location);
             count_segment(g, location, target, until - from, t);
             if (target <= PASSED) {
                 tell_decided(g, location, from, until, target == PASSED, t);
@@ -186,41 +194,14 @@ static void step_queue(const queueing *g, int64_t t)
         }
     }
     take_sorted(g, &s);
-    set_queue_due(g, t, true);
-}
-
-/* Decide those that time alone decides at `t`. */
-static void settle_queue(const queueing *g, int64_t t)
-{
-    sorting s;
-    int32_t from = 0;
-    int32_t k;
-    s.count = s.base = s.kept = 0;
-    for (k = 0; k < g->q->segment_count; k++) {
-        const int32_t location = g->q->segments[k].location;
-        const int32_t end = from + g->q->segments[k].count;
-        while (from < end) {
-            int32_t region;
-            const int32_t until = end_of_region(g, location, from, end, t, &region);
-            const int32_t truth = g->a->time_values[row_of_region(g->a, location, region)];
-            if (truth != IS_UNKNOWN) {
-                count_segment(g, location, (truth == IS_TRUE) ? PASSED : FAILED, until - from, t);
-                tell_decided(g, location, from, until, truth == IS_TRUE, t);
-            } else {
-                keep_items(g, &s, location, from, until);
-            }
-            from = until;
-        }
-    }
-    take_sorted(g, &s);
-    set_queue_due(g, t, false);
+    set_queue_due(g, t, is_position);
 }
 
 /* Take all that are queued to the position at `t`, of which the letter was read. */
 void queue_visit(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
-    step_queue(&g, t);
+    sort_queue(&g, t, true);
 }
 
 /* Let time come to `t`; if there is a position at every tick, up to there with the letter as it is. */
@@ -230,10 +211,10 @@ void queue_pass(run *r, int32_t index, int64_t t)
     while ((g.q->count > 0) && (r->rules.due[index] <= t)) {
         const int64_t due = r->rules.due[index];
         if (GAP(r) == 0) {
-            settle_queue(&g, due);
+            sort_queue(&g, due, false);
             set_restless(r, index);
         } else {
-            step_queue(&g, due);
+            sort_queue(&g, due, true);
         }
     }
     if (g.q->count == 0) {
@@ -246,7 +227,7 @@ void queue_reach(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     if ((g.q->count > 0) && (r->rules.due[index] <= t)) {
-        settle_queue(&g, t);
+        sort_queue(&g, t, false);
         set_restless(r, index);
         if (GAP(r) > 0) {
             set_rule_due(r, index, (g.q->count > 0) ? least(r->rules.due[index], t) : NEVER);

@@ -17,6 +17,8 @@ int32_t timers_due(const timers *h, int64_t t, int32_t *found);
 /* ---- past.c */
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
 void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
+bool edges_agree(const edge *a, const edge *b);
+bool stretches_agree(const stretches *a, const stretches *b);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 

@@ -183,6 +183,31 @@ uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t 
                                 : since_stretches(r, n, t, left, right);
 }
 
+/* Whether what operators remember stands alike. */
+bool edges_agree(const edge *a, const edge *b)
+{
+    return (a->at == b->at) && (a->left == b->left) && (a->right == b->right)
+           && (a->apart == b->apart);
+}
+
+bool stretches_agree(const stretches *a, const stretches *b)
+{
+    int32_t i;
+    if ((a->count != b->count) || (a->left != b->left) || (a->right != b->right)
+        || (a->growing != b->growing) || (a->apart != b->apart) || (a->total != b->total)
+        || (a->lost != b->lost) || (a->members != b->members)) {
+        return false;
+    }
+    for (i = 0; i < a->count; i++) {
+        const stretch *one = &a->at[(a->head + i) & (a->room - 1)];
+        const stretch *other = &b->at[(b->head + i) & (b->room - 1)];
+        if ((one->begin != other->begin) || (one->end != other->end)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Unknown where a trigger may be hidden, true where one may have been before in this stretch; from
  * the truths at the position before and now. `every`: no trigger is sure. */
 static uint8_t hidden_by(uint8_t before, uint8_t now, uint8_t value, bool pulse, bool every)

@@ -120,7 +120,7 @@ bool is_lost_at(const run *r, int32_t name, int64_t t);
 void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
 int32_t names_to_lose(const run *r);
 
-/* ---- blank.c: positions that may not be there */
+/* ---- unknowns.c: positions that may not be there */
 void may_begin(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);

@@ -110,7 +110,7 @@ void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double
 bool parts_settled(const margin_parts *s, double *value);
 void parts_leave(margin_parts *s);
 
-/* ---- margin_nodes.c */
+/* ---- margin_leaves.c: operators that join values */
 void gauge_join(gauging *w, int32_t place);
 
 /* ---- margin_windows.c */

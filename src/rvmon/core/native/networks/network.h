@@ -1,9 +1,8 @@
-/* Networks as judges: what network_judge.c and network_attempts.c share. */
+/* Networks as judges: what their files share. */
 #ifndef RVMON_NETWORK_H
 #define RVMON_NETWORK_H
 
 #include "attempts/attempts.h"
-#include "networks/ranges.h"
 
 /* ---- network_nodes.c, network_state.c: what is known of a formula */
 typedef struct {
@@ -31,7 +30,7 @@ void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
 void tidy(const form *f, network *w, int64_t position);
 
-/* ---- network_ahead.c: the first instant at which something new of a formula can be known, or before */
+/* ---- network_search.c: the first instant at which something new of a formula can be known, or before */
 int64_t earliest_change(const form *f, networks *net, int32_t reading);
 
 /* ---- network_judge.c: attempts that a network judges */
@@ -115,9 +114,21 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last);
 /* ---- network_judge.c */
 int64_t earliest(const judging *g, int64_t now);
 
-/* ---- network_attempts.c */
+/* ---- network_search.c: what becomes of attempts */
 bool weigh(judging *g, int32_t at, int64_t t);
 int64_t decided_one(const judging *g);
 void hear_news(judging *g, int64_t t);
+
+/* Ranges of positions, in order, none touching another. */
+int32_t range_from(const ranges *r, int64_t position);
+int32_t range_around(const ranges *r, int64_t position);
+int64_t last_up_to(const ranges *r, int64_t position);
+void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t last);
+void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t last);
+void ranges_cut(rv_monitor *m, ranges *r, int64_t first, int64_t last);
+void ranges_drop(ranges *r, int64_t before);
+void ranges_empty(ranges *r);
+void ranges_copy(rv_monitor *m, ranges *made, const ranges *r);
+bool ranges_alike(const ranges *one, const ranges *other);
 
 #endif

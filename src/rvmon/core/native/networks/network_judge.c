@@ -2,7 +2,6 @@
  * attempts of a judge. From the first unknown letter on there are two, the unknown taken for the worse
  * and for the better. */
 #include "networks/network.h"
-#include "networks/ranges.h"
 
 #include <string.h>
 

@@ -4,7 +4,6 @@
  * them. What is known depends on that alone, not on the steps that led there: so a step can be taken
  * back, and when something was known first is found by smaller steps. */
 #include "networks/network.h"
-#include "networks/ranges.h"
 
 /* The instant of a clock's position, within the bounds of time. */
 static int64_t ticks_of(int64_t position, int64_t step)

@@ -114,3 +114,202 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
     }
     return is_spoilt(g) ? NEVER : high;
 }
+
+/* How soon something new can become known of a formula if its letter stays: what cannot be decided before
+ * is not looked for. It need not be so soon; that nothing is known sooner is certain.
+ *
+ * What is new of an operator lies from its `base` on, the first position that is not known. */
+
+/* Whether a value is known somewhere from a position on. */
+static bool has_from(const operator_state *o, uint8_t value, int64_t position)
+{
+    const ranges *known = &o->known[value];
+    return (known->first < known->end) && (known->at[known->end - 1].last >= position);
+}
+
+/* The first instant at which an operator can be known to have a value somewhere from a position on. */
+static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
+{
+    return has_from(o, value, position) ? now : o->earliest[value];
+}
+
+static void ask_junction(const form *f, network *w, const operator_plan *n, operator_state *o)
+{
+    const int32_t *operands = LIST(f->plan, n->operands);
+    const uint8_t all = (uint8_t)n->turned;
+    const uint8_t some = (uint8_t)(all ^ 1U);
+    int32_t i;
+    o->earliest[some] = NEVER;
+    o->earliest[all] = w->now;
+    for (i = 0; i < n->operands.count; i++) {
+        const operator_state *one = &w->nodes[operands[i]];
+        const int64_t met = earliest_from(one, all, o->base, w->now);
+        o->earliest[some] = least(o->earliest[some], one->earliest[some]);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
+    }
+}
+
+static void ask_window(const form *f, network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *operand = &w->nodes[n->left];
+    const uint8_t all = (uint8_t)n->turned;
+    const int64_t over = moved(instant_of(f, w, o->base), n->over);
+    o->earliest[all] = (over > w->now) ? over : w->now;
+    o->earliest[all ^ 1U] = operand->earliest[all ^ 1U];
+    if ((f->gap == 1) && (n->low <= n->high)) { /* none is empty */
+        const int64_t met = earliest_from(operand, all, moved(o->base, n->low), w->now);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
+    }
+}
+
+/* `left until right`: what is new of it comes of something new on its right, or leads to what was met
+ * there; where it fails both have to. */
+static void ask_until(network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *left = &w->nodes[n->left];
+    const operator_state *right = &w->nodes[n->right];
+    const uint8_t no = (uint8_t)n->turned;
+    const uint8_t yes = (uint8_t)(no ^ 1U);
+    const int64_t failing = earliest_from(left, no, o->base, w->now);
+    o->earliest[yes] = earliest_from(right, yes, o->base, w->now);
+    o->earliest[no] = earliest_from(right, no, o->base, w->now);
+    o->earliest[no] = (failing > o->earliest[no]) ? failing : o->earliest[no];
+}
+
+int64_t earliest_change(const form *f, networks *net, int32_t reading)
+{
+    network *w = &net->readings[reading];
+    const int32_t count = f->form->operators.count;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        const operator_plan *n = &f->nodes[i];
+        operator_state *o = &w->nodes[i];
+        o->earliest[0] = w->now;
+        o->earliest[1] = w->now;
+        if (n->kind == OP_LEAF) {
+            const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U;
+            o->earliest[other] = NEVER;
+        } else if (n->kind == OP_JUNCTION) {
+            ask_junction(f, w, n, o);
+        } else if ((n->kind == OP_WINDOW) && (n->over >= 0)) {
+            ask_window(f, w, n, o);
+        } else if ((n->kind == OP_SHIFT) && (n->low >= 0)) {
+            o->earliest[0] = w->nodes[n->left].earliest[0];
+            o->earliest[1] = w->nodes[n->left].earliest[1];
+        } else if (n->kind == OP_UNTIL) {
+            ask_until(w, n, o);
+        } else {
+            /* What looks back is not followed. */
+        }
+    }
+    return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
+}
+
+/* What becomes of attempts by what a network knows; each is a position of it. */
+
+/* What becomes of an attempt by what is known; false if it is decided. None is once memory was short:
+ * what then became known may be wrong. */
+bool weigh(judging *g, int32_t at, int64_t t)
+{
+    attempt *x = attempt_of(g, at);
+    const bool parted = g->net->parted;
+    const operator_state *worse = &g->net->readings[0].nodes[g->root];
+    const operator_state *better = &g->net->readings[parted ? 1 : 0].nodes[g->root];
+    if (is_spoilt(g)) {
+        return true;
+    }
+    if (knows(worse, 1U, position_of(x))) {
+        decide(g->r, g->index, at, true, t);
+        return false;
+    }
+    if (knows(better, 0U, position_of(x))) {
+        decide(g->r, g->index, at, false, t);
+        return false;
+    }
+    if (parted && knows(worse, 0U, position_of(x))) {
+        x->location = FAILED;
+    }
+    if (parted && knows(better, 1U, position_of(x))) {
+        x->better = PASSED;
+        x->parted = true;
+    }
+    return true;
+}
+
+/* The oldest attempt whose position is not before one; -1: there is none. */
+static int32_t attempt_from(const judging *g, int64_t position)
+{
+    int32_t at = g->j->first;
+    if ((at < 0) || (position_of(attempt_of(g, g->j->last)) < position)) {
+        return -1;
+    }
+    while (position_of(attempt_of(g, at)) < position) {
+        at = attempt_of(g, at)->next;
+    }
+    return at;
+}
+
+/* The position of an attempt that what became known of a formula decides; NEVER: of none. */
+int64_t decided_one(const judging *g)
+{
+    uint8_t value;
+    int32_t i;
+    for (value = 0; value < 2U; value++) {
+        const int32_t reading = (g->net->parted && (value == 0U)) ? 1 : 0;
+        const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
+        for (i = news->first; i < news->end; i++) {
+            const int32_t at = attempt_from(g, news->at[i].first);
+            if ((at >= 0) && (position_of(attempt_of(g, at)) <= news->at[i].last)) {
+                return position_of(attempt_of(g, at));
+            }
+        }
+    }
+    return NEVER;
+}
+
+/* The first position from one on at which something became known of a formula; NEVER: there is none. */
+static int64_t next_new(const judging *g, int64_t position)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    int32_t j;
+    for (i = 0; i < 2 * readings(g); i++) {
+        const ranges *news = &g->net->readings[i / 2].nodes[g->root].news[i % 2];
+        for (j = news->first; j < news->end; j++) {
+            if (news->at[j].last >= position) {
+                const int64_t first = news->at[j].first;
+                found = least(found, (first > position) ? first : position);
+            }
+        }
+    }
+    return found;
+}
+
+/* Judge the attempts of which something became known, at `t`. */
+void hear_news(judging *g, int64_t t)
+{
+    int64_t asked = -NEVER;
+    int32_t before = -1;
+    int32_t at = g->j->first;
+    if (!g->net->parted && (decided_one(g) == NEVER)) {
+        return;
+    }
+    while (at >= 0) {
+        const int32_t next = attempt_of(g, at)->next;
+        const int64_t position = position_of(attempt_of(g, at));
+        if (position > asked) {
+            asked = next_new(g, position);
+            if (asked == NEVER) {
+                break;
+            }
+        }
+        if ((position >= asked) && !weigh(g, at, t)) {
+            leave(g->r, g->index, before, at);
+        } else if (is_undecidable(attempt_of(g, at))) {
+            lay_aside(g->r, g->index, before, at);
+        } else {
+            before = at;
+        }
+        at = next;
+    }
+}

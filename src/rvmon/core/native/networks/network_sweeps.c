@@ -1,6 +1,5 @@
 /* What becomes known of `until` and `since` without bounds, which reach as far as their left side. */
 #include "networks/network.h"
-#include "networks/ranges.h"
 
 /* `left until right`; of the dual, all is said of the other values. */
 void lead(const form *f, const network *w, const operator_plan *n, operator_state *o)

@@ -303,3 +303,64 @@ void unpin_letters(rv_monitor *m)
     }
     m->pins++;
 }
+
+/* ---- rings of truths */
+
+/* The entry that stands for an instant: the last one not behind it. NULL: there is none. */
+const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
+{
+    int32_t low = 0;
+    int32_t high = ring->count;
+    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* as mostly */
+        return entry_of(ring, high - 1, words);
+    }
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        if (entry_of(ring, middle, words)[0] <= t) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return (low > 0) ? entry_of(ring, low - 1, words) : NULL;
+}
+
+/* Drop the entries that stand for nothing from `oldest` on. */
+void drop_truths(truths *ring, int32_t words, int64_t oldest)
+{
+    while ((ring->count > 1) && (entry_of(ring, 1, words)[0] <= oldest)) {
+        ring->head = (ring->head + 1) & (ring->room - 1);
+        ring->count--;
+    }
+}
+
+/* Make room for as many entries again; false: memory is short. */
+bool grow_truths(rv_monitor *m, truths *ring, int32_t words)
+{
+    const int32_t room = (ring->room > 0) ? 2 * ring->room : 4;
+    const size_t each = ((size_t)words + 1U) * sizeof *ring->words;
+    int64_t *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * each) : NULL;
+    int32_t i;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = 0; i < ring->count; i++) {
+        (void)memcpy(&made[(int64_t)i * (words + 1)], entry_of(ring, i, words), each);
+    }
+    arena_give(&m->memory, ring->words, (size_t)ring->room * each);
+    ring->words = made;
+    ring->room = room;
+    ring->head = 0;
+    return true;
+}
+
+/* Add an entry; NULL: memory is short. */
+int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
+{
+    if ((ring->count == ring->room) && !grow_truths(m, ring, words)) {
+        return NULL;
+    }
+    ring->count++;
+    return entry_of(ring, ring->count - 1, words);
+}

@@ -49,8 +49,6 @@ static inline int64_t *entry_of(const truths *ring, int32_t i, int32_t words)
 /* ---- notes.c */
 truth_times truth_times_of(const run *r, int32_t node, bool before);
 void pack_truths(const run *r, list nodes, bool before, int64_t *words);
-const int64_t *truths_at(const truths *ring, int32_t words, int64_t t);
-int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
 
 /* ---- letters.c */
 rv_piece *made_piece(rv_monitor *m, int32_t stride);
@@ -58,6 +56,12 @@ rv_piece *next_piece(rv_monitor *m, noting *n, int32_t stride);
 void forget_letters(rv_monitor *m, noting *n);
 int32_t span_from(rv_monitor *m, noting *n, int64_t begin);
 void unpin_letters(rv_monitor *m);
+
+/* ---- letters.c: rings of truths */
+const int64_t *truths_at(const truths *ring, int32_t words, int64_t t);
+void drop_truths(truths *ring, int32_t words, int64_t oldest);
+bool grow_truths(rv_monitor *m, truths *ring, int32_t words);
+int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
 
 /* Where notes go that stay when others are dropped. */
 typedef struct {

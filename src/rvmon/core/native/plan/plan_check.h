@@ -70,7 +70,7 @@ bool check_forms(const plan *p, const part_plan *x);
 bool check_watches(const plan *p, const part_plan *x);
 bool check_groups(const plan *p, const part_plan *x);
 
-/* ---- plan_margins.c */
+/* ---- plan_formulas.c: what is measured */
 bool check_margins(const plan *p, const part_plan *x);
 
 #endif

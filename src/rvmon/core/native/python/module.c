@@ -392,20 +392,4 @@ static int execute(PyObject *module)
     return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
 }
 
-static PyModuleDef_Slot slots[] = {
-    {Py_mod_exec, RVMON_SLOT(execute)},
-#ifdef Py_GIL_DISABLED
-    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
-#endif
-    {0, NULL},
-};
-
-static PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_core", NULL, 0, core_methods, slots, NULL, NULL, NULL,
-};
-
-PyMODINIT_FUNC PyInit__core(void);
-PyMODINIT_FUNC PyInit__core(void)
-{
-    return PyModuleDef_Init(&definition);
-}
+RVMON_MODULE(_core, core_methods, execute)

@@ -182,7 +182,7 @@ PyObject *decided_since(monitor *c);
 /* ---- module_open.c */
 PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused);
 
-/* ---- module_outages.c */
+/* ---- module_rows.c: outages */
 PyObject *told(monitor *c, PyObject *args, telling tell);
 PyObject *lose_of(monitor *c, PyObject *args);
 PyObject *found_of(monitor *c, PyObject *args);
@@ -202,11 +202,11 @@ PyObject *stale_of(monitor *c, PyObject *unused);
 /* ---- module_rows.c */
 PyObject *rows_of(monitor *c, PyObject *args);
 
-/* ---- module_snapshot.c */
+/* ---- module_open.c: as bytes */
 PyObject *save_of(monitor *c, PyObject *unused);
 PyObject *load_of(monitor *c, PyObject *bytes);
 
-/* ---- module_watch.c */
+/* ---- module_results.c: beside attempts */
 PyObject *instant(int64_t t, int64_t none);
 PyObject *truths_of(monitor *c, PyObject *number);
 PyObject *hits_of(monitor *c, PyObject *unused);

@@ -323,6 +323,25 @@ static inline PyObject *rvmon_new_reference(PyObject *object)
 /* A function as the value of a slot: ISO C knows no direct way from functions to `void *`. */
 #define RVMON_SLOT(function) ((void *)(uintptr_t)(function))
 
+/* A module of functions, which `execute` fills; it needs no other thread to wait for it. */
+#ifdef Py_GIL_DISABLED
+#define RVMON_WITHOUT_GIL {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#else
+#define RVMON_WITHOUT_GIL
+#endif
+#define RVMON_MODULE(name, functions, execute)                                      \
+    static PyModuleDef_Slot module_slots[] = {                                      \
+        {Py_mod_exec, RVMON_SLOT(execute)}, RVMON_WITHOUT_GIL{0, NULL},             \
+    };                                                                              \
+    static PyModuleDef module_definition = {                                        \
+        PyModuleDef_HEAD_INIT, #name, NULL, 0, functions, module_slots, NULL, NULL, NULL, \
+    };                                                                              \
+    PyMODINIT_FUNC PyInit_##name(void);                                             \
+    PyMODINIT_FUNC PyInit_##name(void)                                              \
+    {                                                                               \
+        return PyModuleDef_Init(&module_definition);                                \
+    }
+
 /* Where one thread runs at a time anyway, a critical section is a block. */
 #ifndef Py_BEGIN_CRITICAL_SECTION
 #define Py_BEGIN_CRITICAL_SECTION(object) {

@@ -1,6 +1,9 @@
 /* Records of attempts, in the order of reports. */
 #include "margins/margins.h"
+#include "networks/network.h"
+#include "notes/notes.h"
 #include "results/results.h"
+#include "runs/runs.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -120,4 +123,225 @@ void sort_records(rv_monitor *m)
               compared);
     }
     m->sorted = m->record_count;
+}
+
+/* Bounds for a run of weeks: of each requirement and verdict the newest records are kept, with their
+ * notes, and as many of the attempts that stay open for good. Counts stay exact. */
+
+/* So much more may be there than was kept before something is dropped, which costs what is there. */
+#define PATIENCE 32
+/* Where an attempt stands that is to be dropped: at no location. */
+#define DROPPED (-1)
+
+/* An attempt that stays open for good. */
+typedef struct {
+    int64_t triggered;
+    uint32_t number;
+    int32_t requirement;
+    int32_t at;
+} lasting;
+
+int rv_keep(rv_monitor *m, int64_t most)
+{
+    const size_t kinds = (size_t)RV_NOT_TRIGGERED * (size_t)m->plan.header->requirements;
+    if (m->kept_of == NULL) {
+        m->kept_of = arena_take(&m->memory, (kinds + 1U) * sizeof *m->kept_of);
+        if (m->kept_of == NULL) {
+            return RV_NO_MEMORY;
+        }
+    }
+    m->keep = most;
+    m->trim_at = (m->trim_at > PATIENCE) ? m->trim_at : PATIENCE; /* it may be that of a run taken up */
+    return RV_OK;
+}
+
+/* Mark the records that go: all but the newest of their requirement and verdict; whether there are any. */
+static bool mark_surplus(rv_monitor *m)
+{
+    bool some = false;
+    int64_t i;
+    (void)memset(m->kept_of, 0,
+                 (size_t)RV_NOT_TRIGGERED * (size_t)m->plan.header->requirements * sizeof *m->kept_of);
+    for (i = m->record_count - 1; i >= 0; i--) {
+        rv_record *one = &m->records[i];
+        int64_t *kept = &m->kept_of[(int64_t)RV_NOT_TRIGGERED * one->requirement + one->verdict];
+        if (*kept == m->keep) {
+            one->requirement = -1;
+            some = true;
+        } else {
+            (*kept)++;
+        }
+    }
+    return some;
+}
+
+/* Drop the records that are too many. */
+static bool trim_records(rv_monitor *m)
+{
+    kept_notes to;
+    rv_number *captured = NULL;
+    const size_t captured_size = (size_t)m->captured_room * sizeof *captured;
+    int64_t captured_count = 0;
+    int64_t count = 0;
+    int64_t i;
+    if (!begin_keeping(m, &to)) {
+        return false;
+    }
+    captured = arena_take(&m->memory, captured_size);
+    if (captured == NULL) {
+        give_up_keeping(m, &to);
+        return false;
+    }
+    if (!mark_surplus(m)) {
+        give_up_keeping(m, &to);
+        arena_give(&m->memory, captured, captured_size);
+        return false;
+    }
+    for (i = 0; i < m->record_count; i++) {
+        rv_record one = m->records[i];
+        if (one.requirement < 0) {
+            continue;
+        }
+        if (one.captured >= 0) {
+            const int32_t values = rv_captured_of(m, one.requirement);
+            (void)memcpy(&captured[captured_count], &m->captured[one.captured],
+                         (size_t)values * sizeof *captured);
+            one.captured = captured_count;
+            captured_count += values;
+        }
+        one.note = keep_note(m, &to, one.note);
+        m->records[count] = one;
+        count++;
+    }
+    arena_give(&m->memory, m->captured, captured_size);
+    m->captured = captured;
+    m->captured_count = captured_count;
+    m->record_count = count;
+    m->sorted = count;
+    end_keeping(m, &to);
+    return true;
+}
+
+static int compare_laid(const void *one, const void *other)
+{
+    const lasting *a = one;
+    const lasting *b = other;
+    if (a->requirement != b->requirement) {
+        return (a->requirement < b->requirement) ? -1 : 1;
+    }
+    if (a->triggered != b->triggered) {
+        return (a->triggered > b->triggered) ? -1 : 1; /* the newest first */
+    }
+    return (a->number > b->number) ? -1 : ((a->number < b->number) ? 1 : 0);
+}
+
+/* Gather the attempts of a home that stay open for good, but for those that run: `to` NULL counts them. */
+static int64_t gather_laid(const home *h, lasting *to)
+{
+    int64_t count = 0;
+    const run *r;
+    int32_t i;
+    int32_t at;
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        for (i = 0; i < h->part->plan->judges.count; i++) {
+            for (at = r->judges[i].undecidable; at >= 0; at = attempt_at(h, at)->next) {
+                if (is_current(r, i, at)) {
+                    continue;
+                }
+                if (to != NULL) {
+                    to[count].triggered = attempt_at(h, at)->triggered;
+                    to[count].number = attempt_at(h, at)->number;
+                    to[count].requirement = h->part->judges[i].requirement;
+                    to[count].at = at;
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+/* Take the marked attempts out of what a judge has; they count as what they stay. */
+static void drop_laid(run *r, int32_t index)
+{
+    home *h = r->home;
+    judge *j = &r->judges[index];
+    judge *owner = &r->judges[h->part->judges[index].owner];
+    int32_t *link = &j->undecidable;
+    while (*link >= 0) {
+        const int32_t at = *link;
+        if (attempt_at(h, at)->location != DROPPED) {
+            link = &attempt_at(h, at)->next;
+            continue;
+        }
+        *link = attempt_at(h, at)->next;
+        if (h->part->plan->captured > 0) {
+            h->inconclusive++;
+            h->turns[at].judge = NULL;
+            touch_run(r); /* it may be over now */
+        } else {
+            owner->inconclusive++;
+        }
+        give_back(h, at);
+    }
+    if (j->noting != NULL) { /* what was noted for those that went may go, too */
+        int32_t at;
+        j->noting->undecidable_since = NEVER;
+        for (at = j->undecidable; at >= 0; at = attempt_at(h, at)->next) {
+            note_undecidable(r, index, attempt_at(h, at)->triggered);
+        }
+    }
+}
+
+/* Drop the oldest of the attempts of a home that stay open for good; so many are left. */
+static int64_t trim_laid(rv_monitor *m, home *h)
+{
+    const int64_t count = gather_laid(h, NULL);
+    const size_t size = (size_t)count * sizeof(lasting);
+    lasting *all = (count > m->keep) ? arena_take(&m->memory, size) : NULL;
+    int64_t left = count;
+    int64_t own = 0;
+    int64_t i;
+    run *r;
+    int32_t k;
+    if (all == NULL) {
+        return count;
+    }
+    (void)gather_laid(h, all);
+    qsort(all, (size_t)count, sizeof *all, compare_laid);
+    for (i = 0; i < count; i++) {
+        own = ((i > 0) && (all[i].requirement == all[i - 1].requirement)) ? own + 1 : 0;
+        if (own >= m->keep) {
+            attempt_at(h, all[i].at)->location = DROPPED;
+            left--;
+        }
+    }
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        for (k = 0; k < h->part->plan->judges.count; k++) {
+            drop_laid(r, k);
+        }
+    }
+    arena_give(&m->memory, all, size);
+    if (h->touched_count > 0) {
+        rest_all(h);
+    }
+    return left;
+}
+
+bool rv_trim(rv_monitor *m)
+{
+    bool trimmed = false;
+    int64_t left = 0;
+    int32_t i;
+    if ((m->kept_of == NULL) || m->spoilt
+        || (!m->finished && (m->record_count + m->laid_count <= m->trim_at))) {
+        return false;
+    }
+    for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
+        left += trim_laid(m, &m->homes[i]);
+    }
+    m->laid_count = left;
+    trimmed = trim_records(m);
+    m->trim_at = 2 * (m->record_count + left) + PATIENCE;
+    return trimmed;
 }

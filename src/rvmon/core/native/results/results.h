@@ -22,10 +22,26 @@ bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
 void cover(run *r, int64_t t);
 
-/* ---- moves.c: where attempts go in automata */
+/* ---- watch.c: where attempts go in automata */
 bool begin_moves(home *h);
 void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
 void count_begin(run *r, int32_t index, int64_t t);
+
+/* ---- situation.c */
+/* What is told, as words; those that do not fit are counted alone. */
+typedef struct {
+    int64_t *words;
+    int64_t room;
+    int64_t count;
+    int64_t now;
+    int64_t next;              /* the first instant behind it at which time alone may change something */
+} situation;
+
+void put_word(situation *s, int64_t word);
+void put_bytes(situation *s, const uint8_t *bytes, int32_t count);
+
+/* ---- network_state.c: what networks know, in a situation */
+void put_networks(situation *s, run *r, int32_t index);
 
 /* Where it is counted where the attempts of a judge go; NULL: it is not. */
 static inline rv_hit *moves_of(const run *r, int32_t index)

@@ -1,5 +1,6 @@
 /* How a run stands at an instant, seen from there: two runs that stand alike go on alike. For who looks
  * for short runs that show something, and need not go on from where it has been. */
+#include "results/results.h"
 #include "runs/runs.h"
 #include "windows/windows.h"
 
@@ -8,16 +9,7 @@
 /* Words of an attempt, at most: its flags, and two readings of a location and clocks. */
 #define PIECE_MOST (3 + 2 * CLOCKS_MOST)
 
-/* What is told, as words; those that do not fit are counted alone. */
-typedef struct {
-    int64_t *words;
-    int64_t room;
-    int64_t count;
-    int64_t now;
-    int64_t next;              /* the first instant behind it at which time alone may change something */
-} telling;
-
-static void put_word(telling *s, int64_t word)
+void put_word(situation *s, int64_t word)
 {
     if (s->count < s->room) {
         s->words[s->count] = word;
@@ -26,12 +18,12 @@ static void put_word(telling *s, int64_t word)
 }
 
 /* An instant as it lies ahead; all that are over are alike. */
-static void put_ahead(telling *s, int64_t t)
+static void put_ahead(situation *s, int64_t t)
 {
     put_word(s, (t == NEVER) ? NEVER : ((t <= s->now) ? -1 : t - s->now));
 }
 
-static void put_bytes(telling *s, const uint8_t *bytes, int32_t count)
+void put_bytes(situation *s, const uint8_t *bytes, int32_t count)
 {
     int32_t i;
     int32_t k;
@@ -44,7 +36,7 @@ static void put_bytes(telling *s, const uint8_t *bytes, int32_t count)
     }
 }
 
-static void put_number(telling *s, const rv_number *number)
+static void put_number(situation *s, const rv_number *number)
 {
     int64_t bits;
     (void)memcpy(&bits, &number->as, sizeof bits);
@@ -52,13 +44,13 @@ static void put_number(telling *s, const rv_number *number)
     put_word(s, (number->kind == RV_UNKNOWN) ? 0 : bits);
 }
 
-static void put_edge(telling *s, const edge *e)
+static void put_edge(situation *s, const edge *e)
 {
     put_ahead(s, e->at);
     put_word(s, (e->left ? 1 : 0) + (e->right ? 2 : 0));
 }
 
-static void put_stretches(telling *s, const stretches *own)
+static void put_stretches(situation *s, const stretches *own)
 {
     int32_t i;
     for (i = 0; i < own->count; i++) {
@@ -72,7 +64,7 @@ static void put_stretches(telling *s, const stretches *own)
 }
 
 /* The members of a window; of one without an end, what they come to. */
-static void put_window(telling *s, const node_plan *n, const stretches *own, const tally *x)
+static void put_window(situation *s, const node_plan *n, const stretches *own, const tally *x)
 {
     int32_t i;
     for (i = 0; i < own->count; i++) {
@@ -95,7 +87,7 @@ static void put_window(telling *s, const node_plan *n, const stretches *own, con
 }
 
 /* What formulas are, and remember. */
-static void put_formulas(telling *s, const run *r)
+static void put_formulas(situation *s, const run *r)
 {
     const part_plan *p = r->part->plan;
     const int64_t gap = GAP(r);
@@ -148,7 +140,7 @@ static void put_formulas(telling *s, const run *r)
 }
 
 /* The ages of a token; beyond the last region they are alike. */
-static void put_token(telling *s, const machine *a, int32_t location, const int64_t *clocks)
+static void put_token(situation *s, const machine *a, int32_t location, const int64_t *clocks)
 {
     int32_t c;
     put_word(s, location);
@@ -160,7 +152,7 @@ static void put_token(telling *s, const machine *a, int32_t location, const int6
     }
 }
 
-static void come_next(telling *s, const machine *a, int32_t location, int64_t *clocks)
+static void come_next(situation *s, const machine *a, int32_t location, int64_t *clocks)
 {
     token k;
     if (location > PASSED) {
@@ -171,7 +163,7 @@ static void come_next(telling *s, const machine *a, int32_t location, int64_t *c
     }
 }
 
-static void put_attempt(telling *s, const run *r, int32_t index, attempt *x)
+static void put_attempt(situation *s, const run *r, int32_t index, attempt *x)
 {
     const int32_t width = r->part->plan->clocks;
     put_word(s, (x->sure ? 1 : 0) + (x->trigger_unknown ? 2 : 0) + (x->cannot_pass ? 4 : 0) + (x->parted ? 8 : 0));
@@ -204,7 +196,7 @@ static int32_t order_of_words(const int64_t *one, const int64_t *other, int64_t 
 
 /* Put what was told from a place on, in pieces of one width, in order, each once: attempts that stand
  * alike are one, whichever began first. */
-static void sort_told(telling *s, int64_t start, int64_t width)
+static void sort_told(situation *s, int64_t start, int64_t width)
 {
     int64_t held[PIECE_MOST];
     int64_t *told = s->words + start;
@@ -231,45 +223,7 @@ static void sort_told(telling *s, int64_t start, int64_t width)
     put_word(s, kept);
 }
 
-/* What the networks of a judge know that somebody may still ask for. */
-static void put_networks(telling *s, run *r, int32_t index)
-{
-    const form f = form_of(r, index);
-    judge *j = &r->judges[index];
-    const int64_t ref = (f.gap > 0) ? floored(s->now, f.step) : j->net->readings[0].last;
-    const int64_t oldest = (j->first >= 0) ? position_of(attempt_at(r->home, j->first)) : ref + 1;
-    int32_t i;
-    int32_t k;
-    int32_t value;
-    int32_t reading;
-    put_bytes(s, j->net->leaf, f.form->leaves);
-    for (reading = 0; reading < (j->net->parted ? 2 : 1); reading++) {
-        network *w = &j->net->readings[reading];
-        tidy(&f, w, oldest);
-        for (i = 0; i < f.form->operators.count; i++) {
-            const operator_state *o = &w->nodes[i];
-            const bool since = f.nodes[i].kind == OP_SINCE;
-            const int64_t asked = since ? least(o->wanted, o->base - 1) : o->wanted;
-            put_word(s, o->base - ref);
-            for (value = 0; value < 2; value++) {
-                const ranges *known = &o->known[value];
-                for (k = known->first; k < known->end; k++) {
-                    const range *one = &known->at[k];
-                    if (one->last >= asked) {
-                        put_word(s, ((one->first > asked) ? one->first : asked) - ref);
-                        put_word(s, one->last - ref);
-                    }
-                }
-                put_word(s, NEVER);
-            }
-        }
-        for (k = w->samples.first; k < w->samples.end; k++) {
-            put_word(s, w->samples.at[k].last - s->now);
-        }
-    }
-}
-
-static void put_queue(telling *s, run *r, int32_t index)
+static void put_queue(situation *s, run *r, int32_t index)
 {
     const machine *a = &r->part->machines[index];
     const queue *q = r->judges[index].queue;
@@ -289,7 +243,7 @@ static void put_queue(telling *s, run *r, int32_t index)
 }
 
 /* How the attempts of a judge stand. */
-static void put_judge(telling *s, run *r, int32_t index)
+static void put_judge(situation *s, run *r, int32_t index)
 {
     judge *j = &r->judges[index];
     const bool networked = is_networked(r, index);
@@ -299,13 +253,7 @@ static void put_judge(telling *s, run *r, int32_t index)
     put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->undecidable >= 0) ? 16 : 0)
                + (j->blind ? 32 : 0) + ((j->failed > 0U) ? 64 : 0) + ((j->passed > 0U) ? 128 : 0));
     if (networked && (j->net != NULL) && j->net->begun && ((j->first >= 0) || watches(r, index))) {
-        judging g;
-        g.r = r;
-        g.j = j;
-        g.net = j->net;
-        g.index = index;
-        g.f = form_of(r, index);
-        g.root = g.f.form->operators.count - 1;
+        judging g = judging_of(r, index);
         learn_all(&g, s->now, last_at(&g, s->now));
         hear_news(&g, s->now);
         put_networks(s, r, index);
@@ -322,7 +270,7 @@ static void put_judge(telling *s, run *r, int32_t index)
 }
 
 /* What may be captured at the next tick of a clock. */
-static void put_captured(telling *s, const run *r)
+static void put_captured(situation *s, const run *r)
 {
     int32_t i;
     int32_t k;
@@ -341,7 +289,7 @@ static void put_captured(telling *s, const run *r)
     }
 }
 
-static void put_run(telling *s, run *r)
+static void put_run(situation *s, run *r)
 {
     const part_plan *p = r->part->plan;
     int32_t i;
@@ -364,7 +312,7 @@ static void put_run(telling *s, run *r)
 }
 
 /* The samples that are kept for those that look at what was before. */
-static void put_past(telling *s, const home *h)
+static void put_past(situation *s, const home *h)
 {
     int32_t i;
     int32_t k;
@@ -394,7 +342,7 @@ static bool has_chain(const home *h)
 
 int64_t rv_situation(rv_monitor *m, int64_t now, int64_t *words, int64_t room, int64_t *next)
 {
-    telling s;
+    situation s;
     int32_t i;
     run *one;
     s.words = words;

@@ -86,7 +86,7 @@ static inline uint64_t bits_before(int64_t place)
 /* ---- rows.c */
 rv_number number_in(const rv_column *c, int64_t row);
 
-/* ---- matters.c */
+/* ---- passing.c: what matters */
 void learn_how(const batch *s, column_watch *w);
 void learn_between(const batch *s, column_watch *w);
 bool compares_alike(const column_watch *w, const rv_number *value);

@@ -1,8 +1,10 @@
 /* Which runs a part has, and which of them a call concerns: those that time wakes, and those that the
  * values of its events name. The others sleep on, however many there are. */
+#include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
+#include "windows/windows.h"
 
 #include <string.h>
 
@@ -218,4 +220,159 @@ int32_t call_concerned(home *h, int64_t t)
         }
     }
     return count;
+}
+
+/* Which positions something can change at without a further sample. */
+
+/* The smallest multiple of `step` from `start` on that is not before `t`. */
+static int64_t position_from(int64_t start, int64_t step, int64_t t)
+{
+    const int64_t ahead = t - start;
+    return start + (ahead + step - 1) / step * step;
+}
+
+/* The first tick of a clock from `t` on; in between two samples every instant is one. */
+int64_t tick_from(int64_t gap, int64_t t)
+{
+    return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
+}
+
+/* Whether the attempt of the episode that runs has failed, and what is owed now does not at once. */
+bool may_go_on(const run *r, int32_t index)
+{
+    const int32_t again = r->part->judges[index].again;
+    return (again >= 0) && (r->judges[index].failed_at < NEVER) && (r->truth[again] != IS_FALSE);
+}
+
+/* Drop those whose episode is over. */
+void tidy_failing(run *r)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < r->failing_count; i++) {
+        const int32_t index = r->failing[i];
+        if (r->judges[index].failed_at < NEVER) {
+            r->failing[kept] = index;
+            kept++;
+        } else {
+            r->judges[index].is_failing_listed = false;
+        }
+    }
+    r->failing_count = kept;
+}
+
+/* In one silence, so many failures that follow each other by time alone are told one by one; beyond
+ * them, and but for the last two, they are counted. It bounds what a stamp that leaps by years costs:
+ * `always within 3 s e` fails 500 million times in fifty years. */
+enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
+
+/* Whether all that the attempts of a run read stays as it is while nothing comes, but for timers. */
+static bool is_silent(const run *r)
+{
+    return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
+           && (r->at.presence == ARE_THERE) && (r->at.fading_count + r->at.fresh_count == 0)
+           && !r->opening && !r->stays_busy;
+}
+
+/* Count what an episode would do again and again before something comes, if that is often, in place
+ * of doing it; false if another attempt is to begin at `t`.
+ *
+ * The one that would begin at `t` finds what the last one found, which began in the same silence: no
+ * attempt is open, and nothing that is read changes before the next timer. So it fails after the same
+ * time, and so on. Records and numbers have 32 bits: the counts stay below that. */
+bool passes_repeats_over(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    const int64_t before = j->again_at;
+    const int64_t period = t - before;
+    const int64_t silent = r->at.quiet_from;
+    int64_t until = least(r->at.quiet_until, least(timers_next(&r->wake), r->at.ends_at) - 1);
+    int64_t many;
+    int64_t counted;
+    j->again_at = t;
+    if ((before <= silent) || has_attempts(j) || watches(r, index) || !is_sure(r, index)
+        || !is_silent(r)) {
+        return false;
+    }
+    until = (r->cut < NEVER) ? t : until;
+    many = (until - t) / period - REPEATS_LEFT;
+    if ((many <= REPEATS_TOLD) || ((t - silent) / period < REPEATS_TOLD)) {
+        return false;
+    }
+    counted = least(many, (int64_t)(UINT32_MAX - COUNTS_LEFT) - (int64_t)j->count);
+    counted = (counted > 0) ? counted : 0;
+    j->count += (uint32_t)counted;
+    j->failed += (uint32_t)counted;
+    j->failed_at += many * period;
+    j->again_at = t + (many - 1) * period;
+    return true;
+}
+
+/* The next position at which an attempt may follow a failure though nothing changes. */
+int64_t next_start(const run *r)
+{
+    const int64_t step = step_of(r);
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; (GAP(r) > 0) && (i < r->failing_count); i++) {
+        const int32_t index = r->failing[i];
+        if (may_go_on(r, index)) {
+            const int64_t ahead = (r->judges[index].failed_at - r->at.position) / step + 1;
+            found = least(found, r->at.position + ((ahead > 1) ? ahead : 1) * step);
+        }
+    }
+    return found;
+}
+
+/* The next position at which something can change without a further sample. */
+int64_t next_position(const run *r)
+{
+    const int64_t gap = GAP(r);
+    int64_t found = (gap > 0) ? least(r->at.awaited, r->at.ends_at) : NEVER;
+    if (r->at.presence != ARE_THERE) {
+        return (r->at.started && (r->at.presence == MAY_BE_THERE)) ? NEVER : r->at.awaited;
+    }
+    if ((gap > 0) && r->at.started) {
+        int64_t change = timers_next(&r->wake);
+        if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
+            change = least(change, r->at.position + gap);
+        }
+        if (change < NEVER) {
+            found = least(found, position_from(r->at.position, gap, change));
+        }
+        if (r->failing_count > 0) {
+            found = least(found, next_start(r));
+        }
+        if ((r->cut < NEVER) && (r->cut > r->at.position)) {
+            found = least(found, r->cut);
+        }
+    }
+    return found;
+}
+
+static bool is_restless(const run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->restless_count; i++) {
+        if (r->judges[r->restless[i]].restless) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Set when to look again, of which the next position is known. */
+void set_alarm(run *r, int64_t position)
+{
+    if (!r->at.started) {
+        return;
+    }
+    r->at.alarm = least(position, timers_next(&r->rules));
+    if (GAP(r) == 0) {
+        const bool busy = (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
+                          || (r->part->plan->stateful.count > 0) || is_restless(r)
+                          || (r->failing_count > 0) || (r->at.presence != ARE_THERE)
+                          || ((r->cut < NEVER) && (r->cut > r->at.position));
+        r->at.alarm = busy ? -LIMIT : least(r->at.alarm, timers_next(&r->wake));
+    }
 }

@@ -280,30 +280,6 @@ int32_t concerning(const run *r, const rv_update *u)
     return same_number(value, &r->captured[0]) ? RV_SAYS_YES : -1;
 }
 
-static bool edges_agree(const edge *a, const edge *b)
-{
-    return (a->at == b->at) && (a->left == b->left) && (a->right == b->right)
-           && (a->apart == b->apart);
-}
-
-static bool stretches_agree(const stretches *a, const stretches *b)
-{
-    int32_t i;
-    if ((a->count != b->count) || (a->left != b->left) || (a->right != b->right)
-        || (a->growing != b->growing) || (a->apart != b->apart) || (a->total != b->total)
-        || (a->lost != b->lost) || (a->members != b->members)) {
-        return false;
-    }
-    for (i = 0; i < a->count; i++) {
-        const stretch *one = &a->at[(a->head + i) & (a->room - 1)];
-        const stretch *other = &b->at[(b->head + i) & (b->room - 1)];
-        if ((one->begin != other->begin) || (one->end != other->end)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* Whether nothing of an instance is still to come. */
 static bool is_quiet(const run *r)
 {

@@ -9,7 +9,7 @@ void settle_margins(rv_monitor *m, int64_t t);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
-/* ---- positions.c: at which positions something can change */
+/* ---- crowd.c: at which positions something can change */
 int64_t tick_from(int64_t gap, int64_t t);
 bool may_go_on(const run *r, int32_t index);
 void tidy_failing(run *r);
@@ -59,7 +59,7 @@ void keep_updates(home *h, int64_t t);
 void keep_given(home *h, int64_t t);
 void replay(run *r);
 
-/* ---- waiting.c: samples that wait for the tick that sees them */
+/* ---- kept.c: samples that wait for the tick that sees them */
 bool holds_back(const home *h);
 void hold_back(home *h, int64_t t);
 void give_held(home *h, int64_t limit);

@@ -59,11 +59,11 @@ void carry_run(carrier *c, run *r);
 /* ---- snapshot_judges.c: judges, their attempts and queues */
 void carry_judges(carrier *c, run *r);
 
-/* ---- snapshot_forms.c: networks and chains */
+/* ---- snapshot_judges.c: networks and chains */
 void carry_networks(carrier *c, const form *f, networks **own);
 void carry_chain(carrier *c, run *r, int32_t index);
 
-/* ---- snapshot_watch.c: what is kept beside what becomes of attempts */
+/* ---- snapshot_homes.c: what is kept beside what becomes of attempts */
 void carry_stale(carrier *c, rv_monitor *m);
 void carry_watch(carrier *c, home *h);
 
@@ -76,7 +76,7 @@ void carry_unknowns(carrier *c, home *h);
 void carry_letters(carrier *c, noting *n, int32_t stride);
 void carry_spans(carrier *c, rv_monitor *m);
 
-/* ---- snapshot_told.c: notes of records */
+/* ---- snapshot_notes.c: notes of records */
 void carry_notes(carrier *c, rv_monitor *m);
 bool is_state(const carrier *c, const judge_plan *judged, int64_t place);
 void check_note(carrier *c, const part *own, const rv_record *one);

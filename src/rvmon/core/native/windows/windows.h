@@ -1,4 +1,4 @@
-/* Chains of windows: what chain.c, changes.c and windows.c share. */
+/* Chains of windows: what chain.c and windows.c share. */
 #ifndef RVMON_WINDOWS_H
 #define RVMON_WINDOWS_H
 
@@ -34,7 +34,7 @@ static inline int64_t later(int64_t a, int64_t b)
     return (a > b) ? a : b;
 }
 
-/* ---- changes.c */
+/* ---- windows.c: positions at which a value changes */
 int64_t change_at(const changes *c, int32_t i);
 int64_t last_change(const changes *c);
 void add_change(rv_monitor *m, changes *c, int64_t position);
