@@ -65,6 +65,16 @@ def test_a_late_sample_tells_of_deadlines_that_passed_before_it(monitor):
     assert brief(monitor.step(100, {"released": True})) == [("R1", 1, "F", 3_000_000_001)]
 
 
+def test_what_each_tick_starts_again_is_not_due():
+    """A clock that runs from the last position goes on with time, and decides nothing by itself."""
+    text = "always ((F[0 ns, 20 ns] r) -> (p U r))"
+    run = rvmon.loads(f"time held\nsignal p, r : bool\nrequirement R\n  {text}\n").monitor()
+    run.step_ns(0, {"p": True, "r": False})
+    assert run.next_due is None
+    run.step_ns(100, {"p": False})
+    assert brief(run.step_ns(105, {"r": True})) == [("R", 1, "F", 105)]
+
+
 def test_next_due_says_when_to_call_advance(monitor):
     """Advancing to it decides; advancing to the tick before does not."""
     assert monitor.next_due is None
