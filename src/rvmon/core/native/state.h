@@ -15,8 +15,6 @@ enum { IS_FALSE = 0, IS_UNKNOWN = 1, IS_TRUE = 2 };
 /* The two last locations of every automaton. */
 enum { FAILED = 0, PASSED = 1, WAITING = 2 };
 
-/* ---- the state */
-
 typedef struct home home;
 
 /* Timers: an indexed heap of the ids that are due some time. */
