@@ -26,6 +26,7 @@ from rvmon.spec.checked.formula import (
     passed,
 )
 from rvmon.spec.checked.measured import Members
+from rvmon.spec.checked.names_read import names_in
 from rvmon.testing.generate import (
     CARRIER,
     FIELD,
@@ -106,7 +107,9 @@ def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
 
 
 def _held(rng: Rng, shape: Shape) -> Numeric:
-    return arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
+    """A number that is held: what was captured alone is none, says the language."""
+    number = arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
+    return number if any(names_in(number)) else SignalValue(pick(rng, NUMBERS))
 
 
 def _member(
