@@ -40,7 +40,7 @@ def refuse_place(path: str, out: str | None) -> None:
     if path == "-":
         raise RvmonError("standard input can be read once only: save the recording first")
     if form in ("tables", JOINED):
-        raise RvmonError(f"{path}: of several files no piece is written: clip each by --from, --to")
+        raise RvmonError(f"{path} is several files: clip each of them, by --from and --to")
     if out is None:
         return
     if form == "ros2" and local_path(path).is_dir():
