@@ -13,6 +13,7 @@ from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.plans import planned_rule
 from rvmon.spec.checked.classify import has_future
 from rvmon.spec.checked.formula import (
+    TRIGGERED,
     Amount,
     Binary,
     BinaryOp,
@@ -58,6 +59,7 @@ def requirement_in_words(requirement: Requirement) -> list[str]:
     lines += [
         f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."
         for capture in requirement.captures
+        if capture.name != TRIGGERED
     ]
     if requirement.for_each is not None:
         each = requirement.for_each
@@ -143,22 +145,27 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 
 
 def _amount(formula: Amount, positive: bool) -> str:
-    back = "so far" if formula.window is None else f"in the last {format_duration(formula.window)}"
+    parts = _chain(formula.counted or formula.operand, BinaryOp.AND)
+    chosen = [one for one in parts if not (isinstance(one, Passed) and one.since == TRIGGERED)]
+    back = "so far" if len(chosen) == len(parts) else "since the trigger"
+    back = back if formula.window is None else f"in the last {format_duration(formula.window)}"
     back = back if formula.most is None else f"at the last {formula.most} updates"
+    clauses = [_clause(one, True) for one in chosen] or ["time passes"]
+    what = clauses[0] if len(clauses) == 1 else f"({_listed(clauses, 'and')})"
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
     if isinstance(least, int) and formula.value is None:
-        what = _clause(formula.counted or formula.operand, True)
         if formula.measured is Measured.COUNT:
             return f"{known}{least} times or more {back}, {what}"
         return f"for {known}{format_duration(least)} or more {back}, {what}"
     op = CompareOp.GT if formula.strict else CompareOp.GE
     verb = (op if positive else op.denied).said
-    what = f"the {formula.measured} of {format_numeric(formula.value or formula.limit)} {back}"
     if formula.value is None or isinstance(formula.value, NumericLiteral):  # so many times 1
         often = "for how long" if formula.measured.of_time else "how often"
-        what = f"{often} {_clause(formula.counted or formula.operand, True)} {back}"
-    return f"{what} {verb} {format_numeric(formula.limit)}"
+        amount = f"{often} {what} {back}"
+    else:
+        amount = f"the {formula.measured} of {format_numeric(formula.value)} {back}"
+    return f"{amount} {verb} {format_numeric(formula.limit)}"
 
 
 def _by_entry(formula: Unary | Binary, positive: bool) -> str:

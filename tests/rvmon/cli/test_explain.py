@@ -54,6 +54,22 @@ def test_words_facts_automaton_and_runs(door, capsys):
     assert "2 s⁺" in text
 
 
+@pytest.mark.parametrize(
+    ("measured", "said"),
+    [
+        ("count(knock since trigger) >= 2", "2 times or more since the trigger, knock occurs"),
+        ("duration(closed since trigger) >= 3 s", "for 3 s or more since the trigger, closed is"),
+        ("integral(speed since trigger) >= 2 m", "the integral of speed since the trigger is at"),
+        ("duration(closed, 5 s) >= 3 s", "for 3 s or more in the last 5 s, closed is true"),
+    ],
+)
+def test_what_is_measured_is_said(tmp_path, capsys, measured, said):
+    (tmp_path / "s.rv").write_text(f"{SPEC}requirement W\n upon knock then eventually {measured}\n")
+    text = shown(capsys, str(tmp_path / "s.rv"), "W")
+    assert said in " ".join(text.split())
+    assert "`upon`" not in text
+
+
 def test_all_requirements_within_80_columns(door, capsys):
     """Without an id all are told; no line is wider than 80 columns."""
     text = shown(capsys, "door.rv")
