@@ -167,9 +167,9 @@ def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
     spec, piece = str(tmp_path / "s.rv"), str(tmp_path / "c.csv")
     words = ["clip", spec, both, "--from", "0", "--to", "1", "-o", piece]
     assert main(words) == 2
-    assert "clip each by --from, --to" in capsys.readouterr().err
+    assert "clip each of them, by --from" in capsys.readouterr().err
     assert main(["clip", spec, both, "R#1", "--reproducer", str(tmp_path / "c.rvcase")]) == 2
-    assert "clip each by --from, --to" in capsys.readouterr().err
+    assert "clip each of them, by --from" in capsys.readouterr().err
     assert main(["init", both, "--for", spec]) == 2
     assert "of several files bindings are proposed one by one" in capsys.readouterr().err
 
