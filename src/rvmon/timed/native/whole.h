@@ -289,11 +289,13 @@ static void run(engine *h)
 /* The path to what was found, or to what failed with the move that did. */
 static void tell_end(engine *h)
 {
-    const search_state ended = h->failed ? SEARCH_FAILED : h->state;
+    /* What fails behind the end of memory may fail for want of it. */
+    const bool fails = h->failed && (runs(h) || (h->state == SEARCH_FOUND));
+    const search_state ended = fails ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;
     const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER)
                             || (h->kind == SEEK_RUN);
-    if (h->failed) {
+    if (fails) {
         (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
     }
     if (runs(h) && !h->failed) {

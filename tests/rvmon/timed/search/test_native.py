@@ -1,5 +1,7 @@
 """The native search: large numbers, damaged plans, no memory, and being asked to stop."""
 
+import base64
+import zlib
 from array import array
 from dataclasses import replace
 from pathlib import Path
@@ -106,6 +108,33 @@ def test_memory_that_ends_anywhere_is_an_answer():
             assert given in (answer, NO_MEMORY)
             without += given == NO_MEMORY
     assert without > 500
+
+
+FAILS_IN_ITS_SECOND_STATE = zlib.decompress(
+    base64.b85decode(
+        "c-nnZ!3hFE49q5r3I~GXPw?l%p9hv97U0VgEI_af%kX7=n&9j)hQq*+O(r|J9j@P>&J+2DAs6|LokJZx"
+        "xC3U7=wBSwaYep4){Y16|I4xa37r@EISY7>lClx^_Q-GG*~S;rX1(AmagArqF6l+&eQ|G28Y|55i~+5$"
+        "^bHD5i8tc8z7HO4M5&*>nI<ok>cG-58}Wtb;=D*Y+Yyf>dCGgDw&Y=@cQ@V=FZjpU#{zGg)(4-CPLB"
+    )
+)
+"""A plan that a fuzzer found: its search took a want of memory for a failure of the model."""
+
+
+def test_a_want_of_memory_is_no_failure():
+    """With any amount of memory the same state fails, or none is told."""
+    told = set()
+    for most_bytes in range(0, 12_000, 8):
+        state, *_, visited = search(
+            FAILS_IN_ITS_SECOND_STATE,
+            bytes(16),
+            lambda *_: True,
+            lambda *_: True,
+            -1,
+            most_bytes,
+            False,
+        )[:5]
+        told.add((state, visited if state == FAILED else 0))
+    assert told == {(FAILED, 2), (NO_MEMORY, 0)}
 
 
 def test_a_query_without_memory_is_not_decided(monkeypatch):
