@@ -374,6 +374,21 @@ def test_a_condition_that_is_lost_bounds_a_sum():
         assert monitor.finish(2.0).verdicts["R"].value == verdict
 
 
+@pytest.mark.parametrize("window", ["", ", 5 s"])
+def test_a_lost_condition_alone_may_trigger(window):
+    """Time makes enough of what may be a member since the loss: no trigger is missed."""
+    spec = rvmon.loads(
+        "signal r : bool\nsignal x : real\nrequirement R\n"
+        f"  upon integral(if r then x else 0{window}) >= 2 s\n  then false\n"
+    )
+    monitor = spec.monitor()
+    monitor.step(0.0, {"x": 1.0, "r": False})
+    monitor.lose(["r"], 23.0)
+    report = monitor.finish(40.0)
+    assert report.verdicts["R"] == "I"
+    assert [one.triggered for one in report.attempts] == [25 * 10**9]
+
+
 def test_another_instant_of_the_trigger_may_be_captured_at_the_next_tick():
     """Though nothing comes: what hangs on `now` in doubt is known no longer."""
     spec = rvmon.loads(

@@ -200,6 +200,9 @@ bool member_comes(window *w, const rv_number *number, bool maybe)
         if ((w->fold == FOLD_DISTINCT) && (own.kind != RV_UNKNOWN)) {
             note_latest(w);
         }
+        if ((w->x != NULL) && ((kept.begin & MEMBER_MAYBE) != 0)) {
+            part_sums(w); /* from now on, though the first tick of it is still to come */
+        }
     }
     if (!w->of_ticks) {
         members_go_on(w, w->t);

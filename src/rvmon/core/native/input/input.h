@@ -66,7 +66,7 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
 {
     const int32_t kind = quick[local].kind;
     const quick_compare *c = quick[local].compares;
-    const quick_compare *end = c + quick[local].count;
+    int32_t left = quick[local].count;
     rv_number *value = &r->value[local];
     uint64_t *dirty = r->dirty;
     uint64_t *words = r->dirty_words;
@@ -81,7 +81,7 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
     }
     x = (kind == RV_REAL) ? u->value.as.real : (double)u->value.as.whole;
     value->as = u->value.as;
-    for (; c < end; c++) {
+    for (; left > 0; left--, c++) {
         const int32_t word = c->word;
         const uint8_t now = c->truths[order_of(x, c->constant)];
         const uint64_t other = (now != atoms[c->atom]) ? UINT64_MAX : 0U;
