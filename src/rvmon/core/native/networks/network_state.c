@@ -170,7 +170,7 @@ void put_networks(situation *s, run *r, int32_t index)
             const operator_state *o = &w->nodes[i];
             const bool since = f.nodes[i].kind == OP_SINCE;
             const int64_t asked = since ? least(o->wanted, o->base - 1) : o->wanted;
-            put_word(s, o->base - ref);
+            put_word(s, (o->base == NEVER) ? NEVER : (o->base - ref));
             for (value = 0; value < 2; value++) {
                 const ranges *known = &o->known[value];
                 for (k = known->first; k < known->end; k++) {
