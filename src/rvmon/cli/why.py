@@ -94,16 +94,23 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
+    from rvmon.report.changes import changes_of
+    from rvmon.report.tracks import tracks_of
+    from rvmon.report.why_text import values_told, why_lines
+
+    requirement = spec.requirements[name]
+    changes = changes_of(spec.checked, samples)
+    tracks = tracks_of(spec.checked, requirement, changes, report.health)
+    values = values_told(tracks, attempt)
     if arguments.format == "json":
         import msgspec
 
-        say_json(msgspec.json.encode(breakdown).decode())
+        say_json(msgspec.json.encode({**msgspec.to_builtins(breakdown), "values": values}).decode())
         return 0
 
     from rvmon.report.terminal import Terminal
-    from rvmon.report.why_text import why_lines
 
     console = Terminal(soft_wrap=True)
-    for line in why_lines(breakdown, spec.requirements[name]):
+    for line in why_lines(breakdown, requirement, values):
         console.print(line)
     return 0

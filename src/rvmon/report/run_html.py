@@ -22,7 +22,7 @@ from rvmon.report.scene import Outline, Scene
 from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
-from rvmon.report.wording import forecast_sentence, instants_of
+from rvmon.report.wording import forecast_sentence, instants_of, value_text
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict
@@ -141,7 +141,7 @@ def run_page(content: RunPage) -> str:
         forecast_sentence=forecast_sentence,
         has_unknown=has_unknown,
         headline=headline,
-        in_words=_in_words,
+        value_text=value_text,
         moment=moment,
         spec_lines=spec_lines,
     )
@@ -173,12 +173,6 @@ def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[li
     """The attempts of a panel's requirement on the page, and how many are not shown."""
     own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
     return own, max(sum(report.counts[panel.requirement].values()) - len(own), 0)
-
-
-def _in_words(value: Scalar) -> str:
-    if value is None:
-        return "unknown"
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:

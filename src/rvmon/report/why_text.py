@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
-from rvmon.report.wording import forecast_sentence, instants_of, with_lateness
+from rvmon.report.tracks import Track, TrackKind
+from rvmon.report.wording import forecast_sentence, instants_of, value_text, with_lateness
 from rvmon.spec.checked.specification import Requirement
+from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_instant
+from rvmon.verdict.attempt import Attempt
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -22,11 +25,22 @@ PLOT = 46
 """Columns of the drawing; the rest is for the formulas."""
 
 TRUE, FALSE, UNKNOWN, RISES, FALLS, PULSE, DIP = "▇▁?╱╲●○"
-LEGEND = f"{TRUE} true  {FALSE} false  {UNKNOWN} not known  {PULSE} true for a moment"
+LEGEND = (
+    f"{TRUE} true  {FALSE} false  {UNKNOWN} not known"
+    f"  {PULSE} true for a moment  {DIP} false for a moment"
+)
 
 
-def why_lines(breakdown: Breakdown, requirement: Requirement) -> Iterator[Text]:
-    """The verdict with its reason, then a row for the trigger and for each part of what is owed."""
+def why_lines(
+    breakdown: Breakdown, requirement: Requirement, values: Mapping[str, Sequence[str]]
+) -> Iterator[Text]:
+    """The verdict with its reason, a row for the trigger and each part of what is required, values.
+
+    Args:
+        breakdown: the attempt taken apart.
+        requirement: of which it is an attempt.
+        values: from `values_told`.
+    """
     from rich.text import Text
 
     attempt = breakdown.attempt
@@ -42,6 +56,40 @@ def why_lines(breakdown: Breakdown, requirement: Requirement) -> Iterator[Text]:
             yield Text(f"  {part}", style="bold")
         yield from _row(part_truth, breakdown)
     yield Text(f"  {LEGEND}", style="dim")
+    if values:
+        yield Text("")
+        instants = ["at the trigger", "at the decision"][: len(next(iter(values.values())))]
+        yield _columns("  values", instants, "bold")
+        for name, told in values.items():
+            yield _columns(f"    {name}", told)
+
+
+def values_told(tracks: Iterable[Track], attempt: Attempt) -> dict[str, Sequence[str]]:
+    """By name of a signal what it was at the trigger, and at the decision if there is one.
+
+    Args:
+        tracks: of what the requirement reads; those of events are left out.
+        attempt: whose instants are meant.
+    """
+    instants = [attempt.triggered]
+    if attempt.decided is not None and attempt.decided != attempt.triggered:
+        instants.append(attempt.decided)
+    return {
+        track.name: [_with_unit(track, track.value_at(t)) for t in instants]
+        for track in tracks
+        if track.kind is not TrackKind.EVENT
+    }
+
+
+def _with_unit(track: Track, value: Scalar) -> str:
+    return value_text(value) + (f" {track.unit}" if track.unit and value is not None else "")
+
+
+def _columns(first: str, others: Sequence[str], style: str = "") -> Text:
+    from rich.text import Text
+
+    cells = "".join(f"{other:<{PLOT // 2}}" for other in others)
+    return Text(f"{first:<{WIDTH - PLOT}}{cells}".rstrip(), style=style)
 
 
 def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:

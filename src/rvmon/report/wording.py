@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.spec.print import format_duration
+from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
@@ -67,6 +68,23 @@ def with_lateness(attempt: Attempt, came: int | None) -> str:
     span = duration_text(came - attempt.blame.window[1])
     when = format_instant(came, attempt.origin)
     return f"{attempt.reason}; it came at {when}, {span} after the deadline"
+
+
+def value_text(value: Scalar) -> str:
+    """A value of a signal or proposition.
+
+    >>> value_text(True), value_text(0.1 + 0.2), value_text("closed"), value_text(None)
+    ('true', '0.3', 'closed', 'not known')
+    """
+    match value:
+        case None:
+            return "not known"
+        case bool():
+            return "true" if value else "false"
+        case float():
+            return f"{value:.10g}"
+        case _:
+            return str(value)
 
 
 def duration_text(ticks: int) -> str:

@@ -62,6 +62,29 @@ def test_rows_show_truth_over_the_window(door, capsys):
     assert rows["within 2 s not closed"][0] == "▁"
 
 
+def test_signals_are_told_as_they_were(tmp_path, capsys):
+    """With unit at the trigger and the decision, once where these are one; what is lost is so."""
+    (tmp_path / "a.rv").write_text(
+        "spec a\nsignal force : real [N] input\nsignal grip : {open, closed} output\n"
+        "event go input\nrequirement A1\nupon go then within 1 s (grip = closed and force > 3 N)\n"
+        "requirement B1\nupon go then immediately grip = closed\n"
+    )
+    (tmp_path / "a.csv").write_text(
+        "t,force,grip,go\n0,0.30000000000000004,open,1\n0.5,nan,closed,\n3,9,,\n"
+    )
+    paths = [str(tmp_path / "a.rv"), str(tmp_path / "a.csv")]
+    assert main(["why", *paths, "A1"]) == 0
+    rows = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
+    told = [[cell.strip() for cell in row if cell.strip()] for row in rows][-3:]
+    assert told == [
+        ["values", "at the trigger", "at the decision"],
+        ["grip", "open", "closed"],
+        ["force", "0.3 N", "not known"],
+    ]
+    assert main(["why", *paths, "B1", "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["values"] == {"grip": ["open"]}
+
+
 def test_the_same_as_data(door, capsys):
     """As JSON: the attempt, the window and the spans of every part."""
     assert main(["why", "door.rv", "a.csv", "D1#1", "--format", "json"]) == 0
