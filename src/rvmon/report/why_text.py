@@ -58,22 +58,22 @@ def why_lines(
     yield Text(f"  {LEGEND}", style="dim")
     if values:
         yield Text("")
-        instants = ["at the trigger", "at the decision"][: len(next(iter(values.values())))]
+        instants = ["at the trigger", "at the end"][: len(next(iter(values.values())))]
         yield _columns("  values", instants, "bold")
         for name, told in values.items():
             yield _columns(f"    {name}", told)
 
 
-def values_told(tracks: Iterable[Track], attempt: Attempt) -> dict[str, Sequence[str]]:
-    """By name of a signal what it was at the trigger, and at the decision if there is one.
+def values_told(tracks: Iterable[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
+    """By name of a signal what it was at the trigger, and when the attempt ended if that is later.
 
     Args:
         tracks: of what the requirement reads; those of events are left out.
         attempt: whose instants are meant.
+        end: the last instant of the run, ticks, where an open attempt ends.
     """
-    instants = [attempt.triggered]
-    if attempt.decided is not None and attempt.decided != attempt.triggered:
-        instants.append(attempt.decided)
+    last = end if attempt.decided is None else attempt.decided
+    instants = sorted({attempt.triggered, last})
     return {
         track.name: [_with_unit(track, track.value_at(t)) for t in instants]
         for track in tracks

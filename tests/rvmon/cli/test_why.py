@@ -63,7 +63,7 @@ def test_rows_show_truth_over_the_window(door, capsys):
 
 
 def test_signals_are_told_as_they_were(tmp_path, capsys):
-    """With unit at the trigger and the decision, once where these are one; what is lost is so."""
+    """With unit at the trigger and the end, once where these are one; what is lost is so."""
     (tmp_path / "a.rv").write_text(
         "spec a\nsignal force : real [N] input\nsignal grip : {open, closed} output\n"
         "event go input\nrequirement A1\nupon go then within 1 s (grip = closed and force > 3 N)\n"
@@ -77,7 +77,7 @@ def test_signals_are_told_as_they_were(tmp_path, capsys):
     rows = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
     told = [[cell.strip() for cell in row if cell.strip()] for row in rows][-3:]
     assert told == [
-        ["values", "at the trigger", "at the decision"],
+        ["values", "at the trigger", "at the end"],
         ["grip", "open", "closed"],
         ["force", "0.3 N", "not known"],
     ]
