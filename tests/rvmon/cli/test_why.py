@@ -70,7 +70,7 @@ def test_signals_are_told_as_they_were(tmp_path, capsys):
         "requirement B1\nupon go then immediately grip = closed\n"
     )
     (tmp_path / "a.csv").write_text(
-        "t,force,grip,go\n0,0.30000000000000004,open,1\n0.5,nan,closed,\n3,9,,\n"
+        "t,force,grip,go\n0,0.30000000000000004,open,1\n0.5,nan,closed,\n3,,,\n"
     )
     paths = [str(tmp_path / "a.rv"), str(tmp_path / "a.csv")]
     assert main(["why", *paths, "A1"]) == 0
