@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -10,16 +10,21 @@ from typing import TYPE_CHECKING
 from rvmon.cli.reading import opened
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
+from rvmon.report.run_text import SHOWN_PER_REQUIREMENT
 from rvmon.session import Spec
+from rvmon.spec.checked.classify import subformulas
+from rvmon.spec.checked.formula import Amount
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Question
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
+    from rvmon.report.changes import Changes
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -59,6 +64,9 @@ MOST_LATE = 1000
 MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
+MOST_VALUES = 3
+"""Of failed parts that read more signals none is told: `rvmon why` has them all."""
+
 
 def post_analysis(
     spec: Spec,
@@ -84,8 +92,9 @@ def post_analysis(
 
     if not explains:
         return report
+    values = _Values(spec, report)
     late, silent = _missed(spec, report), _silent(report)
-    if not late and not silent:
+    if not late and not silent and not values.names:
         return report
     from rvmon.analysis.near_miss import miss_in, parts_asked
     from rvmon.analysis.subformulas import late_in
@@ -93,27 +102,104 @@ def post_analysis(
 
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
-    held = remembered.until(end)
-    pieces = _read_again(spec, recording, questions, end) if held is None else held
+    until = end if questions else values.until
+    held = remembered.until(until)
+    if held is None:
+        asked = {name for one in questions for part in one.formulas for name in names_read(part)}
+        asked |= {one.for_each.value.event for one in questions if one.for_each is not None}
+        held = _read_again(spec, recording, asked | values.names, until)
+    pieces = values.noted(held)
     seen = look_through(spec.checked, questions, pieces, end, names, spec.plans_of_truths)
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
         report,
+        values=values.told(report),
         late={name: found for name, found in arrived.items() if found},
         misses={name: miss for name, miss in misses.items() if miss},
     )
 
 
+class _Values:
+    """What the signals are of which the first failures speak, noted as a recording is read.
+
+    Attributes:
+        names: of these signals.
+        until: the last decision, ticks.
+    """
+
+    def __init__(self, spec: Spec, report: Report) -> None:
+        self._spec = spec
+        self._reads = [
+            (attempt, names)
+            for attempt in _first_failures(report)
+            if (names := _names_blamed(spec, attempt))
+        ]
+        self.names: Set[str] = {name for _, names in self._reads for name in names}
+        self.until = max((attempt.decided or 0 for attempt, _ in self._reads), default=0)
+        self._changes: Mapping[str, Changes] = {}
+
+    def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        """The pieces, unchanged."""
+        from rvmon.report.changes import RunChanges
+
+        changes = RunChanges(self._spec.checked)
+        self._changes = changes.by_name
+        for piece in pieces:
+            begin = piece.t if isinstance(piece, Sample) else piece.times[0]
+            if begin <= self.until:
+                changes.add(piece)
+            yield piece
+
+    def told(self, report: Report) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+        """By requirement and number of the attempt, what they were at its decision."""
+        from rvmon.report.tracks import signals_told, tracks_of
+
+        told: dict[str, dict[int, Mapping[str, str]]] = {}
+        for attempt, names in self._reads:
+            requirement = self._spec.requirements[attempt.requirement]
+            tracks = tracks_of(self._spec.checked, requirement, self._changes, report.health)
+            told.setdefault(attempt.requirement, {})[attempt.number] = signals_told(
+                [one for one in tracks if one.name in names], attempt.decided or 0
+            )
+        return told
+
+
+def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
+    """The signals of which the value tells why it failed.
+
+    Not what is itself true or false, nor what was measured over a window.
+    """
+    from rvmon.report.tracks import blamed_names
+
+    assert attempt.blame is not None  # noqa: S101 - only these are asked for
+    requirement = spec.requirements[attempt.requirement]
+    windows = [one for one in subformulas(requirement.consequent) if isinstance(one, Amount)]
+    measured = {name for window in windows for name in names_read(window)}
+    signals = spec.checked.signals
+    told = {
+        name
+        for name in blamed_names(requirement, attempt.blame) - measured
+        if name in signals and signals[name].type.kind is not Kind.BOOL
+    }
+    return told if len(told) <= MOST_VALUES else set()
+
+
+def _first_failures(report: Report) -> Iterator[Attempt]:
+    """The failures that are shown, if it is known what was to blame."""
+    for name in report.verdicts:
+        for attempt in islice(report.of(name, Verdict.FAIL), SHOWN_PER_REQUIREMENT):
+            if attempt.blame is not None:
+                yield attempt
+
+
 def _read_again(
-    spec: Spec, judged: FileRecording, questions: Sequence[Question], end: int
+    spec: Spec, judged: FileRecording, asked: set[str], end: int
 ) -> Iterable[Batch | Sample]:
-    """A recording up to its end, with what is asked for of it."""
-    only: set[str] | None = None
+    """A recording up to an instant, with what is asked for of it."""
     # Elsewhere it counts that something came, whatever that was.
-    if spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages:
-        only = {name for one in questions for part in one.formulas for name in names_read(part)}
-        only |= {one.for_each.value.event for one in questions if one.for_each is not None}
+    narrow = spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages
+    only = asked if narrow else None
     return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()
 
 

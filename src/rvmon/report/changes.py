@@ -100,20 +100,36 @@ def changes_of(
     spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
 ) -> Mapping[str, Changes]:
     """By name what each signal and event of a run changed to, whichever requirements read it."""
-    found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
-    found |= {name: Changes(None) for name in spec.events}
-    ignoring = spec.ignoring
+    noted = RunChanges(spec)
     for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
+        noted.add(piece)
+    return noted.by_name
+
+
+class RunChanges:
+    """What signals and events change to, noted piece by piece of a run.
+
+    Attributes:
+        by_name: the changes of each signal and event up to here.
+    """
+
+    def __init__(self, spec: CheckedSpec) -> None:
+        self._signals = spec.signals
+        self._ignoring = spec.ignoring
+        self.by_name = {name: Changes(one.stale_after) for name, one in spec.signals.items()}
+        self.by_name |= {name: Changes(None) for name in spec.events}
+
+    def add(self, piece: Batch | Sample) -> None:
+        """Add what changes in a piece; they come in order."""
         if isinstance(piece, Sample):
-            for name, value in updates_in(piece.values, ignoring).items():
-                if name in found:
-                    found[name].add(piece.t, value, is_signal=name in spec.signals)
+            for name, value in updates_in(piece.values, self._ignoring).items():
+                if name in self.by_name:
+                    self.by_name[name].add(piece.t, value, is_signal=name in self._signals)
         else:
             for name, cells in piece.signals.items():
-                found[name].add_cells(piece, cells)
+                self.by_name[name].add_cells(piece, cells)
             for name, events in piece.events.items():
-                found[name].add_occurrences(piece.times, events.says)
-    return found
+                self.by_name[name].add_occurrences(piece.times, events.says)
 
 
 class Changes:

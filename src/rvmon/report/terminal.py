@@ -66,14 +66,14 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-_BEFORE_UNIT = re.compile(r"(?<=\d) (?=[a-zµ])")
+_WITHIN_VALUE = re.compile(r"(?<=\d) (?=[A-Za-zµ°%])|(?<=\w) (?== )|(?<= =) ")
 _TOGETHER = "\N{NO-BREAK SPACE}"
 
 
 def wrapped(sentence: str, width: int) -> str:
     """A sentence in lines, indented by two columns, from the second on by four.
 
-    A number stays with its unit.
+    A number stays with its unit, and with the name that it is the value of.
 
     Args:
         sentence: without line breaks.
@@ -83,7 +83,7 @@ def wrapped(sentence: str, width: int) -> str:
       `released` occurred at 4.75 s,
         0.75 s after the trigger
     """
-    whole = _BEFORE_UNIT.sub(_TOGETHER, sentence)
+    whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
     lines = textwrap.fill(
         whole,
         width,

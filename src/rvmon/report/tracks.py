@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.report.changes import Changes, Course
 from rvmon.report.time_axis import View
+from rvmon.report.wording import value_text
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.names_read import names_read
@@ -121,6 +122,22 @@ class Track:
         if isinstance(self.changes, Course):
             return self.changes.behind(instant)
         return bisect_right(self.changes, instant, key=lambda change: change[0])
+
+
+def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
+    """By name what signals are at an instant, with their units; events are left out.
+
+    >>> force = Track("force", TrackKind.NUMBER, ((0, 40.5), (9, None)), "N")
+    >>> signals_told([force], 3), signals_told([force], 9)
+    ({'force': '40.5 N'}, {'force': 'not known'})
+    """
+    told = {}
+    for track in tracks:
+        if track.kind is not TrackKind.EVENT:
+            value = track.value_at(instant)
+            unit = f" {track.unit}" if track.unit and value is not None else ""
+            told[track.name] = value_text(value) + unit
+    return told
 
 
 PLACES = 400

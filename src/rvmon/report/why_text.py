@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
-from rvmon.report.tracks import Track, TrackKind
-from rvmon.report.wording import forecast_sentence, instants_of, value_text, with_lateness
+from rvmon.report.tracks import Track, signals_told
+from rvmon.report.wording import forecast_sentence, instants_of, with_lateness
 from rvmon.spec.checked.specification import Requirement
-from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Attempt
 
@@ -64,25 +63,17 @@ def why_lines(
             yield _columns(f"    {name}", told)
 
 
-def values_told(tracks: Iterable[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
+def values_told(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
     """By name of a signal what it was at the trigger, and when the attempt ended if that is later.
 
     Args:
-        tracks: of what the requirement reads; those of events are left out.
+        tracks: of what the requirement reads.
         attempt: whose instants are meant.
         end: the last instant of the run, ticks, where an open attempt ends.
     """
     last = end if attempt.decided is None else attempt.decided
-    instants = sorted({attempt.triggered, last})
-    return {
-        track.name: [_with_unit(track, track.value_at(t)) for t in instants]
-        for track in tracks
-        if track.kind is not TrackKind.EVENT
-    }
-
-
-def _with_unit(track: Track, value: Scalar) -> str:
-    return value_text(value) + (f" {track.unit}" if track.unit and value is not None else "")
+    told = [signals_told(tracks, t) for t in sorted({attempt.triggered, last})]
+    return {name: [one[name] for one in told] for name in told[0]}
 
 
 def _columns(first: str, others: Sequence[str], style: str = "") -> Text:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from rvmon.spec.print import format_duration
 from rvmon.trace.sample import Scalar
@@ -10,6 +11,8 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, f
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+
+NO_VALUES: Mapping[str, str] = MappingProxyType({})
 
 
 def without_attempts(verdict: Verdict, miss: str) -> str:
@@ -42,16 +45,19 @@ def instants_of(attempt: Attempt) -> Sequence[str]:
 
 
 def full_reason(attempt: Attempt, report: Report) -> str:
-    """The reason of an attempt with its afterword, if the report knows one."""
-    return with_lateness(attempt, report.late.get(attempt.requirement, {}).get(attempt.number))
+    """The reason of an attempt with what the report knows besides: values, and how late it came."""
+    late = report.late.get(attempt.requirement, {}).get(attempt.number)
+    values = report.values.get(attempt.requirement, {}).get(attempt.number, {})
+    return with_lateness(attempt, late, values)
 
 
-def with_lateness(attempt: Attempt, came: int | None) -> str:
+def with_lateness(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
     """The reason of an attempt; if what it awaited came after the deadline, also how late.
 
     Args:
         attempt: any.
         came: the instant at which it came, ticks; `None`: it did not, or nobody looked.
+        values: what signals were at its decision, with units.
 
     >>> from rvmon.verdict.attempt import Blame
     >>> from rvmon.verdict import Verdict
@@ -62,12 +68,16 @@ def with_lateness(attempt: Attempt, came: int | None) -> str:
     'no `a`; it came at 3.02 s, 20 ms after the deadline'
     >>> with_lateness(failed, 5 * second + 500_000_000)
     'no `a`; it came at 5.5 s, 2.5 s after the deadline'
+    >>> with_lateness(failed, None, {"speed": "3 m/s", "mode": "idle"})
+    'no `a` (speed = 3 m/s, mode = idle)'
     """
+    told = ", ".join(f"{name} = {value}" for name, value in values.items())
+    reason = f"{attempt.reason} ({told})" if told else attempt.reason
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:
-        return attempt.reason
+        return reason
     span = duration_text(came - attempt.blame.window[1])
     when = format_instant(came, attempt.origin)
-    return f"{attempt.reason}; it came at {when}, {span} after the deadline"
+    return f"{reason}; it came at {when}, {span} after the deadline"
 
 
 def value_text(value: Scalar) -> str:

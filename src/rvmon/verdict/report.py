@@ -40,6 +40,8 @@ class Report:
             somebody looked.
         late: by requirement and number of the attempt, when what it had awaited came after its
             deadline, ticks; where somebody looked.
+        values: by requirement and number of the attempt, what signals that the failed part reads
+            were at the decision, with units; of the first failures, where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
         illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
@@ -59,6 +61,7 @@ class Report:
     end: int | None = None
     misses: Mapping[str, str] = field(default_factory=dict)
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
+    values: Mapping[str, Mapping[int, Mapping[str, str]]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
     illegal: tuple[IllegalHit, ...] = ()
     coverage: tuple[CoveredGroup, ...] = ()
@@ -183,6 +186,8 @@ class Report:
             rest["nearest_miss"] = self.misses[requirement]
         if self.late.get(requirement):
             rest["late"] = self.late[requirement]
+        if self.values.get(requirement):
+            rest["values"] = self.values[requirement]
         return rest
 
     @classmethod
@@ -218,6 +223,7 @@ class Report:
             report,
             misses=misses,
             late=late,
+            values={name: entry.values for name, entry in entries if entry.values},
             goals=document.goals,
             illegal=document.illegal,
             coverage=document.coverage,

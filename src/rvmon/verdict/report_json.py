@@ -59,6 +59,7 @@ class RequirementJson(msgspec.Struct):
     verdict: Verdict
     nearest_miss: str = ""
     late: dict[int, int] = {}
+    values: dict[int, dict[str, str]] = {}
     dropped: dict[Literal["P", "F", "I"], Annotated[int, msgspec.Meta(gt=0)]] = {}
 
 

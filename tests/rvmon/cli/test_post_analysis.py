@@ -10,6 +10,7 @@ from rvmon.analysis.near_miss import why_not_triggered
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
 from rvmon.readers import recording
+from rvmon.verdict.report import Report
 
 HEAD = """
 spec cell
@@ -168,3 +169,36 @@ def test_nothing_is_looked_up_for_nobody(tmp_path):
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  upon p then within 1 s not p\n")
     assert judge(spec, str(tmp_path / "a.csv"), Options()).report.misses
     assert not judge(spec, str(tmp_path / "a.csv"), Options(explains=False)).report.misses
+
+
+@pytest.mark.parametrize("held", [2, 90])
+def test_first_failures_tell_what_signals_were(tmp_path, monkeypatch, held):
+    """Numbers and states of the failed part, with units, alike whether the file is read again.
+
+    Not what is true or false itself, what is measured over a window, or what the trigger read.
+    """
+    monkeypatch.setattr(post_analysis, "MOST_HELD", held)
+    text = """spec s
+signal force : real [N]
+signal mode : {idle, busy}
+signal ok : bool
+signal other : real
+requirement R1 upon fall(ok) then immediately (force <= 40 N and mode = idle and other < 3)
+""".replace("R1 ", "R1\n")
+    rows = "t,force,mode,ok,other\n0,10,idle,1,1\n1,41.5,busy,0,\n2,,,1,nan\n3,,,0,\n"
+    rows += "4,,,1,1\n5,3,idle,0,7\n6,,,1,\n7,50,,0,\n"
+    path = tmp_path / "a.csv"
+    path.write_text(rows)
+    report = judge(rvmon.loads(text), str(path), Options()).report
+    assert report.values == {
+        "R1": {
+            1: {"force": "41.5 N", "mode": "busy", "other": "1"},
+            2: {"force": "41.5 N", "mode": "busy", "other": "not known"},
+            3: {"force": "3 N", "mode": "idle", "other": "7"},
+        }
+    }
+    assert Report.from_json(report.to_json()).values == report.values
+
+    windows = text.replace("(force <= 40 N", "(mean(force, 3 s) <= 40 N").replace("and other < 3", "")
+    report = judge(rvmon.loads(windows), str(path), Options()).report
+    assert set(report.values["R1"][1]) == {"mode"}
