@@ -103,13 +103,13 @@ def post_analysis(
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
     until = end if questions else values.until
-    held = remembered.until(until)
-    if held is None:
+    pieces: Iterable[Batch | Sample] | None = remembered.until(until)
+    if pieces is None:
         asked = {name for one in questions for part in one.formulas for name in names_read(part)}
         asked |= {one.for_each.value.event for one in questions if one.for_each is not None}
-        held = _read_again(spec, recording, asked | values.names, until)
-    pieces = values.noted(held)
-    seen = look_through(spec.checked, questions, pieces, end, names, spec.plans_of_truths)
+        pieces = _read_again(spec, recording, asked | values.names, until)
+    noted = values.noted(pieces)
+    seen = look_through(spec.checked, questions, noted, end, names, spec.plans_of_truths)
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
