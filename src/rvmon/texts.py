@@ -14,6 +14,7 @@ import sys
 import unicodedata
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
@@ -228,3 +229,40 @@ def share_text(share: float) -> str:
     ('> 99 %', '50 %')
     """
     return percent_text(share, 1)
+
+
+_MARKS = (".git", "pyproject.toml")
+"""What stands in the root of a project."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportTree:
+    """The folders that imports may lead into.
+
+    Attributes:
+        root: of the project.
+        others: that a person has allowed.
+    """
+
+    root: Path
+    others: tuple[Path, ...] = ()
+
+    def holds(self, file: Path) -> bool:
+        """Whether a file lies within, where links lead.
+
+        Raises:
+            ValueError: a null character is in the name.
+            OSError: links lead round in a circle.
+        """
+        real = file.resolve()
+        return any(real.is_relative_to(folder) for folder in (self.root, *self.others))
+
+
+def tree_of(directory: Path) -> ImportTree:
+    """The tree of a main file in a folder: that of its project, else the folder itself."""
+    own = directory.resolve()
+    marked = (
+        folder for folder in (own, *own.parents) if any((folder / mark).exists() for mark in _MARKS)
+    )
+    named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
+    return ImportTree(next(marked, own), tuple(Path(name).resolve() for name in named if name))

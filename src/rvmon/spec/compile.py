@@ -45,6 +45,7 @@ def compile_text(
     name: str = "<string>",
     constants: Mapping[str, str] | None = None,
     directory: Path | None = None,
+    read: Callable[[Path], str] = text_of_file,
 ) -> tuple[CheckedSpec, tuple[Diagnostic, ...]]:
     r"""Compile the text of a specification.
 
@@ -53,6 +54,7 @@ def compile_text(
         name: what messages call it.
         constants: constants to override, by name, as text of the language (`{"T": "2 s"}`).
         directory: where imports are looked up.
+        read: gives the text of a file that is imported.
 
     Returns:
         The checked specification and the warnings.
@@ -64,7 +66,7 @@ def compile_text(
     >>> spec.requirements["R"].pulse, warnings
     (True, ())
     """
-    made = compilation(Source(name, text), directory, constants or {})
+    made = compilation(Source(name, text), directory, constants or {}, read)
     if made.checked is None or made.broken:
         raise SpecError(made.findings, render_full(made.findings))
     return made.checked, made.findings

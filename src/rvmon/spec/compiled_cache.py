@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.files import cache_folder, file_stamps, keep, read_kept
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.texts import text_of_file, tree_of
 
 if TYPE_CHECKING:
     from rvmon.diagnostics import Diagnostic
@@ -29,35 +30,53 @@ def compile_cached(
 ) -> Compiled:
     """As `rvmon.spec.compile.compile_text`, which is asked once for each text.
 
-    What is kept is keyed by all that it depends on: text, name, constants, and the compiler's files
-    by size and time. A text that imports others is compiled each time.
+    What is kept is keyed by text, name, constants, folder, and the compiler's files by size and
+    time. With it stand the texts of the files that were imported: it is good as long as these may
+    be imported and say the same.
     """
-    folder = None if "import" in text else cache_folder()
+    folder = cache_folder()
+    imported: dict[str, str] = {}
+
+    def read(file: Path) -> str:
+        imported[str(file)] = text_of_file(file)
+        return imported[str(file)]
+
     if folder is None:
-        return _compiled(text, name, constants, directory)
-    content = json.dumps([*file_stamps(str(_HERE)), name, text, sorted((constants or {}).items())])
+        return _compiled(text, name, constants, directory, read)
+    about = [name, text, sorted((constants or {}).items()), str(directory or "")]
+    content = json.dumps([*file_stamps(str(_HERE)), *about])
     path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
-    found = _read(path)
+    found = _read(path, directory or Path())
     if found is None:
-        found = _compiled(text, name, constants, directory)
-        keep(path, json.dumps(to_plain(found), separators=(",", ":")).encode())
+        found = _compiled(text, name, constants, directory, read)
+        keep(path, json.dumps([imported, to_plain(found)], separators=(",", ":")).encode())
     return found
 
 
 def _compiled(
-    text: str, name: str, constants: Mapping[str, str] | None, directory: Path | None
+    text: str,
+    name: str,
+    constants: Mapping[str, str] | None,
+    directory: Path | None,
+    read: Callable[[Path], str],
 ) -> Compiled:
     from rvmon.spec.compile import compile_text
 
-    return compile_text(text, name=name, constants=constants, directory=directory)
+    return compile_text(text, name=name, constants=constants, directory=directory, read=read)
 
 
-def _read(path: Path) -> Compiled | None:
+def _read(path: Path, directory: Path) -> Compiled | None:
     body = read_kept(path)
     if body is None:
         return None
     try:
-        spec, warnings = from_plain(json.loads(body))
-    except (ValueError, LookupError, TypeError, RecursionError):
+        imported, data = json.loads(body)
+        if imported:
+            tree = tree_of(directory)
+            for file, text in imported.items():
+                if not tree.holds(Path(file)) or text_of_file(file) != text:
+                    return None
+        spec, warnings = from_plain(data)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return None
     return (spec, warnings) if isinstance(spec, CheckedSpec) else None

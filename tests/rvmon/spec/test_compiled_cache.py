@@ -99,15 +99,51 @@ def test_errors_are_not_kept(folder):
     assert not kept_in(folder)
 
 
-def test_imports_are_compiled_each_time(folder, tmp_path):
-    """What is imported may change while the text that imports it stays."""
-    (tmp_path / "names.rv").write_text("signal p : bool\n")
-    text = 'import "names.rv"\nrequirement R\n  always p\n'
-    compile_cached(text, directory=tmp_path)
-    (tmp_path / "names.rv").write_text("signal p : bool\nsignal q : bool\n")
-    spec, _ = compile_cached(text, directory=tmp_path)
-    assert set(spec.signals) == {"p", "q"}
-    assert not kept_in(folder)
+IMPORTING = 'import "names.rv"\nrequirement R\n  always p\n'
+
+
+def test_what_is_imported_is_looked_at_each_time(folder, tmp_path):
+    """What is kept is good as long as the imported files say the same; else it is replaced."""
+    names = tmp_path / "names.rv"
+    names.write_text("signal p : bool\n")
+    first = compile_cached(IMPORTING, directory=tmp_path)
+    [kept] = kept_in(folder)
+    names.write_text("signal p : bool\nsignal q : bool\n")
+    second = compile_cached(IMPORTING, directory=tmp_path)
+    assert [set(spec.signals) for spec, _ in (first, second)] == [{"p"}, {"p", "q"}]
+    names.write_text("signal p : bool\n")
+    kept.write_bytes(b"")
+    assert compile_cached(IMPORTING, directory=tmp_path) == first
+    written = kept.read_bytes()
+    assert compile_cached(IMPORTING, directory=tmp_path) == first
+    assert kept_in(folder) == [kept]
+    assert kept.read_bytes() == written
+
+
+def test_of_imports_each_folder_has_its_own(folder, tmp_path):
+    """The same text means other files there."""
+    for name, more in (("a", ""), ("b", "signal q : bool\n")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "names.rv").write_text(f"signal p : bool\n{more}")
+    specs = [compile_cached(IMPORTING, directory=tmp_path / name)[0] for name in "abab"]
+    assert [len(spec.signals) for spec in specs] == [1, 2, 1, 2]
+    assert len(kept_in(folder)) == 2
+
+
+@pytest.mark.parametrize("harm", ["gone", "outside"])
+def test_what_may_not_be_imported_any_more_is_refused(folder, tmp_path, harm):
+    """As ever, though it was compiled before."""
+    names, elsewhere = tmp_path / "own" / "names.rv", tmp_path / "elsewhere.rv"
+    names.parent.mkdir()
+    elsewhere.write_text("signal p : bool\n")
+    names.write_text("signal p : bool\n")
+    compile_cached(IMPORTING, directory=names.parent)
+    assert kept_in(folder)
+    names.unlink()
+    if harm == "outside":
+        names.symlink_to(elsewhere)
+    with pytest.raises(SpecError, match=r"cannot read|outside"):
+        compile_cached(IMPORTING, directory=names.parent)
 
 
 def test_it_can_be_switched_off(folder, monkeypatch):

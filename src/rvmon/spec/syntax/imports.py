@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
@@ -13,44 +12,7 @@ from rvmon.spec.rules import Findings, Refusal
 from rvmon.spec.rules import names as rules
 from rvmon.spec.syntax.items import ImportItem, ParsedSpec
 from rvmon.spec.syntax.parse import parse_spec
-from rvmon.texts import text_of_file
-
-_MARKS = (".git", "pyproject.toml")
-"""What stands in the root of a project."""
-
-
-@dataclass(frozen=True, slots=True)
-class Tree:
-    """The folders that imports may lead into.
-
-    Attributes:
-        root: of the project.
-        others: that a person has allowed.
-    """
-
-    root: Path
-    others: tuple[Path, ...] = ()
-
-    def holds(self, file: Path) -> bool:
-        """Whether a file lies within, where links lead.
-
-        Raises:
-            ValueError: a null character is in the name.
-            OSError: links lead round in a circle.
-        """
-        real = file.resolve()
-        return any(real.is_relative_to(folder) for folder in (self.root, *self.others))
-
-
-def tree_of(directory: Path) -> Tree:
-    """The tree of a main file in a folder: that of its project, else the folder itself."""
-    own = directory.resolve()
-    marked = (
-        folder for folder in (own, *own.parents) if any((folder / mark).exists() for mark in _MARKS)
-    )
-    named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
-    return Tree(next(marked, own), tuple(Path(name).resolve() for name in named if name))
-
+from rvmon.texts import ImportTree, text_of_file, tree_of
 
 LIBRARIES = ("patterns",)
 """Folders of this package with specifications that can be imported by name."""
@@ -79,7 +41,7 @@ def load_files(
 
 
 class _Loader:
-    def __init__(self, findings: Findings, tree: Tree, read: Callable[[Path], str]) -> None:
+    def __init__(self, findings: Findings, tree: ImportTree, read: Callable[[Path], str]) -> None:
         self.files: list[ParsedSpec] = []
         self._findings = findings
         self._tree = tree
