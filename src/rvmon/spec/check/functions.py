@@ -38,6 +38,9 @@ _INSTEAD = {
         "bound the share that is off: `share(x > 2, 10 s) <= 10 %`, or all: `max(x, 10 s) <= 2`",
     ),
     **dict.fromkeys(("average", "avg"), "write `mean(x, 10 s)`"),
+    **dict.fromkeys(
+        ("derivative", "slope"), "write `rate(x)`, the change a second between updates"
+    ),
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
 """What says nearly the same as functions that there are not."""

@@ -29,6 +29,7 @@ _FIX = {
     "`": "a quoted name ends on the line it starts on, with a second backtick",
     "%": "`%` is a unit and stands behind a number",
     ";": "items and clauses need no `;`",
+    "becomes": "write `rise(…)` for the instant at which something comes true",
 }
 _TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
 NEVER = "for `never` write `always not (…)`"
@@ -89,7 +90,7 @@ def _sign_fix(found: str, accepted: set[str], before: str) -> str:
     label = re.fullmatch(r'"([^\W\d]\w*)"', found)
     if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
         return f"labels have no quotes: `{label[1]}`"
-    if found == "=>":
+    if found == "=>" or (found == ">" and before.rstrip().endswith("==")):
         return "write `->` for what follows, `>=` to compare"
     return ""
 
@@ -179,7 +180,7 @@ def _structure_fix(found: str, accepted: set[str], before: str) -> str:
         return "a signal has a type, as in `signal x : real [m]`"
     if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
         return f"a unit stands in brackets: `[{found}]`"
-    if re.match(r"[\d.]+\s*[^\W\d]+$", found) and re.search(r"(?<![\w.])after[ \t]+$", before):
+    if re.match(r"[\d.]+\s*[^\W\d]+$", found) and re.search(r"(?<![\w.])(after|at)[ \t]+$", before):
         return f"for what is to hold then write `eventually[{found}, {found}] (…)`"
     if accepted == {"COLON"} and re.match(r"event\b", before):
         return "a field has a type, as in `event pick(id: int)`"

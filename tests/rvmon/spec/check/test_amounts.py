@@ -93,6 +93,7 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("once[0 s, d] f", "`d` comes from data, and is no constant duration"),
         ("median(x, 5 s) <= 2", "`share(x > 2, 10 s) <= 10 %`"),
         ("average(x, 5 s) <= 2", "write `mean(x, 10 s)`"),
+        ("derivative(x) <= 2", "write `rate(x)`"),
         ("variance(x, 5 s) <= 2", "moves along a curve between samples"),
         ("stddev(x, 5 s) <= 2", "its square is the variance"),
         ("variance(x * e.k, 5 s) <= 2", "`variance` is of signals, or fields of an event"),

@@ -114,6 +114,9 @@ def test_words_are_found_whole(word, fix):
     [
         ('state = "idle"', "labels have no quotes: `idle`", "a number or a name"),
         ("(asked) => (released)", "write `->`", "the end of the item"),
+        ("(asked) ==> (released)", "write `->`", "a number or a name"),
+        ("state becomes idle", "write `rise(…)`", "the end of the item"),
+        ("at 3 s released", "`eventually[3 s, 3 s] (…)`", "the end of the item"),
     ],
 )
 def test_signs_of_other_languages(formula, fix, expected):
