@@ -92,7 +92,7 @@ def run(
 
 
 def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:
-    """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is owed.
+    """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is required.
 
     It counts a window that the trace cuts short as it is; ours is then no single number.
     """

@@ -1,7 +1,7 @@
 """The core against progression, on traces too long for the law: what is kept over time stays right.
 
-Random formulas with windows of up to some hundred ticks, owed from the start or upon a signal, in
-held and in sampled time; nothing is unknown. What an attempt owes is taken on by
+Random formulas with windows of up to some hundred ticks, required from the start or upon a signal,
+in held and in sampled time; nothing is unknown. What an attempt owes is taken on by
 `tests.tools.progression`, which has the formula's core form in common with the core, and neither
 automata, queues, networks nor chains of windows. Compared are, of every attempt, trigger, verdict
 and instant of what the prefix decides, stepped and by rows.
@@ -178,7 +178,7 @@ def judge_long(seed: int, own: Long, numbers: range) -> Found:
         try:
             wanted = by_progression(case)
         except TooManyObligationsError:
-            counts["passed over: too much is owed at once"] += 1
+            counts["passed over: too much is required at once"] += 1
             continue
         counts.update(traces=1, samples=len(case.samples))
         for _, _, verdict in wanted.values():

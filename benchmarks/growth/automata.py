@@ -1,7 +1,7 @@
 """Automata of random formulas: how many close, how large they get, how long they take.
 
 Formulas are drawn until so many temporal operators are nested in each as was asked for; every other
-is owed from the start, the others `whenever p`. CPU times are of construction and reduction
+is required from the start, the others `whenever p`. CPU times are of construction and reduction
 together; then of forecasts, ten at most for each automaton. Exits 1 if one takes longer
 than the budget of `--most` seconds.
 """
@@ -83,7 +83,7 @@ def measure(options: argparse.Namespace) -> int:
         if found is not None:
             forecasts += [(spent, format_formula(required)) for spent in _forecast(found, rng)]
     _print(options, sizes, refused, seconds)
-    print(f"  {len(forecasts)} forecasts, of what may be owed at the end of a trace")
+    print(f"  {len(forecasts)} forecasts, of what may be required at the end of a trace")
     _print_seconds(forecasts)
     return int(max(max(seconds), max(forecasts))[0] > options.most)
 

@@ -105,7 +105,7 @@ MARGINS = (
     ("rvmon, one attempt", "attempt"),
     ("rvmon offline", "offline"),
 )
-"""Robustness: of each sample, of what is owed from the first one on, and of columns in memory."""
+"""Robustness: of each sample, of what is required from the first one on, and of columns."""
 
 
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
@@ -145,7 +145,7 @@ def _ours(kind: str) -> Request:
 
 
 def margin_text(workload: Workload) -> str:
-    """A formula as it is owed from the first sample on, a tick between two samples."""
+    """A formula as it is required from the first sample on, a tick between two samples."""
     required = f"upon start\n  then {text(workload.formulas[0])}"
     return specification([required], workload.columns).replace("time held", "time sampled")
 

@@ -175,7 +175,7 @@ def requirement(
     """A requirement; `upon start` if no trigger is given.
 
     Args:
-        consequent: what is owed.
+        consequent: what is required.
         upon: the trigger, or
         whenever: the trigger.
         name: the id.

@@ -349,7 +349,7 @@ def test_what_is_owed_and_its_deadline_are_compared() -> None:
 
 
 def test_deadline_is_the_last_instant_before_time_alone_decides() -> None:
-    """Of all that is owed the first, of one of two things the last; none if nothing bounds it."""
+    """Of all that is required the first, of two choices the last; none if nothing bounds it."""
     short, long, ever = eventually(p, 0, 3), eventually(no(q), 0, 5), eventually(no(q))
     for required, wanted in (
         (two(short, "and", long), 3),

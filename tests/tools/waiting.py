@@ -70,7 +70,7 @@ class Waiting:
 
     @property
     def truth(self) -> Truth:
-        """Of what is owed."""
+        """Of what is required."""
         return obligation(self._start, self._readings)
 
     def deadline(self) -> int | None:
@@ -95,7 +95,7 @@ class Waiting:
         return None
 
     def misnamed(self, required: str, origin: int) -> Iterator[str]:
-        """What is said to be owed though it is none of the parts that wait for something.
+        """What is said to be required though it is none of the parts that wait for something.
 
         Args:
             required: from the record of an attempt.
@@ -118,7 +118,7 @@ class Waiting:
                 if Truth.UNKNOWN in signs:
                     yield from _named(part, self._letters[position].instant - origin)
         if self._requirement.mode is Mode.WHENEVER or self._in_doubt:
-            # It is owed at every position to come, which goes by its name.
+            # It is required at every position to come, which goes by its name.
             yield f"`{format_formula(self._requirement.consequent)}`"
         held = any(isinstance(part, Unary) and part.op is UnaryOp.HELD for part in self._parts)
         if self._simplified or held:

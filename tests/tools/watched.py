@@ -16,7 +16,7 @@ def is_small(automaton: Automaton | None) -> bool:
 
 
 def truths_plan(compiled: CompiledSpec) -> Plan:
-    """The plan of who asks where all that is owed is true; what is captured is 1."""
+    """The plan of who asks where all that is required is true; what is captured is 1."""
     required = dict.fromkeys(one.obligation.required for one in compiled.requirements.values())
     captured: dict[str, float | None] = {}
     for requirement in compiled.checked.requirements.values():

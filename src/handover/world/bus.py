@@ -97,7 +97,7 @@ class Node:
         self._bus = bus
         self._growth_s = poll_growth_s
         self._subscriptions: dict[str, int] = {}
-        self._owed_s = 0.0
+        self._delay_s = 0.0
         self._ended_ns: int | None = None
 
     def now(self) -> float:
@@ -117,13 +117,13 @@ class Node:
         count = self._subscriptions.get(topic, 0)
         if count == 0:
             return None
-        self._owed_s += (count - 1) * self._growth_s
+        self._delay_s += (count - 1) * self._growth_s
         return self._bus.latched(topic)
 
-    def take_owed_s(self) -> float:
+    def take_delay_s(self) -> float:
         """The seconds by which reads have slowed this node down since the last call."""
-        owed, self._owed_s = self._owed_s, 0.0
-        return owed
+        delay, self._delay_s = self._delay_s, 0.0
+        return delay
 
     def end(self) -> None:
         """End the process; its latched messages soon vanish."""

@@ -70,7 +70,7 @@ class Process:
             or wait_s < 0
         ):
             raise ValueError(f"a program waits by yielding seconds ≥ 0, not {wait_s!r}")
-        wait_ns = round((wait_s + self._node.take_owed_s()) * NS)
+        wait_ns = round((wait_s + self._node.take_delay_s()) * NS)
         self._steps_now = 0 if wait_ns else self._steps_now + 1
         if self._steps_now > STALL_LIMIT:
             raise RuntimeError(f"no time passed in {STALL_LIMIT} steps: the program hangs")

@@ -168,7 +168,7 @@ def _can_fail(requirement: Requirement) -> str:
 
 
 def _is_open(requirement: Requirement) -> bool:
-    """Whether something may be owed to the end of the run."""
+    """Whether something may be required to the end of the run."""
     return requirement.mode is Mode.WHENEVER or any(
         map(_has_no_end, subformulas(requirement.consequent))
     )

@@ -167,7 +167,7 @@ def _obligation(compiled: CompiledRequirement, node: Core) -> str:
 
 
 def always(requirement: Requirement) -> bool:
-    """Whether it is owed at every instant."""
+    """Whether it is required at every instant."""
     return isinstance(requirement.trigger, Constant) and requirement.trigger.value
 
 
@@ -325,7 +325,7 @@ ENDS = {"P": "✓ P", "F": "✗ F"}
 
 
 def graph_lines(graph: Graph) -> list[str]:
-    """Each place with what is owed there, and below it the steps that lead on."""
+    """Each place with what is required there, and below it the steps that lead on."""
     lines: list[str] = []
     for place in graph.places:
         edges = [edge for edge in graph.edges if edge.source == place.name]

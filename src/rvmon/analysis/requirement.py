@@ -20,7 +20,7 @@ class Subject:
         requirement: as checked.
         trigger: starts an attempt; `None` if it is the end of the trace.
         automaton: of what an attempt owes; `None` if it does not close.
-        names: the signals and events that what is owed reads.
+        names: the signals and events that what is required reads.
     """
 
     requirement: Requirement

@@ -131,7 +131,7 @@ class Breakdown:
         start: first tick of the window that is shown.
         end: its last tick.
         late: when what it had awaited came after its deadline, ticks; `None` if it did not.
-        part_truths: the trigger, then what is owed, each before its parts.
+        part_truths: the trigger, then what is required, each before its parts.
     """
 
     attempt: Attempt
@@ -180,7 +180,7 @@ def dissect(
 def part_truths_of(
     requirement: Requirement, attempt: Attempt, seen: Seen, start: int, stop: int
 ) -> tuple[PartTruth, ...]:
-    """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
+    """The truth of trigger, consequent, and all their parts, over a stretch of time."""
     truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
     parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]

@@ -365,14 +365,14 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
 
 
 def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
-    """The trigger, what is owed, and all that they are made of."""
+    """The trigger, what is required, and all that they are made of."""
     wholes = (requirement.trigger, requirement.consequent)
     formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
     return Question(formulas, requirement.for_each, attempt.captured)
 
 
 def truths_of_parts(requirement: Requirement, attempt: Attempt, seen: Seen) -> dict[int, Truth]:
-    """Where the trigger, what is owed and their parts are true, by `id` of the formula.
+    """Where the trigger, what is required and their parts are true, by `id` of the formula.
 
     Args:
         requirement: that is taken apart.

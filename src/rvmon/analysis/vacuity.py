@@ -44,7 +44,7 @@ def possible(
     Args:
         spec: declares the names.
         trigger: of the requirement; `None` if it is the end of the trace.
-        automaton: of what is owed; `None` if it does not close.
+        automaton: of what is required; `None` if it does not close.
         policy: for what is undecided at the end.
 
     Source: AUTOMATA 2, regions after Alur and Dill 1994.

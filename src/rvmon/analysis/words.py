@@ -1,4 +1,4 @@
-"""Requirements in plain English: when an attempt starts, what is owed then, and further facts."""
+"""Requirements in plain English: when an attempt starts, what is required, and further facts."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _AT_END = {
 
 
 def requirement_in_words(requirement: Requirement) -> list[str]:
-    """Sentences: when an attempt starts, what is owed, what is captured, what the end does."""
+    """Sentences: when an attempt starts, what is required, what is captured, what the end does."""
     lines = [f"{_starts(requirement)}:", f"{_required(requirement)}."]
     lines += [
         f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."

@@ -120,7 +120,7 @@ class JsonOutput(Output):
 
 
 class View(Output):
-    """A table that stays in its place: verdicts, what is owed and until when, what failed last."""
+    """A table that stays in its place: verdicts, what is required until when, what failed last."""
 
     def __init__(self, *, failures_only: bool) -> None:
         from rich.live import Live as Screen

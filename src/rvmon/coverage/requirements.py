@@ -176,7 +176,7 @@ class WatchedRequirement:
                 if one.source != one.target:
                     upon = " at ".join(part for part in (one.condition, one.when) if part)
                     edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
-            # What is owed for ever is met by the end of the run alone: no edge leads to `P`.
+            # What is required for ever is met by the end of the run alone: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
             required = [
                 _item(one.name, one.required) for one in self.graph.places if one.name in entered
@@ -187,7 +187,7 @@ class WatchedRequirement:
 
 
 def deadline_of(required: Formula) -> int | None:
-    """The ticks within which something has to come, if that is all that is owed."""
+    """The ticks within which something has to come, if that is all that is required."""
     match required:
         case Unary(op=UnaryOp.EVENTUALLY, interval=interval):
             return None if interval is None else interval.high

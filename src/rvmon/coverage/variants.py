@@ -76,7 +76,7 @@ def _is_steady(required: Formula) -> bool:
     """Whether all that meets a formula does so at the same instant.
 
     It is that of the trigger, or the last one of `always`, if nothing that was can settle it. Then
-    what meets it passes no sooner where less is owed.
+    what meets it passes no sooner where less is required.
     """
     if isinstance(required, Unary) and required.op is UnaryOp.ALWAYS:
         return is_timeless(required.operand)

@@ -36,7 +36,7 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
     """The least LTL3 monitor of a requirement.
 
     A word begins at the position of the trigger. State `P` is entered when every continuation
-    fulfils what is owed, `F` when none does; the automaton accepts the words that come to `P`.
+    fulfils what is required, `F` when none does; the automaton accepts the words that come to `P`.
     Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
     proposition listed that none of the others needs.
 
@@ -220,7 +220,7 @@ def _label(cube: Sequence[int]) -> str:
 
 
 def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
-    """Locations with what is owed there, edges with their conditions; ages in ticks.
+    """Locations with what is required there, edges with their conditions; ages in ticks.
 
     Raises:
         RvmonError: it has no automaton.

@@ -26,7 +26,7 @@ Token = tuple[int, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """What is owed, but for the ages.
+    """What is required, but for the ages.
 
     Attributes:
         residual: its clocks count from the oldest, from 0, without gaps.

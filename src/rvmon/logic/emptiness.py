@@ -77,7 +77,7 @@ Start = tuple[_State, ...]
 
 
 def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
-    """Where a search begins, equal for residuals of equal future; `None` if nothing is owed.
+    """Where a search begins, equal for residuals of equal future; `None` if nothing is required.
 
     Args:
         residual: of literals of two senses, as `rvmon.logic.progress` makes them.

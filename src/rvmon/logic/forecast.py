@@ -38,7 +38,7 @@ class Forecaster:
         """The value that all continuations give a residual; `None` if they differ.
 
         Args:
-            residual: what is owed after a position.
+            residual: what is required after a position.
             ages: of its clocks at that position, ticks.
             gap: ticks between two positions; `None` if any number of them.
 

@@ -46,7 +46,7 @@ class Obligation:
         origins: for explanations, where the parts of `required` come from.
         running: of an episode, what is FALSE where it is over; with captured values also where it
             is not known any more which these are.
-        again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
+        again: of an episode, not FALSE where the consequent did not fail at once: there it goes on
             after a failure; `None` where it does not, as the future stands below the past.
         unborn: of an episode, where something of its consequent had no value yet.
         determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
@@ -157,7 +157,7 @@ def _unborn(consequent: Formula, factory: Factory) -> State | None:
 
 
 def _at_once(core: Core, factory: Factory) -> State:
-    """A state formula that is FALSE where a position alone makes what is owed there FALSE.
+    """A state formula that is FALSE where a position alone makes what is required there FALSE.
 
     Args:
         core: the windows of all that has to be kept up open at once in it.

@@ -55,7 +55,7 @@ class Lowering:
     Args:
         factory: where core formulas are made.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
-        favour: whether what is not born counts in favour of what is owed.
+        favour: whether what is not born counts in favour of what is required.
         measured: see `rvmon.logic.three_valued.Reader`.
         sampled: whether only samples are positions.
         opened: whether the windows of all that has to be kept up open at once.
@@ -83,7 +83,7 @@ class Lowering:
         self._made_up: dict[int, Formula] = {}
 
     def state(self, formula: Formula, positive: bool) -> State:
-        """A state formula that is owed, or whose negation is."""
+        """A state formula that is required, or whose negation is."""
         if not self.favour:
             return self.reader.literal(formula, UNKNOWN)
         return self.reader.literal(formula, TRUE if positive else FALSE)
@@ -168,7 +168,7 @@ class Lowering:
         return make(left, right, low, high)
 
     def required(self, operand: Core) -> Core:
-        """What is owed at positions of which some may not be there."""
+        """What is required at positions of which some may not be there."""
         return self._if_there(operand) if self._meets_blanks else operand
 
     def _behind(self, operand: Core) -> Core:

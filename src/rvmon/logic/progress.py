@@ -49,13 +49,13 @@ def phase(node: Until | Release, age: int) -> Phase:
 def step(
     residual: Residual, ages: Sequence[int], read: ReadLiteral, limit: int | None = None
 ) -> Residual:
-    """What is owed after a position.
+    """What is required after a position.
 
     In the result, clocks below `len(ages)` are the old ones, and `len(ages)` is a new one that was
     started at this position.
 
     Args:
-        residual: what was owed before.
+        residual: what was required before.
         ages: of each clock at this position.
         read: what a literal is at this position; itself as an atom, if it is to stay open.
         limit: the greatest number of clauses, if there is to be one.
@@ -145,10 +145,10 @@ def opened(node: Until | Release, clock: int) -> Atom:
 
 
 def after(residual: Residual, ages: Sequence[int]) -> Residual:
-    """What is owed when time has passed and no position came: windows that are over are settled.
+    """What is required when time has passed without a position: windows that are over are settled.
 
     Args:
-        residual: what is owed after the last position.
+        residual: what is required after the last position.
         ages: of each clock at the instant that time has reached.
     """
     settled: dict[Atom, Residual] = {}
@@ -172,7 +172,7 @@ def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
     """Whether the rule for the end of a trace makes the residual true.
 
     Args:
-        residual: what is owed, after all windows that are over were settled.
+        residual: what is required, after all windows that are over were settled.
         ages: of each clock at the end of the trace.
     """
     return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)

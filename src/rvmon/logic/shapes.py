@@ -1,6 +1,6 @@
 """Automata of formulas that differ in their propositions and bounds alone: constructed once.
 
-What is owed in a location is told apart, so that a run can be explained by where it stood.
+What is required in a location is told apart, so that a run can be explained by where it stood.
 
 Bounds matter to an automaton by their order, and by how far they lie apart where that is little: an
 age that `construct` meets is 0 or a bound, and as many ticks more as steps were taken behind it.

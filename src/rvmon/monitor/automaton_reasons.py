@@ -47,7 +47,7 @@ class Finding:
 class Reasons:
     """Finds the reasons of the decisions of one requirement.
 
-    What was owed, in which of its windows, and the letter: more makes no difference to a reason.
+    What was required, in which of its windows, and the letter: no more matters to a reason.
     """
 
     def __init__(self, compiled: CompiledRequirement) -> None:
@@ -86,7 +86,7 @@ class Reasons:
         return Finding(cause, self.words.sentence(cause, verdict))
 
     def deadline(self, before: Token) -> int | None:
-        """The last instant before time alone settles what was owed; see `Attempt`."""
+        """The last instant before time alone settles what was required; see `Attempt`."""
         location, anchors = before
         if len(anchors) != 1:
             return deadline(self._residuals[location], anchors)
@@ -131,7 +131,7 @@ class MachineRuns:
     """Runs of an automaton, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:
-        residuals: what is owed in its locations.
+        residuals: what is required in its locations.
         position: the last one that the runs were stepped at; letters stay behind it.
         gap: ticks between two positions; `None` if only samples are positions.
     """

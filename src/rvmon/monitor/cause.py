@@ -122,7 +122,7 @@ class CauseFinder:
                 return None
             case And(args=args) | Or(args=args):
                 decided = [arg for arg in args if instance(arg, self._read) == self.wanted]
-                # What is owed over time says more than what was only asked for besides.
+                # What is required over time says more than what was only asked for besides.
                 decided.sort(key=lambda arg: isinstance(arg, Literal))
                 causes = (self._of_instance(arg) for arg in decided)
                 return next((cause for cause in causes if cause is not None), None)

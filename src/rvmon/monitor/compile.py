@@ -90,7 +90,7 @@ class CompiledRequirement:
 
     @cached_property
     def shaped_residuals(self) -> Sequence[Residual]:
-        """What is owed in the locations of that."""
+        """What is required in the locations of that."""
         return self._shapes.residuals(self._required, self.alphabet, self._budget)
 
     @property

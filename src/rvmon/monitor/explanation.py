@@ -213,7 +213,7 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
     """
     if attempt.sure:
         why = judged.why_open(attempt, now, end)
-        # What is owed of signals without a value does not fail, and time gives them none.
+        # What is required of signals without a value does not fail, and time gives them none.
         is_unborn = attempt.cannot_pass and not attempt.cut
         return replace(why, deadline=None) if is_unborn else why
     if attempt.worse[0] == FAILED:

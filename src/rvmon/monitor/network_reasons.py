@@ -107,7 +107,7 @@ class NetworkCauseFinder:
             case Literal():
                 return Cause(core, position * self.gap, False, core)
             case And(args=args) | Or(args=args):
-                # What is owed over time says more than what was only asked for besides.
+                # What is required over time says more than what was only asked for besides.
                 parts = sorted(args, key=lambda arg: isinstance(arg, Literal))
                 causes = (self.of(arg, position) for arg in parts if self._fresh(arg, position))
                 return next((cause for cause in causes if cause is not None), None)
@@ -214,7 +214,7 @@ def explained_by_network(
     words, start = compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, flow)
     deadline = None
-    if t > position:  # else it owed nothing yet
+    if t > position:  # else it required nothing yet
         last = _settled_before(network, integer, found[1])
         # What had long been settled when the attempt began was no deadline of it.
         if last is not None and last >= position - 1:

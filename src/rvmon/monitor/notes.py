@@ -1,4 +1,4 @@
-"""Reasons, deadlines, what is owed, forecasts: worked out from what the core has noted."""
+"""Reasons, deadlines, what is required, forecasts: worked out from what the core has noted."""
 
 from __future__ import annotations
 

@@ -247,7 +247,7 @@ class Words:
 
 
 def all_of(parts: Sequence[str]) -> str:
-    """Parts that are all owed: none twice, nor without its deadline where it stands with one.
+    """Parts that are all required: none twice, nor without its deadline where it stands with one.
 
     >>> all_of(["`p`", "`q` by 7 s", "`q`"])
     '`p` and `q` by 7 s'
@@ -258,7 +258,7 @@ def all_of(parts: Sequence[str]) -> str:
 
 
 def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool] | None:
-    """What time alone makes of what is owed, and the last instant before; `None` if nothing."""
+    """What time alone makes of what is required, and the last instant before; `None` if nothing."""
     ends = {
         anchors[clock] + node.high
         for clause in residual
@@ -273,6 +273,6 @@ def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool
 
 
 def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
-    """The last instant before time alone settles what is owed; see `Attempt`."""
+    """The last instant before time alone settles what is required; see `Attempt`."""
     found = settled_alone(residual, anchors)
     return None if found is None else found[0]

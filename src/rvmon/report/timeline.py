@@ -271,10 +271,10 @@ def _offending(attempt: Attempt | None) -> tuple[int, ...]:
 def _obligation(
     attempt: Attempt, view: View, origin: int, end: int, late: int | None
 ) -> ET.Element:
-    """The window in which something was owed, between labels of its instants."""
+    """The window in which something was required, between labels of its instants."""
     first, last = _window(attempt)
     if last is None:
-        last = attempt.decided  # nothing was owed any more
+        last = attempt.decided  # nothing was required any more
     left = view.fraction(first)
     right = min(view.fraction(max(end, first) if last is None else last), 1.0)
     kind = "window unbounded" if last is None else "window"
@@ -282,7 +282,7 @@ def _obligation(
     labels = _labels(attempt, view, origin, end, late)
     rows = 1 + max(row for _, row in labels)
     height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
-    plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
+    plot = e("div", {"class": "plot required", **height}, *(label for label, _ in labels), bar)
     return e("div", {"class": "row"}, e("div", {"class": "name unit"}, "window"), plot)
 
 

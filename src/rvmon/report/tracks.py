@@ -35,7 +35,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 
 
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
-    """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
+    """The names that the failed part of a requirement reads; if that is unknown, all of it."""
     parts = subformulas(requirement.consequent)
     required = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [

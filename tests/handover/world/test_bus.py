@@ -64,15 +64,15 @@ def test_reading_needs_a_subscription() -> None:
 
 
 def test_reads_slow_down_with_leaked_subscriptions() -> None:
-    """Each subscription beyond the first adds the growth to every read; it is owed once."""
+    """Each subscription beyond the first adds the growth to every read; it is told once."""
     bus = Bus(Schedule())
     node = Node(bus, {}, 0.001)
     node.subscribe("signal")
     node.receive("signal")
-    assert node.take_owed_s() == 0.0
+    assert node.take_delay_s() == 0.0
     for _ in range(4):
         node.subscribe("signal")
     node.receive("signal")
     node.receive("signal")
-    assert node.take_owed_s() == pytest.approx(0.008)
-    assert node.take_owed_s() == 0.0
+    assert node.take_delay_s() == pytest.approx(0.008)
+    assert node.take_delay_s() == 0.0

@@ -98,11 +98,11 @@ def test_known_answers(analysed):
 @pytest.mark.parametrize(
     ("time", "required", "passes"),
     [
-        ("held", "for 1 s v", False),  # v ends, and what was owed at its last instant fails
+        ("held", "for 1 s v", False),  # v ends, and what was required at its last instant fails
         ("held", "for 1 s w", True),
         ("held", "within 1 s not v", True),
         ("sampled every 100 ms", "for 1 s v", False),
-        ("sampled every 1 s", "for 900 ms v", True),  # nothing is owed between positions
+        ("sampled every 1 s", "for 900 ms v", True),  # nothing is required between positions
         ("sampled", "for 1 s v", True),  # so much time may lie between two samples
     ],
 )

@@ -36,7 +36,7 @@ def test_dot(spec, capsys):
 
 
 def test_json(spec, tmp_path):
-    """Locations with what is owed and the instants that matter, edges with their conditions."""
+    """Locations with what is required and the instants that matter, edges with their conditions."""
     path = tmp_path / "door.json"
     assert main(["export", spec, "--to", "json", "-o", str(path)]) == 0
     first, second = json.loads(path.read_text())

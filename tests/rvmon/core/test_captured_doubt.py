@@ -10,7 +10,7 @@ from rvmon.trace.sample import Sample
 
 HEAD = "spec s\ntime {}\nsignal q : bool\nsignal x : real\nevent e\nevent g(k: int)\n"
 CASES = {
-    "the trigger is what is owed": (
+    "the trigger is what is required": (
         "sampled",
         "whenever e\n  then always e\n  let v = x",
         [(-3, {"e": True}), (0, {"e": None})],

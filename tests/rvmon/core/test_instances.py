@@ -15,7 +15,7 @@ from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
-OWED = {
+REQUIRED = {
     "another event with the key": "upon order\n  then within 3 s done.id == k",
     "a signal": "upon order\n  then within 3 s ok",
     "what was before": "upon order and once[1 s, 3 s] ok\n  then for 2 s not done",
@@ -55,11 +55,11 @@ def samples(rng, count):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
-@pytest.mark.parametrize("name", OWED)
+@pytest.mark.parametrize("name", REQUIRED)
 @pytest.mark.parametrize("form", ["c", "c rows", "c+interrupt"])
 def test_what_is_over_changes_no_record(name, time, form):
     """With many keys that come and go and come again, every record is that of the law."""
-    text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(OWED[name], time))
+    text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(REQUIRED[name], time))
     checked = rvmon.loads(text).checked
     actions = tuple(samples(random.Random(f"{name}/{time}/{form}"), 14))
     assert disagreements(Case(checked, actions, None), Maker(form)) == []
@@ -72,7 +72,7 @@ def test_what_is_over_changes_no_record(name, time, form):
 )
 def test_what_is_over_takes_no_room(name, time):
     """However many keys go by, what is kept of those that are over is bounded."""
-    monitor = rvmon.loads(text_of(OWED[name], time)).monitor(keep=5)
+    monitor = rvmon.loads(text_of(REQUIRED[name], time)).monitor(keep=5)
     sizes = []
     for number in range(30_000):
         monitor.step(number, {"order": {"id": number}, "ok": number % 7 != 0})
@@ -85,7 +85,7 @@ def test_what_is_over_takes_no_room(name, time):
 
 def test_a_value_that_comes_again_goes_on_being_numbered():
     """A key that was let go of is ranked as it was, before those that came later."""
-    monitor = rvmon.loads(text_of(OWED["a signal"])).monitor()
+    monitor = rvmon.loads(text_of(REQUIRED["a signal"])).monitor()
     for t, key in enumerate([7, 8, 9]):
         monitor.step(10 * t, {"order": {"id": key}})
     monitor.step(100, {"order": ({"id": 9}, {"id": 7})})
@@ -95,7 +95,7 @@ def test_a_value_that_comes_again_goes_on_being_numbered():
 
 def test_a_reason_says_from_when_on_it_knows():
     """What an instance saw before it was let go of is not told of as if it had not been."""
-    monitor = rvmon.loads(text_of(OWED["another event with the key"])).monitor()
+    monitor = rvmon.loads(text_of(REQUIRED["another event with the key"])).monitor()
     monitor.step(-5, {"ok": True})
     monitor.step(0, {"order": {"id": 7}})
     monitor.step(1, {"done": {"id": 7}})
@@ -108,7 +108,7 @@ def test_a_reason_says_from_when_on_it_knows():
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
 def test_a_reason_never_denies_what_was(time):
     """Nothing had "never" been true that was, nor since an instant behind which it was."""
-    spec, told = rvmon.loads(text_of(OWED["another event with the key"], time)), Counter()
+    spec, told = rvmon.loads(text_of(REQUIRED["another event with the key"], time)), Counter()
     for seed in range(100):
         rng, t, done = random.Random(seed), 0, []
         monitor = spec.monitor()
@@ -160,7 +160,7 @@ def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lowe
 
 
 def test_an_instance_looks_back_to_the_first_position_of_the_run():
-    """Where nothing started yet: what is owed speaks of the position before its event."""
+    """Where nothing started yet: what is required speaks of the position before its event."""
     spec = rvmon.loads(
         "time sampled\nevent g(k : int)\n"
         "requirement R\n  upon g\n  then (previous (next true))\n  for each n in g.k\n"

@@ -38,7 +38,7 @@ def required(text):
 
 
 def truths(text, values, end):
-    """Where what is owed is surely true, and surely false."""
+    """Where what is required is surely true, and surely false."""
     checked, core = required(text)
     samples = [Sample(t, one) for t, one in values.items()]
     (found,) = known_truths(checked, [core], samples, end, None, {})

@@ -48,7 +48,7 @@ def test_what_only_a_failure_shows_has_no_goal():
 
 
 def test_parts_that_decide():
-    """A part of a trigger, and of what is owed, in instants as in verdicts."""
+    """A part of a trigger, and of what is required, in instants as in verdicts."""
     text = """signal a, b, c : bool
 requirement R
   upon a and c

@@ -191,7 +191,7 @@ def test_states_that_differ_only_where_something_is_unknown_are_one():
 
 LIMITS = ("x > 1", "x > 2", "x > 3")
 VALUES = (0.5, 1.5, 2.5, 3.5)
-OWED = dict(zip("pqr", LIMITS, strict=True))
+REQUIRED = dict(zip("pqr", LIMITS, strict=True))
 
 
 @settings(max_examples=40, deadline=None)
@@ -204,7 +204,7 @@ def test_letters_that_cannot_be(data):
             return data.draw(st.integers(a, b))
 
     required = format_formula(random_ltl(Drawn(), data.draw(st.integers(1, 3))))
-    text = re.sub(r"\b[pqr]\b", lambda found: f"({OWED[found[0]]})", required)
+    text = re.sub(r"\b[pqr]\b", lambda found: f"({REQUIRED[found[0]]})", required)
     when = data.draw(st.sampled_from(("start", *LIMITS)))
     spec = loads(
         f"spec s\ntime sampled\nsignal x : real\nrequirement R\n  upon {when} then {text}\n"
@@ -248,7 +248,7 @@ def test_what_cannot_be_stands_in_no_label():
 
 
 def test_a_trigger_that_cannot_be():
-    """What would be owed is written for words that begin with anything."""
+    """What would be required is written for words that begin with anything."""
     spec = loads(
         "spec s\ntime sampled\nsignal x : real\nrequirement R\n"
         "  upon x > 3 and x < 2 then eventually x > 1\n"

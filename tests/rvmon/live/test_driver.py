@@ -123,7 +123,7 @@ def test_what_finds_no_room_leaves_no_verdict_that_needs_it():
 
 @pytest.mark.parametrize("kind", ["real", "real ignore NaN"])
 def test_a_first_value_that_is_lost_is_not_excused(kind):
-    """Before a signal is born nothing is owed; nobody knows that it was not."""
+    """Before a signal is born nothing is required; nobody knows that it was not."""
     door = Door(DOOR.replace("real", kind), room=1)
     door.driver.offer({"knock": False})
     assert not door.driver.offer({"speed": 5.0})
@@ -308,7 +308,7 @@ def test_a_clock_that_goes_back_begins_a_new_run():
 
 
 def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
-    """A machine that has no battery learns what time it is: nothing was owed all that time."""
+    """A machine that has no battery learns what time it is: nothing was required all that time."""
     door = Door(DOOR.replace("always speed", "always within 1 s speed"))
     door.driver.offer({"speed": 3.0, "knock": True})
     with caplog.at_level(logging.WARNING, "rvmon.live.input"):

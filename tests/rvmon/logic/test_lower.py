@@ -97,7 +97,7 @@ def test_horizon(formula, ticks):
 
 
 def test_a_trigger_that_speaks_of_the_future_is_refused():
-    """Nothing is known at once of what lies ahead; in what is owed it may stand anywhere."""
+    """Nothing is known at once of what lies ahead; in what is required it may stand anywhere."""
     with pytest.raises(UnmonitorableError):
         required(p, upon=once(eventually(p, 0, 2), 0, 3))
     assert isinstance(required(once(eventually(p, 0, 2), 0, 3), upon=e), Since)

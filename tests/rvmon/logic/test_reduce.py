@@ -87,7 +87,7 @@ def test_reduction_is_idempotent(formula):
 @settings(max_examples=60, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_what_people_are_told_stays(formula):
-    """No text of what is owed gets lost, and none is told of another location."""
+    """No text of what is required gets lost, and none is told of another location."""
     try:
         original, told = built(formula)
     except DoesNotCloseError:

@@ -82,7 +82,7 @@ CASES = {
         requirement(two(q, "and", eventually(r, 0, 5)), whenever=p),
         timeline(p="101111", q="111011", r="000000"),
     ),
-    "an episode of a known trigger that began before what is owed was born": (
+    "an episode of a known trigger that began before what is required was born": (
         requirement(eventually(compared(y, ">", 3)), whenever=p, at_end=EndPolicy.FAIL),
         timeline(p="111", y=".01"),
     ),

@@ -164,7 +164,7 @@ def test_captured_values_are_recorded():
 
 
 def test_what_is_owed_is_told_once():
-    """What is owed at each position, and owed now, stands once, with its deadline."""
+    """What is required at each position, and required now, stands once, with its deadline."""
     text = "spec s\nsignal p, q : bool\nrequirement R1\n  whenever p\n  then within 5 s q\n"
     monitor = rvmon.loads(text).monitor()
     monitor.step(0, {"p": False, "q": False})
@@ -252,7 +252,7 @@ def test_a_name_without_a_source_is_said_to_have_none():
 
 
 def test_what_is_owed_in_a_loop_is_that_of_now():
-    """Positions at which the same is owed again are passed over: the window moves all the same."""
+    """Positions at which the same is required again are passed over: the window moves on."""
     text = "requirement R\nupon start\nthen eventually always[1 ns, 1 ns] start"
     monitor = rvmon.loads(f"spec s\ntime sampled every 1 ns\n{text}\n").monitor()
     monitor.step_ns(0, {})

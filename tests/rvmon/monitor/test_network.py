@@ -49,7 +49,7 @@ def test_the_compiler_picks_it_where_no_automaton_closes(requirement, judge):
 
 
 def test_the_future_below_the_past():
-    """What was owed a while ago is judged as soon as that is settled."""
+    """What was required a while ago is judged as soon as that is settled."""
     spec = spec_of("upon e then immediately once[0 s, 2 s] (a and within 3 s b)")
     samples = [(0, {"a": True, "b": False}), (1, {"a": False}), (2, {"e": True}), (9, {})]
     # The last tick with `a` is just before 1 s; `b` was due within 3 s of it.

@@ -55,7 +55,7 @@ def test_what_is_held_to_the_end_is_measured_to_the_end():
 
 
 def test_a_stream_has_a_figure_per_sample():
-    """What is owed is measured at each instant of a sample."""
+    """What is required is measured at each instant of a sample."""
     samples = [(0, {"x": 3}), (1, {"x": 12}), (2, {"x": 5})]
     stream = margins("always x < 10 cm", samples).streams["R1"]
     assert [(t, found.kept) for t, found in stream] == [

@@ -266,7 +266,7 @@ requirement U1
 
 
 def test_void_episodes_are_bounded_too():
-    """Episodes that were over before all that is owed had a value."""
+    """Episodes that were over before all that is required had a value."""
     spec = rvmon.loads("""
 spec void
 signal p : bool

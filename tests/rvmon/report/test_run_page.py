@@ -144,9 +144,9 @@ def test_a_run_in_which_nothing_happened_has_a_page():
 
 
 def test_each_part_of_an_attempt_has_a_row():
-    """Trigger and owed formulas, when they were true and where nobody knows, open where it failed.
+    """Trigger and consequent, when they were true and where nobody knows, open where it failed.
 
-    The door stays closed: `not closed` is never true; what is owed is not known near the end.
+    The door stays closed: `not closed` is never true; what is required is not known near the end.
     """
     page = run_page(content())
     section = re.search(r'<section id="D1-1".*?</section>', page, re.DOTALL)[0]

@@ -173,7 +173,7 @@ def test_order_of_the_report(judge: Any) -> None:
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
-        # From 1 to 2 q is owed and given; at 3 the episode ends.
+        # From 1 to 2 q is required and given; at 3 the episode ends.
         ({"p": "01.0", "q": "01"}, ["1 P 3"]),
         ({"p": "01.0", "q": "010"}, ["1 F 2"]),
         ({"p": "01.0", "q": "01.0"}, ["1 P 3"]),
@@ -181,7 +181,7 @@ def test_order_of_the_report(judge: Any) -> None:
         ({"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
         ({"p": "01110", "q": "01"}, ["1 P 4"]),
         ({"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
-        # An unknown trigger starts an episode and ends none; q is owed there if it held.
+        # An unknown trigger starts an episode and ends none; q is required there if it held.
         ({"p": "1u10", "q": "1"}, ["0 P 3"]),
         ({"p": "1u10", "q": "101"}, ["0 I"]),
         ({"p": "1u10", "q": "100"}, ["0 F 2"]),
@@ -189,20 +189,20 @@ def test_order_of_the_report(judge: Any) -> None:
         ({"p": "0u1", "q": "0"}, ["1 F 2"]),
         ({"p": "u1.0", "q": "1"}, ["1 P 3"]),
         ({"p": "1.u", "q": "1"}, ["0 P 2 held"]),
-        # What is owed but not known leaves the episode open, unless something else fails.
+        # What is required but not known leaves the episode open, unless something else fails.
         ({"p": "1..0", "q": "1u1"}, ["0 I"]),
         ({"p": "1..0", "q": "1u0"}, ["0 F 2"]),
         # Running at the end: held to it.
         ({"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
         ({"p": "1", "q": "1u1", "end": 4}, ["0 I"]),
-        # A failed episode goes on where what is owed has not failed at once.
+        # A failed episode goes on where what is required has not failed at once.
         ({"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
         ({"p": "1.1.1", "q": "01"}, ["0 F 0", "1 P 4 held"]),
         ({"p": "1....0", "q": "0101"}, ["0 F 0", "1 F 2", "3 P 5"]),
     ],
 )
 def test_whenever(judge: Any, rows: Any, expected: list[str]) -> None:
-    """`whenever p then q`: one attempt per episode of p, q owed throughout."""
+    """`whenever p then q`: one attempt per episode of p, q required throughout."""
     assert judge(requirement(q, whenever=p), **rows) == expected
 
 
@@ -229,10 +229,10 @@ def test_whenever_sampled(judge: Any) -> None:
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
-        # Owed at 0 only; the episode is over at 1, q comes in time.
+        # Required at 0 only; the episode is over at 1, q comes in time.
         ({"p": "10", "q": "0..1"}, ["0 P 3"]),
         ({"p": "10", "q": "0...1"}, ["0 F 4"]),
-        # Owed at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
+        # Required at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
         ({"p": "1..0", "q": "0..1"}, ["0 P 3"]),
         ({"p": "1..0", "q": "0...1"}, ["0 F 4"]),
         # A second episode while the first still owes.
@@ -244,7 +244,7 @@ def test_whenever_sampled(judge: Any) -> None:
     ],
 )
 def test_whenever_with_deadlines(judge: Any, rows: Any, expected: list[str]) -> None:
-    """`whenever p then F[0,3] q` is settled when p has ended and nothing is owed."""
+    """`whenever p then F[0,3] q` is settled when p has ended and nothing is required."""
     assert judge(requirement(eventually(q, 0, 3), whenever=p), **rows) == expected
 
 

@@ -84,10 +84,10 @@ def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: st
     ("told", "expected"),
     [
         ({"p": "1", "q": "0..1"}, "0 P 3"),
-        # The left operand is owed from the start on, also before the window opens.
+        # The left operand is required from the start on, also before the window opens.
         ({"p": "01", "q": "0..1"}, "0 F 0"),
         ({"p": "10", "q": "0.1"}, "0 F 1"),
-        # It is not owed where the right one is met.
+        # It is not required where the right one is met.
         ({"p": "1.0", "q": "0.1"}, "0 P 2"),
         # Met before the window is not met.
         ({"p": "1", "q": "010", "end": 9}, "0 F 5"),
@@ -133,7 +133,7 @@ def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) ->
         (0, {"p": "0..1", "q": "1..0"}, "0 F 3"),
         (0, {"p": "0", "q": "1.0"}, "0 F 2"),
         (0, {"p": "0", "q": "1...0"}, "0 P 4"),
-        # Before the window opens, q is not owed, and p releases it for good.
+        # Before the window opens, q is not required, and p releases it for good.
         (2, {"p": "10", "q": "0"}, "0 P 0"),
         (2, {"p": "0", "q": "0.1", "end": 4}, "0 P 4"),
         (2, {"p": "0", "q": "0..1"}, "0 F 2"),

@@ -59,7 +59,7 @@ def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected
 @pytest.mark.parametrize(
     ("low", "high", "p_row", "q_row", "expected"),
     [
-        # q at 0 only, p from 1 on: the left operand is owed behind q, up to now.
+        # q at 0 only, p from 1 on: the left operand is required behind q, up to now.
         (0, None, "01", "10", "P"),
         (0, 2, "01", "10", "F"),
         (0, 3, "01", "10", "P"),
@@ -68,7 +68,7 @@ def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected
         (0, None, "010", "10", "F"),
         # q now needs no p.
         (0, None, "0", "1", "P"),
-        # q at 1 and 2: with a = 2 only 1 counts, and p is owed at 2 and 3.
+        # q at 1 and 2: with a = 2 only 1 counts, and p is required at 2 and 3.
         (2, None, "0.1", "01.0", "P"),
         (2, None, "0..1", "01.0", "F"),
         (0, None, "0.u1", "010", "I"),

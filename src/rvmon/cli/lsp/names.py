@@ -54,12 +54,12 @@ _LINES = {
     (
         "upon",
         "then",
-    ): "`upon θ then ψ`: ψ is owed each time θ becomes true; if θ is an event, each time it occurs",
+    ): "`upon θ then ψ`: ψ is required each time θ becomes true; of an event: each time it occurs",
     ("now",): "`now` is the time since the first instant, beside a duration",
     ("if", "else"): "`if φ then x else y` is a number, or a formula",
-    ("whenever",): "`whenever θ then ψ`: ψ is owed at every instant at which θ holds",
+    ("whenever",): "`whenever θ then ψ`: ψ is required at every instant at which θ holds",
     ("monitor as response",): "`monitor as response within D`: derived from the requirement's "
-    "`property E<> (…)`: upon its `input` part, its `output` part is owed within D",
+    "`property E<> (…)`: upon its `input` part, its `output` part is required within D",
     ("monitor as written",): "`monitor as written`: the requirement's `property` itself, on every "
     "run",
     ("monitor as cover",): "`monitor as cover`: the requirement's `property E<> …` is a goal that "

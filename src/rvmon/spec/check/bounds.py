@@ -28,7 +28,7 @@ _BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UN
 
 @dataclass(frozen=True, slots=True)
 class Bounded:
-    """A window from now on whose end comes from data, where what it bounds is owed at the trigger.
+    """A window from now on whose end comes from data; what it bounds is required at the trigger.
 
     Attributes:
         seconds: how long it is.
@@ -42,7 +42,7 @@ class Bounded:
         """That the window is over."""
         trigger = self.scope.trigger
         if trigger is None:
-            raise AssertionError("what is owed at the trigger has one")
+            raise AssertionError("what is required at the trigger has one")
         trigger.begun(span)
         return passed(TRIGGERED, Captured(trigger.number(word, self.seconds)), True, span)
 

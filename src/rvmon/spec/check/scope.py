@@ -167,7 +167,7 @@ class Closure:
 
 @dataclass(frozen=True, slots=True)
 class AtTrigger:
-    """What is captured at the trigger besides `let`, as far as what is owed asks for it."""
+    """What is captured at the trigger besides `let`, as far as what is required asks for it."""
 
     captures: list[Capture] = field(default_factory=list)
 
@@ -193,8 +193,8 @@ class Scope:
 
     Attributes:
         names: what they stand for.
-        trigger: in what is owed, what is captured with it.
-        at_once: whether it is owed at the trigger, and not at some later instant.
+        trigger: in what is required, what is captured with it.
+        at_once: whether it is required at the trigger, and not at some later instant.
     """
 
     names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)

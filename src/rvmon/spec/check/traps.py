@@ -38,7 +38,7 @@ _FIRST = "at the first instant"
 def traps_at_trigger(
     trigger: Formula, consequent: Formula, time: TimeModel, span: Span
 ) -> Iterator[Diagnostic]:
-    """What is owed at the trigger, and cannot hold there.
+    """What is required at the trigger, and cannot hold there.
 
     Args:
         trigger: without what a scope adds.
@@ -55,7 +55,7 @@ def traps_at_trigger(
 def traps_at_start(
     mode: Mode, trigger: Formula, consequent: Formula, span: Span
 ) -> Iterator[Diagnostic]:
-    """What is owed from the start of the run on, and cannot hold there.
+    """What is required from the start of the run on, and cannot hold there.
 
     Args:
         mode: of the requirement.
@@ -98,7 +98,7 @@ def capture_traps(
 
 
 def _required_at_once(formula: Formula) -> Iterator[Formula]:
-    """The parts of what is owed that have to hold at the instant at which it is owed."""
+    """The parts of what is required that have to hold at the instant at which it is required."""
     match formula:
         case Binary(op=BinaryOp.AND, left=left, right=right):
             yield from _required_at_once(left)
@@ -112,7 +112,7 @@ def _required_at_once(formula: Formula) -> Iterator[Formula]:
 
 
 def _at_trigger(part: Formula, facts: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
-    """A part of what is owed that is false by what the trigger says."""
+    """A part of what is required that is false by what the trigger says."""
     if isinstance(part, Binary) and part.op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
         left, right = truth_at(part.left, facts), truth_at(part.right, facts)
         late = part.interval is not None and part.interval.low > 0
@@ -142,7 +142,7 @@ def _from_later_on(part: Binary, time: TimeModel) -> str:
 
 
 def _later(part: Formula) -> str:
-    """How what looks back is owed only where there is something to look at."""
+    """How what looks back is required only where there is something to look at."""
     due = max(map(_reach, subformulas(part)))
     if not due:
         return f"leave out the first instant: `start or {_operand(part)}`"

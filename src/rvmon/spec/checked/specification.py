@@ -125,7 +125,7 @@ class Requirement:
         id: unique in the spec.
         mode: `upon` or `whenever`.
         trigger: present and past only; `BoundAtom(END)` only alone.
-        consequent: what is owed.
+        consequent: what is required.
         text: the requirement in words.
         at_end: policy for undecided attempts.
         pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.

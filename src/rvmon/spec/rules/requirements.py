@@ -25,7 +25,7 @@ no_value = Breach(
 
 
 def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic:
-    """What is owed contradicts its trigger."""
+    """What is required contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
         AT_TRIGGER,
@@ -37,7 +37,7 @@ def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic
 
 
 def false_at_first(span: Span, when: str, fix: str) -> Diagnostic:
-    """What is owed from the start on cannot hold then; `when` says at which instant."""
+    """What is required from the start on cannot hold then; `when` says at which instant."""
     text = short(span.text)
     return finding(
         AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, fix=fix

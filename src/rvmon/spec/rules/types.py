@@ -119,7 +119,7 @@ two_windows = Breach(
 since_no_trigger = Breach(
     WRONG_ARGUMENTS,
     "`{}` is counted from a trigger, and there is none here",
-    "it stands in what is owed: `upon e then always count(f since trigger) <= 3`",
+    "it stands in what is required: `upon e then always count(f since trigger) <= 3`",
 )
 
 

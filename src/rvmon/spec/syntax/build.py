@@ -159,7 +159,7 @@ class Builder(ExpressionBuilder):
         return self._triggered(Mode.WHENEVER, children)
 
     def _triggered(self, mode: Mode, children: Children) -> tuple[Triggered, Children]:
-        """A trigger with what is owed, and the clauses between the two."""
+        """A trigger with what is required, and the clauses between the two."""
         _, trigger, *clauses, _, consequent = children
         return Triggered(mode, trigger, consequent), clauses
 

@@ -144,7 +144,7 @@ def _clause_fix(found: str, before: str) -> str:
 
 
 def _let_fix(found: str, before: str) -> str:
-    """What fixes a `let` before what is owed."""
+    """What fixes a `let` before what is required."""
     behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
     if found == "let" or behind:
         return "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"

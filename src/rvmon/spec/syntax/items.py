@@ -216,7 +216,7 @@ class ScopeClause:
     Attributes:
         opening: what opens the scope; `None`: it is open from the start.
         closing: what closes the scope; `None`: nothing does.
-        must_close: whether nothing is owed unless the scope is closed.
+        must_close: whether nothing is required unless the scope is closed.
         span: of the clause.
     """
 

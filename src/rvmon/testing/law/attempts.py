@@ -107,9 +107,9 @@ class Start:
     Attributes:
         view: the requirement on the trace as this instance of it sees it.
         position: of the trigger; of an attempt in doubt, the first at which there may be one.
-        owes: the positions at which something is owed; of a `whenever`, of its episode.
+        owes: the positions at which something is required; of a `whenever`, of its episode.
         captured: values of `let` and `for each`.
-        blurred: the position from which on it is not known which values of `let` are owed.
+        blurred: the position from which on it is not known which values of `let` are required.
         stop: the first position that is none of its own, where it is over; `None` if none is known.
         sure: the first of its positions at which the trigger is TRUE; `None`: it is in doubt.
     """

@@ -109,7 +109,7 @@ class Truths:
         return self._known
 
     def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
-        """The truth of what is owed, at a known position: never UNBORN.
+        """The truth of what is required, at a known position: never UNBORN.
 
         Args:
             formula: any.

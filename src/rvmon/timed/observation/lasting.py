@@ -1,6 +1,6 @@
 """Attempts that stay open for ever, on runs on which time passes without end.
 
-Where all that is owed without deadline is that something happens, such a run fails the requirement
+Where all that is required without deadline is that something happens, such a run fails it
 though none of its beginnings does. The product of network and monitor is gone through with zones
 that are blurred up to bisimulation, and one more clock, which a move sets to 0 where it finds that
 a unit of time has passed: time passes without end on a loop if such a move is on it.

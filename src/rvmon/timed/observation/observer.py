@@ -89,9 +89,9 @@ class Observed:
 
     Args:
         network: with a unit of time.
-        obligation: trigger and what is owed.
+        obligation: trigger and what is required.
         pulse: whether the trigger starts an attempt wherever it holds.
-        automaton: of what is owed.
+        automaton: of what is required.
         labelling: values of the propositions.
         ticks: whether there is one more clock.
 
@@ -133,7 +133,7 @@ class Observed:
 
     @property
     def reads_events(self) -> bool:
-        """Whether what is owed speaks of events, which actions alone have."""
+        """Whether what is required speaks of events, which actions alone have."""
         propositions = self._automaton.alphabet.propositions
         return any(map(speaks_of_events, propositions))
 

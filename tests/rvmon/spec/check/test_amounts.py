@@ -14,7 +14,7 @@ HEAD = (
 
 
 def required(text):
-    """What is owed, as it is printed."""
+    """What is required, as it is printed."""
     spec = rvmon.loads(f"{HEAD}({text})\n  let v = x\n")
     return format_formula(spec.checked.requirements["R"].consequent)
 

@@ -44,7 +44,7 @@ NOWHERE = Span(Source("", ""), 0, 0)
     ],
 )
 def test_false_at_its_own_trigger(body, codes):
-    """What the trigger says makes what is owed false, but for what ends it at once."""
+    """What the trigger says makes what is required false, but for what ends it at once."""
     assert codes(f"requirement R {body}\n").count("RV047") == 1
 
 
@@ -66,7 +66,7 @@ def test_false_at_its_own_trigger(body, codes):
     ],
 )
 def test_not_false_at_its_trigger(body, codes):
-    """The trigger leaves it open, or it is owed later."""
+    """The trigger leaves it open, or it is required later."""
     assert "RV047" not in codes(f"requirement R {body}\n")
 
 
@@ -115,7 +115,7 @@ def test_the_position_before_the_first(codes):
     ],
 )
 def test_not_false_at_the_first_instant(formula, codes):
-    """It is true there, depends on the input, or is not owed there."""
+    """It is true there, depends on the input, or is not required there."""
     assert "RV048" not in codes(f"requirement R {formula}\n")
 
 
@@ -167,7 +167,7 @@ def test_the_fix_is_of_the_language(time, body, codes):
 
 
 def required_first():
-    """Random formulas of the past, owed at each instant from the first on."""
+    """Random formulas of the past, required at each instant from the first on."""
     rng = random.Random(5)
     for _ in range(300):
         spec = random_spec(rng, Profile(future=False, captures=False, for_each=False))

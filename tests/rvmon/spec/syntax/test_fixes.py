@@ -85,7 +85,7 @@ def test_items(item, fix):
 
 
 def test_a_trigger_and_what_is_owed_are_both_looked_at():
-    """What looks ahead in a trigger is found beside errors in what is owed, and in clauses."""
+    """What looks ahead in a trigger is found beside errors in what is required, and in clauses."""
     with pytest.raises(SpecError) as caught:
         compile_text(
             HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"

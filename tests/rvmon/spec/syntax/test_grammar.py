@@ -168,7 +168,7 @@ def test_sets_and_choices(text, same):
 
 
 def test_clauses_between_trigger_and_consequent():
-    """`let` and `for each` stand before `then` as well as behind what is owed."""
+    """`let` and `for each` stand before `then` as well as behind what is required."""
     head = "spec s\nsignal x : real\nevent e(k: int), f\n"
     texts = (
         "upon e for each n in e.k let v = x then within 1 s x > v + n",
