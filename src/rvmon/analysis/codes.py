@@ -8,20 +8,21 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 
-from rvmon.analysis.findings import RULES as ANALYSIS
+from rvmon.analysis import findings
 from rvmon.diagnostics import Severity
 from rvmon.errors import UnknownNameError
 from rvmon.spec.rules import Rule, names, properties, requirements, syntax, time, types
 from rvmon.timed.model.rules import RULES as MODELS
 
-_FAMILIES = (syntax, names, types, time, requirements, properties)
+_FAMILIES = (syntax, names, types, time, requirements, properties, findings)
 _WARNINGS = ("TA010",)
 
 
 @cache
 def every_rule() -> Mapping[str, Rule]:
     """Every rule by its code, in order of codes."""
-    rules = [*(rule for family in _FAMILIES for rule in family.RULES), *ANALYSIS]
+    defined = (vars(family).values() for family in _FAMILIES)
+    rules = [rule for family in defined for rule in family if isinstance(rule, Rule)]
     rules += [
         Rule(code, name, Severity.WARNING if code in _WARNINGS else Severity.ERROR)
         for code, name in MODELS.items()

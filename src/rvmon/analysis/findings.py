@@ -228,13 +228,7 @@ def _head(requirement: Requirement) -> Span | None:
 
 
 NEVER_TRIGGERS = Rule("RV070", "never-triggers", Severity.WARNING)
-
 NEVER_FAILS = Rule("RV071", "never-fails", Severity.WARNING)
-
 NEVER_PASSES = Rule("RV072", "never-passes", Severity.WARNING)
-
 CONFLICT = Rule("RV073", "conflict", Severity.WARNING)
-
 IMPLIED = Rule("RV074", "implied", Severity.WARNING)
-
-RULES = (NEVER_TRIGGERS, NEVER_FAILS, NEVER_PASSES, CONFLICT, IMPLIED)

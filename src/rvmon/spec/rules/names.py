@@ -58,27 +58,11 @@ reserved = Breach(
     "choose another name or quote it: `` `{}` ``",
 )
 DOUBLE_NAME = Rule("RV011", "double-name", Severity.ERROR)
-
 UNKNOWN_NAME = Rule("RV012", "unknown-signal", Severity.ERROR)
-
 UNKNOWN_LABEL = Rule("RV013", "unknown-label", Severity.ERROR)
-
 UNKNOWN_FUNCTION = Rule("RV014", "unknown-function", Severity.ERROR)
-
 RECURSIVE = Rule("RV015", "recursive-definition", Severity.ERROR)
-
 UNUSED = Rule("RV017", "unused-name", Severity.WARNING)
-
-RULES = (
-    IMPORT,
-    RESERVED_NAME,
-    DOUBLE_NAME,
-    UNKNOWN_NAME,
-    UNKNOWN_LABEL,
-    UNKNOWN_FUNCTION,
-    RECURSIVE,
-    UNUSED,
-)
 
 
 double = Breach(DOUBLE_NAME, "{2} `{1}` is declared twice", "rename one of them", "first here")

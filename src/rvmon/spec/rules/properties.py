@@ -13,9 +13,7 @@ MOST_COMBINATIONS = 10_000
 """Crosses with more combinations are refused."""
 
 BIN = Rule("RV060", "bin", Severity.ERROR)
-
 CROSS = Rule("RV061", "cross", Severity.ERROR)
-
 EMPTY_BIN = Rule("RV062", "empty-bin", Severity.WARNING)
 
 
@@ -76,16 +74,10 @@ bad_condition = Breach(
 
 
 PATH_OUTSIDE = Rule("RV050", "path-quantifier", Severity.ERROR)
-
 BARE_TIME = Rule("RV051", "time-without-quantifier", Severity.ERROR)
-
 FOREIGN_NAME = Rule("RV052", "name-of-a-model", Severity.WARNING)
-
 NO_RESPONSE = Rule("RV053", "role-split", Severity.ERROR)
-
 NOT_LINEAR = Rule("RV054", "not-on-one-run", Severity.ERROR)
-
-RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE, NOT_LINEAR, BIN, CROSS, EMPTY_BIN)
 
 
 path_outside = Breach(

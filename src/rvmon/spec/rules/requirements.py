@@ -9,11 +9,8 @@ from rvmon.spec.rules import Breach, Rule, finding, short
 from rvmon.texts import did_you_mean
 
 NO_VALUE = Rule("RV028", "no-value-to-capture", Severity.WARNING)
-
 AT_TRIGGER = Rule("RV047", "false-at-trigger", Severity.WARNING)
-
 AT_FIRST = Rule("RV048", "false-at-first", Severity.WARNING)
-
 ONCE_CAPTURED = Rule("RV049", "captured-once", Severity.WARNING)
 
 
@@ -57,35 +54,13 @@ def captured_once(span: Span, trigger: str) -> Diagnostic:
 
 
 FUTURE_TRIGGER = Rule("RV040", "future-in-trigger", Severity.ERROR)
-
 END_NOT_ALONE = Rule("RV041", "end-not-alone", Severity.ERROR)
-
 ONE_INSTANT = Rule("RV042", "one-instant", Severity.WARNING)
-
 MIXED_TRIGGER = Rule("RV043", "pulse-or-level", Severity.WARNING)
-
 DOUBLE_CLAUSE = Rule("RV044", "double-clause", Severity.ERROR)
-
 UNKNOWN_POLICY = Rule("RV045", "unknown-policy", Severity.ERROR)
-
 NEVER_READ = Rule("RV046", "never-read", Severity.WARNING)
-
 RUN_SHARE = Rule("RV075", "bad-run-share", Severity.ERROR)
-
-RULES = (
-    NO_VALUE,
-    AT_TRIGGER,
-    AT_FIRST,
-    ONCE_CAPTURED,
-    FUTURE_TRIGGER,
-    END_NOT_ALONE,
-    ONE_INSTANT,
-    MIXED_TRIGGER,
-    DOUBLE_CLAUSE,
-    UNKNOWN_POLICY,
-    NEVER_READ,
-    RUN_SHARE,
-)
 
 
 future_trigger = Breach(

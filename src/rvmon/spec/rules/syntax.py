@@ -8,20 +8,12 @@ from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.spec.rules import Breach, Rule, finding, short
 
 SYNTAX = Rule("RV001", "syntax", Severity.ERROR)
-
 REACH = Rule("RV002", "reach-of-operator", Severity.ERROR)
-
 MIXED_CHAIN = Rule("RV003", "mixed-chain", Severity.ERROR)
-
 COMPARISON_CHAIN = Rule("RV004", "comparison-chain", Severity.ERROR)
-
 TOO_DEEP = Rule("RV005", "too-deep", Severity.ERROR)
-
 TOO_MANY = Rule("RV006", "too-many-findings", Severity.ERROR)
-
 EMPTY = Rule("RV007", "empty-file", Severity.WARNING)
-
-RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP, TOO_MANY, EMPTY)
 
 
 def syntax_error(message: str, span: Span, fix: str = "") -> Diagnostic:

@@ -6,25 +6,11 @@ from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.spec.rules import Breach, Rule, finding, short
 
 NO_DURATION = Rule("RV030", "no-duration", Severity.ERROR)
-
 PART_OF_TICK = Rule("RV031", "part-of-a-tick", Severity.ERROR)
-
 EMPTY_INTERVAL = Rule("RV032", "empty-interval", Severity.ERROR)
-
 LATE_WEAK_WINDOW = Rule("RV033", "window-after-now", Severity.ERROR)
-
 STEP_IN_HELD_TIME = Rule("RV034", "step-in-held-time", Severity.ERROR)
-
 NO_WINDOW = Rule("RV035", "operator-without-window", Severity.ERROR)
-
-RULES = (
-    NO_DURATION,
-    PART_OF_TICK,
-    EMPTY_INTERVAL,
-    LATE_WEAK_WINDOW,
-    STEP_IN_HELD_TIME,
-    NO_WINDOW,
-)
 
 
 def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:

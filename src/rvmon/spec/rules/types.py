@@ -6,31 +6,13 @@ from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.spec.rules import Breach, Rule, finding, short
 
 WRONG_TYPE = Rule("RV020", "wrong-type", Severity.ERROR)
-
 WRONG_ARGUMENTS = Rule("RV021", "wrong-arguments", Severity.ERROR)
-
 UNIT_MISMATCH = Rule("RV022", "unit-mismatch", Severity.ERROR)
-
 MISSING_UNIT = Rule("RV023", "missing-unit", Severity.ERROR)
-
 UNKNOWN_UNIT = Rule("RV024", "unknown-unit", Severity.ERROR)
-
 OUT_OF_RANGE = Rule("RV025", "number-out-of-range", Severity.ERROR)
-
 LABELS = Rule("RV026", "label-use", Severity.ERROR)
-
 IGNORED_NAN = Rule("RV027", "nan-of-no-real", Severity.ERROR)
-
-RULES = (
-    WRONG_TYPE,
-    WRONG_ARGUMENTS,
-    UNIT_MISMATCH,
-    MISSING_UNIT,
-    UNKNOWN_UNIT,
-    OUT_OF_RANGE,
-    LABELS,
-    IGNORED_NAN,
-)
 
 
 def ignored_nan(span: Span, kind: str) -> Diagnostic:
