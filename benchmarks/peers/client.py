@@ -37,8 +37,8 @@ class Peer:
             PeerError: the peer raised, or its process ended.
         """
         process = self._running()
-        assert process.stdin is not None  # noqa: S101
-        assert process.stdout is not None  # noqa: S101
+        assert process.stdin is not None
+        assert process.stdout is not None
         try:
             process.stdin.write(json.dumps({"do": do, **request}) + "\n")
             process.stdin.flush()

@@ -91,7 +91,7 @@ class Peer:
         """The attempts; of robustness none, but its array is there."""
         if self._kind == "evaluate":
             return self._spec.evaluate(columns, time="t_ns").attempts
-        assert len(self._spec.robustness(columns, time="t_ns").streams["R1"])  # noqa: S101
+        assert len(self._spec.robustness(columns, time="t_ns").streams["R1"])
         return ()
 
     def _violated(self, attempts: Any) -> list[int | None]:

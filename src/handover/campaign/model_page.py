@@ -115,7 +115,7 @@ def _verifier() -> Callable[[str], Row]:
         some, every = (verify(network, queries[query]).holds for query in (requirement, name))
         claim, query = queries[name], queries[requirement]
         goal = query.formula
-        assert isinstance(goal, PathFormula)  # noqa: S101 - `E<>` with or without a bound
+        assert isinstance(goal, PathFormula), "`E<>` with or without a bound"
         horizon = SIMULATED_UNITS if goal.bound is None else goal.bound
         chance = Chance(PathOp.FINALLY, goal.body, horizon, SIMULATED, sign=None, level=0.0)
         share = sample(network, replace(query, formula=chance), seed=1)
@@ -143,7 +143,7 @@ def edge_tests() -> list[str]:
 @cache
 def _witnesses() -> Witnesses:
     model = closing().model
-    assert model is not None  # noqa: S101 - it has one
+    assert model is not None, "it has one"
     return Witnesses(model, describes=True)
 
 
@@ -153,9 +153,9 @@ def _follower() -> Callable[[str], frozenset[str]]:
 
     def shown(edge: str) -> frozenset[str]:
         witness = witnesses.answer((EDGES, edge))
-        assert isinstance(witness, Witness)  # noqa: S101 - it is one of `edge_tests`
+        assert isinstance(witness, Witness), "it is one of `edge_tests`"
         test = witnesses.test(witness, edge, 1)
-        assert isinstance(test, AbstractTest)  # noqa: S101 - the campaign's model makes no other
+        assert isinstance(test, AbstractTest), "the campaign's model makes no other"
         run = Handover(ROBOT).play(test, Observer(()))
         return frozenset(witnesses.shown(witness, edge, hits_of_states(run)).get(EDGES, ()))
 

@@ -193,7 +193,7 @@ def disturbed(count: int, seed: int) -> tuple[AbstractTest, ...]:
     >>> [len(test.actions) for test in disturbed(3, seed=1)]
     [11, 16, 12]
     """
-    return tuple(_test(random.Random(f"disturbed/{seed}/{i}"), i) for i in range(count))  # noqa: S311
+    return tuple(_test(random.Random(f"disturbed/{seed}/{i}"), i) for i in range(count))  # noqa: S311 - no secret
 
 
 def _test(rng: random.Random, index: int) -> AbstractTest:

@@ -123,7 +123,7 @@ def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
 
 
 def _automaton(subject: Subject) -> Automaton:
-    assert subject.automaton is not None, "only requirements with an automaton come here"  # noqa: S101
+    assert subject.automaton is not None, "only requirements with an automaton come here"
     return subject.automaton
 
 

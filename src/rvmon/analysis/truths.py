@@ -239,7 +239,7 @@ class _Group:
 
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
         """By text of the formula; the recording is over."""
-        assert self._made is not None  # noqa: S101 - it began
+        assert self._made is not None, "it began"
         known = [] if self._run is None else self._run.known(ticks.end)
         found: dict[Core | None, Truth] = {
             core: Truth(ticks.spans(one.true), ticks.others(one.false))

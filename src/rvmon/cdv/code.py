@@ -101,7 +101,7 @@ def _functions(tree: ast.AST, prefix: str) -> Iterator[tuple[str, range]]:
     """Functions and methods by their qualified names; what stands in a function is part of it."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            assert node.end_lineno is not None  # noqa: S101 - parsed from a text
+            assert node.end_lineno is not None, "parsed from a text"
             yield f"{prefix}{node.name}", range(node.lineno + 1, node.end_lineno + 1)
         elif isinstance(node, ast.ClassDef):
             yield from _functions(node, f"{prefix}{node.name}.")

@@ -162,7 +162,7 @@ class _File:
 
     def branches_of(self, arcs: object) -> set[str]:
         """The names of the branches among the ways that were gone."""
-        gone = self._reporter.translate_arcs(arcs)  # type: ignore[arg-type]
+        gone = self._reporter.translate_arcs(arcs)  # type: ignore[arg-type]  # a set of pairs
         return {_arc(*arc) for arc in gone if arc in self.branches}
 
 

@@ -205,7 +205,7 @@ def project(
     """
     does = _by_edge(network, actions)
     timing = run.timing
-    assert timing is not None  # noqa: S101 - the model checker knows the timing of its runs
+    assert timing is not None, "the model checker knows the timing of its runs"
     instants, texts, taken = [0], [""], list[Action | None]([None])
     for number, step in enumerate(run.steps, start=1):
         for index, edge in [] if step.action is None else step.action.edges:

@@ -41,7 +41,7 @@ def spell() -> None:
     """Let signs that the encoding of the output lacks be spelled with those that it has."""
 
     def spelled(error: UnicodeError) -> tuple[str, int]:
-        assert isinstance(error, UnicodeEncodeError)  # noqa: S101 - what is written is text
+        assert isinstance(error, UnicodeEncodeError), "what is written is text"
         signs = error.object[error.start : error.end].translate(_SPELLED)
         return signs.encode("ascii", "replace").decode(), error.end
 

@@ -172,7 +172,7 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
     """
     from rvmon.report.tracks import blamed_names
 
-    assert attempt.blame is not None  # noqa: S101 - only these are asked for
+    assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]
     windows = [one for one in subformulas(requirement.consequent) if isinstance(one, Amount)]
     measured = {name for window in windows for name in names_read(window)}

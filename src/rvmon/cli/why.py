@@ -91,7 +91,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
     attempt = chosen_attempt(report, name, exact)
-    assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
+    assert report.end is not None, "a recording with an attempt has an end"
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
     from rvmon.report.changes import changes_of

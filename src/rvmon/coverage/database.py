@@ -186,7 +186,7 @@ class Database:
                 )
             number = int(items.ids[items.places[group, item]])
             self._tables.executemany(
-                f"INSERT OR IGNORE INTO {table} (item, reason) VALUES (?, ?)",  # noqa: S608
+                f"INSERT OR IGNORE INTO {table} (item, reason) VALUES (?, ?)",  # noqa: S608 - one of ours
                 ((number, reason) for reason in texts),
             )
 

@@ -48,7 +48,7 @@ def run(words: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str
 
     options = {"capture_output": True, "encoding": "utf-8", "errors": "replace", **options}
     if os.name != "posix":
-        return subprocess.run(words, stdin=subprocess.DEVNULL, check=False, **options)  # noqa: S603
+        return subprocess.run(words, stdin=subprocess.DEVNULL, check=False, **options)  # noqa: S603 - words, no shell
     watched, held = os.pipe()
     shell = ["/bin/sh", "-c", _WATCHED, "sh", *words]
     try:

@@ -103,7 +103,7 @@ def as_event(
                 occurs(ended, *args, **kwargs)
                 return result
 
-            return awaited  # type: ignore[return-value]
+            return awaited  # type: ignore[return-value]  # of the same arguments
 
         @functools.wraps(function)
         def called(*args: _P.args, **kwargs: _P.kwargs) -> _R:

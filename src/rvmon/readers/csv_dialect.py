@@ -74,7 +74,7 @@ def opened_as_csv(path: str | Path, stamps: Stamps | None) -> Iterator[tuple[Bin
     Lines keep their numbers. A stamp that two columns give, `sec+nanosec`, becomes a column.
     """
     with opened(path) as (plain, raw):
-        head = plain.peek(_LOOKED_AT)[:_LOOKED_AT]  # type: ignore[attr-defined]
+        head = plain.peek(_LOOKED_AT)[:_LOOKED_AT]  # type: ignore[attr-defined]  # it is buffered
         dialect = dialect_of(head)
         is_made = stamps is not None and ("+" in stamps.column or bool(stamps.pattern))
         if dialect == PLAIN and not is_made:

@@ -146,7 +146,7 @@ class _Head:
     def last(self) -> int:
         """The last instant that is at hand, ticks."""
         part = self._part
-        assert part is not None, "it is there"  # noqa: S101
+        assert part is not None, "it is there"
         return part.t if isinstance(part, Sample) else int(part.times[-1])
 
     def take_before(self, until: int) -> Batch | None:
@@ -175,7 +175,7 @@ class _Head:
     @property
     def _first(self) -> int:
         part = self._part
-        assert part is not None, "it is there"  # noqa: S101
+        assert part is not None, "it is there"
         return part.t if isinstance(part, Sample) else int(part.times[0])
 
 

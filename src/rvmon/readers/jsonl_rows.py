@@ -266,7 +266,7 @@ def _payload(
 def _scalar(value: object, kind: Kind, name: str) -> Scalar:
     made = as_declared(value, kind)
     if fits(made, kind):
-        return made  # type: ignore[no-any-return]
+        return made  # type: ignore[no-any-return]  # it fits
     raise TraceError(f"field `{name}`: `{_written(value)}` is not {DESCRIPTION[kind]}")
 
 

@@ -117,7 +117,7 @@ def created(path: Path) -> Iterator[BinaryIO]:
             from gzip import GzipFile
 
             with GzipFile(fileobj=raw, mode="wb") as file:
-                yield file  # type: ignore[misc]
+                yield file  # type: ignore[misc]  # it can be written to
         else:
             with _zstd().ZstdFile(raw, mode="wb") as file:
                 yield file

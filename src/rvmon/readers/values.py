@@ -58,7 +58,7 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
         if made is None:
             return number
         if fits(made, kind):
-            return made  # type: ignore[no-any-return]
+            return made  # type: ignore[no-any-return]  # it fits
     raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
 
 

@@ -50,7 +50,7 @@ class Course(Sequence[tuple[int, Scalar]]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and tuple(self) == tuple(other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None  # type: ignore[assignment]  # as of a list: it equals other sequences
 
     def shifted(self, ticks: int) -> Course:
         """The same so much later."""

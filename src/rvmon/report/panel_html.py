@@ -32,7 +32,7 @@ def parts_timeline(panel: Panel, report: Report) -> ET.Element:
         panel: with an attempt and part_truths.
         report: of the run.
     """
-    assert panel.attempt is not None  # noqa: S101 - as only these have part_truths
+    assert panel.attempt is not None, "as only these have part_truths"
     end = end_of(report)
     rows: list[Child] = []
     for part, part_truths in groupby(panel.part_truths, key=lambda part_truth: part_truth.part):
@@ -127,7 +127,7 @@ def spec_lines(requirement: Requirement, blame: Blame | None) -> SpecLines | Non
 
 def _lines(requirement: Requirement, blame: Blame | None) -> Iterator[tuple[int, str, str, str]]:
     span = requirement.span
-    assert span is not None  # noqa: S101 - it was asked for
+    assert span is not None, "it was asked for"
     text = span.source.text
     position = text.rfind("\n", 0, span.start) + 1
     last = span.start + len(text[span.start : span.end].rstrip())

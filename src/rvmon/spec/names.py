@@ -114,7 +114,7 @@ def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
     once = resolver.once
     return ResolvedSpec(
         tuple(file.source for file in parsed),
-        *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]
+        *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]  # each is of its own class
         resolver.declared,
         resolver.requirements,
         resolver.properties,

@@ -113,7 +113,7 @@ def _record(followed: Followed, origin: int) -> Attempt | None:
     requirement = start.view.requirement
     triggered = start.triggered
     end = start.word.end
-    assert end is not None, "a word with positions has an end"  # noqa: S101
+    assert end is not None, "a word with positions has an end"
     instant: int | None
     if followed.decided is not None:
         instant, truth = followed.decided

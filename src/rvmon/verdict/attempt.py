@@ -188,7 +188,7 @@ class LazyAttempts(Sequence[Attempt]):
             return NotImplemented
         return tuple(self) == tuple(other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None  # type: ignore[assignment]  # as of a list: it equals other sequences
 
     def __repr__(self) -> str:
         first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])

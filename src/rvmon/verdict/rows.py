@@ -143,5 +143,5 @@ def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
     except ImportError:
         raise not_installed("this table", "polars") from None
     frame = polars.from_arrow(table)
-    assert isinstance(frame, polars.DataFrame)  # noqa: S101 - as a table is no column
+    assert isinstance(frame, polars.DataFrame), "as a table is no column"
     return frame

@@ -89,7 +89,7 @@ def _parquet(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:
 
     sink = pyarrow.BufferOutputStream()
     parquet.write_table(arrow_table(rows, about), sink, compression="zstd")
-    return sink.getvalue().to_pybytes()  # type: ignore[no-any-return]
+    return sink.getvalue().to_pybytes()  # type: ignore[no-any-return]  # pyarrow has no types
 
 
 def _sqlite(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:

@@ -140,7 +140,7 @@ class Proposer:
             self._goals.proved[goal] = answer.query
         if not isinstance(answer, Witness) or self._followed[answer.query] >= WITNESSES:
             return None
-        assert self._witnesses is not None  # noqa: S101 - it has answered
+        assert self._witnesses is not None, "it has answered"
         self._followed[answer.query] += 1
         name, seed = self._name(), self._rng.getrandbits(32)
         origin = f"a run of the model that shows {answer.query}"

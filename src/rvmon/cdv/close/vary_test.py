@@ -90,7 +90,7 @@ class Mutator:
 
     def __init__(self, kind: type[Test], fixed: Collection[str], learned: Learned) -> None:
         described = inspect.type_info(kind)
-        assert isinstance(described, inspect.StructType)  # noqa: S101 - as all tests
+        assert isinstance(described, inspect.StructType), "as all tests"
         self._kind = kind
         self._learned = learned
         self._type = described
@@ -335,7 +335,7 @@ def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> fl
         found = rng.uniform(-1, 1) * spread
     elif high is None or low is None:
         sign, start = (1, low) if high is None else (-1, high)
-        assert start is not None  # noqa: S101 - one of both is
+        assert start is not None, "one of both is"
         found = start + sign * rng.uniform(0, spread)
     else:
         found = low + (high - low) * rng.random() * rng.choice((1.0, rng.random()))

@@ -59,7 +59,7 @@ def _change_loader(path: str, changed: CodeType) -> None:
     def get_code(self: SourceFileLoader, name: str) -> CodeType | None:
         return changed if os.path.abspath(self.path) == path else known(self, name)
 
-    SourceFileLoader.get_code = get_code  # type: ignore[method-assign,assignment]
+    SourceFileLoader.get_code = get_code  # type: ignore[method-assign,assignment]  # on purpose
 
 
 def _codes_of(code: CodeType, name: str) -> list[CodeType]:
@@ -96,7 +96,7 @@ def _change_constants(module: ModuleType, mutant: Mutant) -> None:
             case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
                 if name in names or names & _read(statement):
                     only = ast.Module([statement], [])
-                    exec(compile(only, str(mutant.path), "exec"), namespace)  # noqa: S102
+                    exec(compile(only, str(mutant.path), "exec"), namespace)  # noqa: S102 - our mutant
                     names.add(name)
     for name in names:
         old = getattr(module, name, None)

@@ -301,7 +301,7 @@ def _protobuf(schema: Any) -> Decode:
     except ImportError:
         raise not_installed("a message of Protocol Buffers", "mcap-protobuf-support") from None
     decode = DecoderFactory().decoder_for("protobuf", schema)
-    assert decode is not None, "it is of this encoding"  # noqa: S101
+    assert decode is not None, "it is of this encoding"
     return decode
 
 

@@ -108,7 +108,7 @@ class MessageReaders:
 
 
 def _signal(name: str, bound: Bound, schema: Schema, mappings: bool) -> Take:
-    assert bound.value is not None, "a signal has a value"  # noqa: S101
+    assert bound.value is not None, "a signal has a value"
     read = _reader(name, bound.value, schema.signals[name], bound.labels, schema, mappings)
     before: list[Any] = [_ABSENT]
 

@@ -51,7 +51,7 @@ def _row(pieces: Sequence[Piece]) -> Row:
     role = cuts[2] if cuts[2] >= 0 else stale
     colon = cuts[1] if cuts[1] >= 0 else role
     texts = (pieces[1:colon], pieces[colon:role], pieces[role:stale], pieces[stale:end])
-    return pieces[0].text, *map(text_of, texts)  # type: ignore[return-value]
+    return pieces[0].text, *map(text_of, texts)  # type: ignore[return-value]  # four of them
 
 
 _CLAUSES = frozenset(

@@ -226,7 +226,7 @@ class Bodies:
         span = written.span
         kind = ResolvedType(BaseType.INT, values.start, values.stop)
         symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
-        assert isinstance(symbol, PlacedSymbol)  # noqa: S101 - of a number
+        assert isinstance(symbol, PlacedSymbol), "of a number"
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))
         here = VariableValue(symbol.slot)

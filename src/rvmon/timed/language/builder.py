@@ -127,7 +127,7 @@ class NetworkBuilder:
         self.automata.append(made)
         return made
 
-    def query(self, text: str, *, id: str = "", remark: str = "") -> NetworkBuilder:  # noqa: A002
+    def query(self, text: str, *, id: str = "", remark: str = "") -> NetworkBuilder:  # noqa: A002 - its name
         """Add a query.
 
         Raises:

@@ -254,7 +254,7 @@ def _initial(
 ) -> ConstantValue:
     parts = parts_of_initial(written, extents, kind)
     if parts is None:
-        assert not isinstance(written, syntax.Values)  # noqa: S101 - it would have parts
+        assert not isinstance(written, syntax.Values), "it would have parts"
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
         return value

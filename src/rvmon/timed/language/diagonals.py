@@ -157,7 +157,7 @@ class Diagonals:
             return
         for truth in (True, False):
             compare = normal_form(ClockCompare(clock, op, Constant(number)), truth)
-            assert isinstance(compare, ClockCompare)  # noqa: S101 - as its negation is
+            assert isinstance(compare, ClockCompare), "as its negation is"
             guard = replace(edge.guard, clocks=(*edge.guard.clocks, compare))
             text = f"{edge.text} where {self.clocks[clock].name} {compare.op} {number}"
             yield self._noted(replace(edge, guard=guard, text=text), diagonal, truth)

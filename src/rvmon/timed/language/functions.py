@@ -191,7 +191,7 @@ def _make(
             if index == _CHOSEN:
                 kind = ResolvedType(BaseType.INT, extent.start, extent.stop - 1)
                 symbol = functions.place(kind, (), ["index"], None)
-                assert isinstance(symbol, PlacedSymbol)  # noqa: S101 - of numbers
+                assert isinstance(symbol, PlacedSymbol), "of numbers"
                 indices.append(symbol.slot.first)
                 index = VariableValue(symbol.slot)
             own.append(index)
@@ -213,7 +213,7 @@ def _make(
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
     place = functions.place(replace(result, const=False), (), [f"{text.name}(…)"], None)
-    assert isinstance(place, PlacedSymbol)  # noqa: S101 - of a number
+    assert isinstance(place, PlacedSymbol), "of a number"
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
         body.append(Return(Constant(0)) if text.type is None else Missing(text.name, text.span))

@@ -85,7 +85,7 @@ def _laid_out(
 
 def _field(value: ConstantValue, depth: int, place: int) -> ConstantValue:
     """The values of a field of all elements of an array of records."""
-    assert isinstance(value, tuple)  # noqa: S101 - a record's value has parts
+    assert isinstance(value, tuple), "a record's value has parts"
     if depth == 0:
         return value[place]
     return tuple(_field(element, depth - 1, place) for element in value)

@@ -83,7 +83,7 @@ def read_xml(source: Source) -> Element:
         place = reader.position(parser.ErrorByteIndex)
         message = f"no well-formed XML: {expat.errors.messages[error.code]}"
         raise model_error("TA018", message, Span(source, place, place)) from None
-    assert reader.root is not None  # noqa: S101 - well-formed XML has a root
+    assert reader.root is not None, "well-formed XML has a root"
     return reader.root
 
 

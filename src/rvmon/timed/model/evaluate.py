@@ -195,7 +195,7 @@ def caller(call: Invoke) -> Callable[[Locations, Values], int]:
         for (slot, variable), number in zip(function.parameters, given, strict=True):
             frame[slot] = fitting(number, variable, call.span)
         result = body[0](locations, frame)
-        assert result is not None  # noqa: S101 - every way through a body ends with a value
+        assert result is not None, "every way through a body ends with a value"
         return fitting(result, function.result[1], call.span)
 
     return value

@@ -239,7 +239,7 @@ def observed_run(
     clock_of = dict.fromkeys(range(problem.base, problem.dim), problem.dim)
     steps = []
     for number, (before, after) in enumerate(pairwise(nodes), start=1):
-        assert after.link is not None  # noqa: S101 - only the first node has no link
+        assert after.link is not None, "only the first node has no link"
         own = problem.dim + number
         steps.append(_step(problem, before.site, after.link, after.site, clock_of, own))
     return make_run(network, nodes[0].site.state, steps, ending, loop)

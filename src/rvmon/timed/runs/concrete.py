@@ -171,7 +171,7 @@ def is_ready(now: Configuration, automaton: int, edge: Edge) -> bool:
 
 def channel_index(now: Configuration, edge: Edge) -> int:
     """The channel that an edge uses, given the variables."""
-    assert edge.sync is not None  # noqa: S101 - asked of synchronising edges only
+    assert edge.sync is not None, "asked of synchronising edges only"
     return slot_evaluator(edge.sync.slot)(now.locations, now.values)
 
 

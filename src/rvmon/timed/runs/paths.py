@@ -82,7 +82,7 @@ def make_run(
 ) -> Run:
     """The run along a path that does everything as early as possible."""
     timing = timing_of([step.timed for step in steps])
-    assert timing is not None  # noqa: S101 - the search found a run along the path
+    assert timing is not None, "the search found a run along the path"
     run_steps = tuple(
         RunStep(window, wait, action_of(step.move), position_of(step.state))
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)

@@ -69,7 +69,7 @@ def _one_round(loop: Sequence[TimedStep], dim: int, rounds: int) -> tuple[NDArra
     import numpy as np
 
     timing = timing_of(loop, universe(dim), rounds=rounds)
-    assert timing is not None  # noqa: S101 - a loop of symbolic states can be gone round
+    assert timing is not None, "a loop of symbolic states can be gone round"
     before = [0, *range(len(loop) + 1, len(loop) + dim)]
     after, earlier = before[:], [0.0] * dim
     after[0] = len(loop)

@@ -131,7 +131,7 @@ class _Paths:
         self._plan = plan
         self._space = Space(network)
         start = self._space.initial()
-        assert start is not None  # noqa: S101 - the network can start
+        assert start is not None, "the network can start"
         self._start = start
         self.dim = 1 + len(network.clocks) + sought.has_timer
         late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)

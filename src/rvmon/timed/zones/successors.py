@@ -131,7 +131,7 @@ class Space:
             yield from self._variants(state, edges, target, [*kept_back, *denied])
 
     def _rank(self, edges: tuple[CompiledEdge, ...], state: State) -> int:
-        assert self.network.priorities is not None  # noqa: S101 - asked of such networks only
+        assert self.network.priorities is not None, "asked of such networks only"
         channel = edges[0].channel
         number = None if channel is None else channel(state.vector.locations, state.values)
         return self.network.priorities.rank(number, (edge.automaton for edge in edges))
@@ -298,8 +298,8 @@ def _meet(
     locations: tuple[int, ...],
     values: tuple[int, ...],
 ) -> bool:
-    assert sender.channel is not None  # noqa: S101 - both ends have a channel
-    assert receiver.channel is not None  # noqa: S101
+    assert sender.channel is not None, "both ends have a channel"
+    assert receiver.channel is not None, "both ends have one"
     return sender.channel(locations, values) == receiver.channel(locations, values)
 
 
