@@ -29,7 +29,7 @@ from rvmon.readers.messages.look import MOST, Looked
 from rvmon.readers.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import TURNS, Kind
 from rvmon.units import Unit, parse_unit
 
 _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
@@ -72,6 +72,7 @@ class Candidate:
         meaning: of the field; of what is calculated that of the result.
         axis: along which it is measured; empty if along none.
         told: words of a comment on it.
+        implied: words that people have for it along its axis, or of a joint.
     """
 
     topic: Topic
@@ -82,6 +83,7 @@ class Candidate:
     meaning: Meaning
     axis: str = ""
     told: tuple[str, ...] = ()
+    implied: tuple[str, ...] = ()
 
     @property
     def is_command(self) -> bool:
@@ -120,16 +122,18 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
         if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:
             continue
         for value, own, axis in _places(leaf, meaning, named, with_names):
-            if axis == "z" and is_down:
-                words: tuple[str, ...] = tuple(word for word in own if word not in ALONG)
-            else:
-                words = (*own, *_along(meaning, axis))
+            sunk = axis == "z" and is_down
+            words = tuple(word for word in own if not (sunk and word in ALONG))
+            implied = () if sunk else _implied(value, own, meaning, axis)
             told = tuple(words_of(topic.told.get(leaf, "")))
-            yield Candidate(topic, value, kind, words, around, meaning, axis, told)
+            yield Candidate(topic, value, kind, words, around, meaning, axis, told, implied)
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
             turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
             whole = leaf.rpartition(".")[0]
-            yield Candidate(topic, f"yaw({whole})", kind, ("yaw", "angle"), around, turned)
+            # What drives on a plane says of these two that they are 0.
+            for turn in TURNS if topic.type.endswith("/Imu") else TURNS[:1]:
+                called = (turn, "angle")
+                yield Candidate(topic, f"{turn}({whole})", kind, called, around, turned)
         if leaf.endswith("linear.x") and "[" not in leaf:
             value = f"hypot({leaf}, {leaf[:-1]}y)"
             level = ("speed", "ground", "horizontal")
@@ -169,7 +173,9 @@ def _places(
         yield f"{array}[{name}]", [*words, *words_of(name)], ""
 
 
-def _along(meaning: Meaning, axis: str) -> tuple[str, ...]:
+def _implied(value: str, own: Iterable[str], meaning: Meaning, axis: str) -> tuple[str, ...]:
+    if "position" in own and value.endswith("]"):
+        return ("extension", "angle")
     dimensions = [unit.dimension for unit in meaning.units[:1]]
     found = (own for unit, own in _ALONG.items() if parse_unit(unit).dimension in dimensions)
     return next(found, {}).get(axis, ())

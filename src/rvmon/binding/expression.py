@@ -32,7 +32,7 @@ from rvmon.spec.syntax.expressions import (
 )
 from rvmon.spec.syntax.parse import parse_expression
 from rvmon.texts import did_you_mean
-from rvmon.trace.schema import Applied, Constant, Elements, Field, Term
+from rvmon.trace.schema import TURNS, Applied, Constant, Elements, Field, Term
 
 
 def yaw(x: float, y: float, z: float, w: float) -> float:
@@ -42,6 +42,27 @@ def yaw(x: float, y: float, z: float, w: float) -> float:
     1.570796327
     """
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def roll(x: float, y: float, z: float, w: float) -> float:
+    """The turn about the axis that points forwards, of a quaternion of length 1, in radians.
+
+    >>> round(roll(0.7071067811865476, 0, 0, 0.7071067811865476), 9)
+    1.570796327
+    """
+    return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+
+
+def pitch(x: float, y: float, z: float, w: float) -> float:
+    """The turn about the axis that points left, nose down, of a quaternion of length 1, in radians.
+
+    >>> round(pitch(0, 0.25881904510252074, 0, 0.9659258262890683), 9)
+    0.523598776
+    """
+    return math.asin(max(-1.0, min(1.0, 2 * (w * y - x * z))))
+
+
+_TURNS = dict(zip(TURNS, (yaw, pitch, roll), strict=True))
 
 
 def number(text: str | float) -> float | None:
@@ -118,8 +139,9 @@ def term_of(text: str) -> Term:
 
     Args:
         text: an expression without units and temporal operators; what is a name in it, also one
-            like `ranges[0]`, is a field of the message, `yaw(q)` the heading of a quaternion, and
-            `min(ranges)` or `max(ranges)` of all elements of an array, `number(text)` of a text.
+            like `ranges[0]`, is a field of the message; `yaw(q)`, `pitch(q)` and `roll(q)` turn
+            as a quaternion does, `min(ranges)` and `max(ranges)` are of all elements of an array,
+            `number(text)` is of a text.
 
     Raises:
         RvmonError: it is none; with cause and fix.
@@ -197,11 +219,12 @@ def _of_elements(name: str, compared: Comparison) -> Term:
 
 def _applied(name: str, args: Sequence[Expression]) -> Term:
     terms = tuple(map(_term, args))
-    if name == "yaw":
+    if name in TURNS:
         if len(terms) != 1 or not isinstance(terms[0], Field):
-            raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
+            said = f"`{name}` takes a field that is a quaternion: `{name}(pose.orientation)`"
+            raise RvmonError(said)
         quaternion = terms[0].path
-        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION), "yaw")
+        return Applied(_TURNS[name], tuple(Field((*quaternion, one)) for one in _ROTATION), name)
     if name == "number":
         if len(terms) != 1 or not isinstance(terms[0], Field):
             raise RvmonError("`number` takes a field that is a text: `number(values[Load].value)`")
@@ -212,7 +235,7 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
         raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
-        names = [*known, "number", *_OF_ELEMENTS, "yaw"]
+        names = [*known, "number", *_OF_ELEMENTS, *TURNS]
         meant = did_you_mean(name, names, f"there are {', '.join(names)}")
         raise RvmonError(f"no function `{name}` in a value: {meant}")
     wanted = len(FUNCTIONS[name].arguments)

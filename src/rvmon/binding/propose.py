@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.binding.candidates import Candidate, Range, candidates_of, events_of, ranges_of
-from rvmon.binding.rank import fitting, is_clear, wanted_of
+from rvmon.binding.rank import fitting, in_such_a_unit, is_clear, wanted_of
 from rvmon.readers.messages.file import MessageFile
 from rvmon.readers.messages.look import Looked, names_in
 from rvmon.spec.checked.specification import CheckedSpec, Type
@@ -65,8 +65,11 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     wanted |= {name: wanted_of(name, None, topics.values()) for name in spec.events}
     for name, asked in wanted.items():
         found[name] = fitting(asked, everything if name in types else events_of(topics))
+    near = {
+        name: in_such_a_unit(wanted[name], everything)[:_MOST] for name in types if not found[name]
+    }
     shown = [one for own in found.values() for _, one in own[: 2 * _MOST]]
-    ranges = ranges_of(source, shown)
+    ranges = ranges_of(source, [*shown, *(one for own in near.values() for one in own)])
     found = {name: _with_values(own, ranges) for name, own in found.items()}
     chosen = {name: own[0][1] for name, own in found.items() if is_clear(own)}
     lines = ['clock = "log"  # or "header": the stamps of the headers count']
@@ -82,7 +85,7 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
         lines += _other_lines(found[name][1:], ranges)
     missed = [name for name in found if name not in chosen]
     for name in missed:
-        lines += ["", *_open_lines(name, types.get(name), found[name], ranges)]
+        lines += ["", *_open_lines(name, types.get(name), found[name], near.get(name, ()), ranges)]
     unlabelled = [name for name, one in chosen.items() if _has_codes(types.get(name), one)]
     return Proposal("\n".join(lines) + "\n", tuple(missed), _shared(chosen), tuple(unlabelled))
 
@@ -182,19 +185,23 @@ def _other_lines(others: Found, ranges: Ranges) -> Iterator[str]:
         yield f"# or topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
 
 
-def _open_lines(name: str, type_: Type | None, found: Found, ranges: Ranges) -> Iterator[str]:
+def _open_lines(
+    name: str, type_: Type | None, found: Found, near: Sequence[Candidate], ranges: Ranges
+) -> Iterator[str]:
     what = _described(type_)
-    if not found:
+    if found:
+        yield f"# Several fit `{name}` ({what}) as well as each other: choose one."
+    elif near:
+        yield f"# Nothing is called like `{name}` ({what}). Of what is measured in such a unit:"
+    else:
         yield f"# Nothing was found for `{name}` ({what}):"
-        yield f"# [bind.{_key(name)}]"
-        yield '# topic = "…"'
-        yield '# value = "…"'
-        return
-    yield f"# Several fit `{name}` ({what}) as well as each other: choose one."
     yield f"# [bind.{_key(name)}]"
-    for _, one in found[:_MOST]:
+    for one in [one for _, one in found[:_MOST]] or near:
         value = f", value = {_text(one.value)}" if one.value else ""
         yield f"# topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
+    if not found and not near:
+        yield '# topic = "…"'
+        yield '# value = "…"'
 
 
 def _shared(chosen: Mapping[str, Candidate]) -> tuple[tuple[str, ...], ...]:

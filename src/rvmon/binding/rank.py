@@ -11,6 +11,7 @@ from rvmon.binding.words import (
     AXES,
     EMPTY,
     MODIFIERS,
+    OF_SURROUNDINGS,
     ORDINALS,
     SUBJECTS,
     WEAK,
@@ -33,7 +34,9 @@ _FITTING = {
     Kind.LABEL: {Kind.LABEL, Kind.INT},
 }
 
-_REQUESTS = frozenset({"request", "requested", "event", "pressed", "command"})
+_REQUESTS = frozenset(
+    {"request", "requested", "event", "pressed", "command", "hit", "touched", "triggered"}
+)
 """Words that say of an event no more than that it is one."""
 
 _A_WORD = 0.05
@@ -94,6 +97,26 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
     )
 
 
+def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
+    """What messages say to be measured in the declared unit, however it is called.
+
+    What shares more words with the name comes first.
+    """
+    type_ = wanted.type
+    if type_ is None or not type_.unit:
+        return []
+    dimension = parse_unit(type_.unit).dimension
+    found = [
+        one
+        for one in candidates
+        if one.meaning.sort is Sort.MEASURED
+        and dimension in one.dimensions
+        and one.is_command == ("command" in wanted.words)
+        and modifiers_of(one) <= {*wanted.words}
+    ]
+    return sorted(found, key=lambda one: -len({*wanted.words} & {*one.own, *one.around}))
+
+
 def is_clear(found: Sequence[tuple[float, Candidate]]) -> bool:
     """Whether one is better than all others; of two topics that say the same, none is."""
     if not found:
@@ -133,6 +156,8 @@ def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
     subjects = {word for word in foreign_words(candidate) if word in SUBJECTS}
     if "temperature" in wanted.words:  # each part has one of its own
         subjects |= {"battery"} & {*candidate.around}
+    if not OF_SURROUNDINGS.isdisjoint(candidate.own):
+        subjects -= {"ambient"}
     return not all(is_found(word, wanted.words) for word in subjects)
 
 
@@ -150,7 +175,8 @@ def _is_along(wanted: Wanted, candidate: Candidate) -> bool:
         return wanted.axis == candidate.axis
     if candidate.value.endswith("linear.x") and "speed" in wanted.words:
         return True  # a robot drives forwards
-    return not ALONG.isdisjoint({*wanted.words} & {*candidate.own})
+    there = {*candidate.own, *candidate.implied}
+    return not ALONG.isdisjoint({*wanted.words} & there)
 
 
 def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
@@ -197,7 +223,10 @@ def _weight(word: str, candidate: Candidate) -> float:
         return float(word in candidate.own or word in candidate.around)
     if word == "command":
         return float(candidate.is_command)
-    if is_found(word, candidate.own) or (word == "minimum" and candidate.value[:4] == "min("):
+    if word == "minimum" and candidate.value[:4] == "min(":
+        return 1.0
+    if is_found(word, candidate.own) and is_found(word, words_of(candidate.value)):
         return 1.0
     is_its_unit = candidate.unit is not None and is_measured_in(word, candidate.unit)
-    return 0.9 * (is_its_unit or is_found(word, (*candidate.around, *candidate.told)))
+    others = (*candidate.own, *candidate.implied, *candidate.around, *candidate.told)
+    return 0.9 * (is_its_unit or is_found(word, others))

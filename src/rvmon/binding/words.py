@@ -35,7 +35,8 @@ _SAME = {
     "maximum": "max greatest largest",
     "magnetometer": "mag magnetic compass",
     "front": "fore",
-    "rear": "back",
+    "rear": "back behind",
+    "illuminance": "brightness luminance lux",
     "status": "state",
     "estop": "emergencystop estopped",
     "barometer": "baro barometric",
@@ -69,7 +70,7 @@ _JOINED = {
 
 EMPTY = _set(
     "a actual at base body data has in is it joint measured msg my of on own robot self",
-    "sensor signal the value vehicle values ego reading link frame fmu out",
+    "sensor signal the value vehicle values ego reading link frame fmu out travel driving",
 )
 """Words that say nothing of what is meant."""
 
@@ -97,6 +98,9 @@ SUBJECTS = _set(
     "gripper hand finger trailer fork lift",
 )
 """Words for what is not the robot as a whole: what is said of them is not said of it."""
+
+OF_SURROUNDINGS = frozenset({"humidity", "illuminance"})
+"""Quantities of what is around a robot, and of no part of it."""
 
 ORDINALS = {
     **dict.fromkeys(("leader", "lead", "first", "master", "primary"), "1"),

@@ -97,12 +97,15 @@ class Applied:
         args = [str(arg).removesuffix("[]") for arg in self.args]
         if not self.sign:
             return args[0]
-        if self.sign == "yaw":
-            return f"yaw({args[0].rpartition('.')[0]})"
+        if self.sign in TURNS:
+            return f"{self.sign}({args[0].rpartition('.')[0]})"
         if re.fullmatch(r"\w+", self.sign) and self.sign not in ("and", "or", "xor"):
             return f"{self.sign}({', '.join(args)})"
         return f"({f' {self.sign} '.join(args)})" if len(args) > 1 else f"{self.sign}{args[0]}"
 
+
+TURNS = ("yaw", "pitch", "roll")
+"""Functions of a quaternion: its turns about z, y and x."""
 
 Term = Field | Elements | Constant | Applied
 

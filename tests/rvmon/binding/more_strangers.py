@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.rvmon.binding.more_robots import WRENCH
 from tests.rvmon.binding.robots import (
     BATTERY,
+    BOOL,
     FIX,
     FLOAT,
     IMU,
@@ -15,6 +16,7 @@ from tests.rvmon.binding.robots import (
     TWIST,
     Robot,
     joints,
+    speeds,
 )
 
 VECTOR = ("geometry_msgs/msg/Vector3Stamped", {"vector": {"x": 1.5, "y": -12.0, "z": 88.0}})
@@ -229,5 +231,36 @@ MORE_STRANGERS = {
             "float64 roll\nfloat64 pitch\nfloat64 azimuth\nstring status\n",
         },
     ),
+    "amr": Robot(
+        {
+            "/base/odometry": ODOMETRY,
+            "/base/cmd_vel": TWIST,
+            "/scan_front": SCAN,
+            "/scan_rear": SCAN,
+            "/joint_states": joints("lift_joint", "elbow_joint"),
+            "/imu/data": IMU,
+            "/ambient/light": ("sensor_msgs/msg/Illuminance", {"illuminance": 320.0}),
+            "/ambient/humidity": ("sensor_msgs/msg/RelativeHumidity", {"relative_humidity": 0.4}),
+            "/gps/fix": FIX,
+            "/power/main_battery": BATTERY,
+            "/safety/bumper": BOOL,
+        },
+        "signal travel_speed : real [m/s]\n"
+        "signal nearest_behind, altitude, lift_height : real [m]\n"
+        "signal brightness : real [lx]\nsignal humidity : real [%]\n"
+        "signal roll_angle : real [rad]\n"
+        "signal bus_voltage : real [V]\nevent bumper_hit",
+        {
+            "travel_speed": speeds("/base/odometry"),
+            "nearest_behind": ("/scan_rear min(ranges) [m]",),
+            "altitude": ("/gps/fix altitude [m]",),
+            "lift_height": OPEN,  # a position of a joint may count from anywhere
+            "brightness": ("/ambient/light illuminance [lx]",),
+            "humidity": ("/ambient/humidity relative_humidity [1]",),
+            "roll_angle": ("/imu/data roll(orientation) [rad]",),
+            "bus_voltage": OPEN,  # there may be several
+            "bumper_hit": ("/safety/bumper data",),
+        },
+    ),
 }
-"""Twenty-two names of six robots; eight more were bound in public logs."""
+"""Thirty-one names of seven robots; eight more were bound in public logs."""

@@ -1,5 +1,6 @@
 """What is proposed for recordings as robots make them is right, or left open."""
 
+import math
 import tomllib
 
 import pytest
@@ -86,6 +87,43 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
     binding = tmp_path / "a.toml"
     binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
     assert main(["check", spec, "--binding", str(binding)]) == 0
+
+
+def test_what_is_called_otherwise_is_shown_by_its_unit(tmp_path, capsys):
+    """Nothing is filled in; first what shares a word with the name, with its values."""
+    spec, bag = write(MORE_STRANGERS["amr"], tmp_path)
+    assert main(["init", bag, "--for", spec]) == 1
+    told = capsys.readouterr().out
+    shown = told[told.index("# Nothing is called like `bus_voltage` (real [V]).") :].splitlines()
+    assert shown[1:3] == [
+        "# [bind.bus_voltage]",
+        '# topic = "/power/main_battery", value = "voltage"  # always 24.5',
+    ]
+
+
+@pytest.mark.parametrize(("turn", "value"), [("yaw", 0.5), ("pitch", 0.2), ("roll", -0.3)])
+def test_turns_of_a_quaternion(tmp_path, turn, value):
+    """About z, then y, then x, as they were turned."""
+    halves = (0.25, 0.1, -0.15)
+    (cz, cy, cx), (sz, sy, sx) = map(math.cos, halves), map(math.sin, halves)
+    turned = {
+        "w": cx * cy * cz + sx * sy * sz,
+        "x": sx * cy * cz - cx * sy * sz,
+        "y": cx * sy * cz + sx * cy * sz,
+        "z": cx * cy * sz - sx * sy * cz,
+    }
+    robot = Robot(
+        {"/imu": ("sensor_msgs/msg/Imu", {"orientation": turned})},
+        "signal angle : real [rad]\nrequirement A1\n"
+        f"  always abs(angle - ({value} rad)) < 1e-9 rad",
+        {},
+    )
+    spec, bag = write(robot, tmp_path)
+    binding = tmp_path / "a.toml"
+    binding.write_text(
+        f'[bind.angle]\ntopic = "/imu"\nvalue = "{turn}(orientation)"\nunit = "rad"\n'
+    )
+    assert main(["run", spec, bag, "--binding", str(binding)]) == 0
 
 
 def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):

@@ -28,7 +28,17 @@ from importlib import resources
 from rvmon.errors import TraceError
 from rvmon.readers.messages.comments import is_vector, spoken_unit, unit_in_comment
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.schema import Applied, Bound, Constant, Elements, Field, Kind, Schema, Term
+from rvmon.trace.schema import (
+    TURNS,
+    Applied,
+    Bound,
+    Constant,
+    Elements,
+    Field,
+    Kind,
+    Schema,
+    Term,
+)
 from rvmon.units import PLAIN, Unit, parse_unit
 
 
@@ -182,7 +192,7 @@ def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
             if meaning.sort is Sort.QUATERNION:
                 return (Measure(PLAIN),)
             return tuple(Measure(unit, not meaning.is_scaled) for unit in meaning.units)
-        case Applied(sign="yaw"):
+        case Applied(sign=turn) if turn in TURNS:
             return (Measure(parse_unit("rad")),)
         case Applied(args=(value, _), sign=""):
             return measures_of(value, topic)

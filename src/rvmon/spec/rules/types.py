@@ -214,8 +214,11 @@ no_root = Breach(
 
 
 def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
-    """A unit that is not in the table; `close` is one that is alike, or empty."""
+    """A unit that is not in the table, or not joined; `close` is one that is alike, or empty."""
     fix = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
+    if close == part:
+        joined = "parts of a unit are joined by `*` and `/`: `N*m`, `kg*m/s^2`"
+        return finding(UNKNOWN_UNIT, f"no `*` or `/` before `{short(part)}`", span, fix=joined)
     return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, fix=fix)
 
 
