@@ -1,11 +1,15 @@
 """The public surface: names, lightness, the facade."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import rvmon
+
+ROOT = Path(__file__).parents[2]
 
 DOOR = """
 spec door "A door"
@@ -57,6 +61,23 @@ def test_import_loads_nothing_heavy():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert shown.stdout.strip() == "[]"
+
+
+def test_what_was_compiled_runs_without_the_grammar(tmp_path):
+    """From the second run on: reading a specification takes as long as starting."""
+    spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))
+    code = (
+        "import sys; from rvmon.cli import main; main(sys.argv[1:]); print('lark' in sys.modules)"
+    )
+    words = [sys.executable, "-c", code, "run", str(spec), str(trace), "--format", "json"]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    parsed = [
+        subprocess.run(  # noqa: S603 - the interpreter itself
+            words, capture_output=True, text=True, check=True, env=environment
+        ).stdout.splitlines()[-1]
+        for _ in range(2)
+    ]
+    assert parsed == ["True", "False"]
 
 
 def test_online_monitor_reports_what_each_step_decides():

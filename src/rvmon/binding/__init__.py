@@ -13,7 +13,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
-from rvmon.binding.expression import term_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.meaning import expect_units
@@ -148,6 +147,9 @@ def _value(text: Any, key: str) -> Term:
         return Constant(text)
     if not isinstance(text, str):
         raise RvmonError(f'`{key}` is an expression in quotes: {key} = "pose.position.x"')
+    # With the grammar, which most runs do without: what is declared may have no binding.
+    from rvmon.binding.expression import term_of
+
     try:
         return term_of(text)
     except RvmonError as error:

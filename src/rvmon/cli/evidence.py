@@ -15,7 +15,7 @@ from rvmon.cli.judging import judge_all, spec_and_options
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
 from rvmon.cli.parser import positive
-from rvmon.cli.run_output import is_recording, rows_of_judged
+from rvmon.cli.run_evidence import is_recording, rows_of_judged
 from rvmon.evidence.keep import (
     Kept,
     TamperedError,

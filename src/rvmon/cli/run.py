@@ -168,7 +168,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
-        from rvmon.cli.run_output import begun, write_run
+        from rvmon.cli.run_evidence import begun, write_run
 
         before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)

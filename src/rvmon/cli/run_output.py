@@ -8,30 +8,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
-
 from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.errors import RvmonError, TraceError
-from rvmon.evidence.keep import (
-    COVERAGE,
-    About,
-    Judging,
-    coverage_json,
-    own_program,
-    package_versions,
-    sha256_of,
-    texts_of,
-    write_evidence,
-)
 from rvmon.readers.batch import HeldRecording
-from rvmon.readers.found import files_of
-from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec
-from rvmon.texts import shown_path
 from rvmon.verdict.rows import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
@@ -133,77 +116,3 @@ def _record_coverage(
                     expected=known.expected(one.report),
                 )
                 database.record(test, one.hits)
-
-
-def is_recording(path: str) -> bool:
-    """Whether there is a file, a folder that is a recording, or several: else it has no hash."""
-    try:
-        return all(Path(one).is_file() or form_of_folder(one) for one in files_of(path))
-    except (OSError, ValueError, TraceError):
-        return False
-
-
-def begun(
-    arguments: argparse.Namespace, traces: Sequence[str]
-) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
-    """What verdicts depend on, before anything is judged, and after.
-
-    Args:
-        arguments: of `rvmon run`.
-        traces: paths of the recordings.
-
-    Returns:
-        What `texts_of` returns, and the SHA-256 of the recordings by path.
-
-    Raises:
-        RvmonError: evidence cannot be kept of it.
-    """
-    found: dict[str, str] = {}
-    for trace in traces:
-        if not is_recording(trace) or shown_path(trace) in found:
-            raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
-        found[shown_path(trace)] = sha256_of(*map(Path, files_of(trace)))
-    return *texts_of({"": arguments.spec}, arguments.binding), found
-
-
-def write_run(
-    arguments: argparse.Namespace,
-    spec: Spec,
-    judged: Sequence[Judged],
-    before: tuple[dict[str, bytes], list[str], dict[str, str]],
-) -> None:
-    """Write the evidence of recordings.
-
-    Args:
-        arguments: of `rvmon run`.
-        spec: that judged.
-        judged: the recordings.
-        before: what `begun` gave before these were judged.
-
-    Raises:
-        RvmonError: it cannot be written, or what was judged has changed meanwhile.
-    """
-    if begun(arguments, list(before[2])) != before:
-        raise RvmonError("--evidence: an input has changed meanwhile: run it again")
-    entries, (main, *binding), recordings = before
-    how = msgspec.convert(arguments, Judging, from_attributes=True)
-    about = About(
-        name=spec.checked.name,
-        packages=package_versions(),
-        programs={"rvmon": own_program()},
-        specs={"": main},
-        recordings=recordings,
-        judging=msgspec.structs.replace(how, binding=binding[0] if binding else None),
-    )
-    if arguments.coverage is not None:
-        covered = (spec.coverage_model.model, [one.hits for one in judged])
-        entries = {**entries, COVERAGE: coverage_json({"": covered})}
-    write_evidence(arguments.evidence, about, entries, {"": spec}, rows_of_judged(judged))
-
-
-def rows_of_judged(judged: Sequence[Judged]) -> Iterator[VerdictRow]:
-    """The verdicts, and what was hit of coverpoints and must not be."""
-    yield from rows_of(judged)
-    for one in judged:
-        for hit in () if one.report is None else one.report.illegal:
-            yield VerdictRow(one.trace, verdict="F", reason=str(hit))
