@@ -6,13 +6,22 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.expressions import (
+    FALSE,
+    TRUE,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    PathFormula,
+)
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.sought import Seek, Sought
+from rvmon.timed.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
@@ -43,6 +52,19 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.START, nested=normal_form(_formula(network, _NESTS))),
         ):
             yield Plan(network, sought)
+        yield Plan(_watched(network), Sought(Seek.GOAL, FALSE))
+
+
+def _watched(network: Network) -> Network:
+    """A network with a watcher that lets moves pass a unit apart, and makes some of its own."""
+    watcher = Watcher(network, [], [""])
+    for _ in range(3):
+        watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(9))])
+    since = [ClockCompare(watcher.clock, ClockOp.GE, Constant(1))]
+    watcher.add_edge(0, 1)
+    watcher.add_edge(1, 2, TRUE, since, [watcher.clock])
+    watcher.add_edge(2, 0, TRUE, since, watches=False)
+    return watcher.network()
 
 
 def _formula(network: Network, text: str) -> Expression:

@@ -13,7 +13,7 @@ def search(
     most_bytes: int,
     proper_only: bool,
     /,
-) -> tuple[int, int, int, int, int, int, int, int, bytes, bytes]:
+) -> tuple[int, int, int, int, int, int, int, int, bytes, bytes, bytes]:
     """Search a plan.
 
     Args:
@@ -28,7 +28,7 @@ def search(
 
     Returns:
         State, ending, loop, whether a way was passed by, states visited, stored, discrete ones,
-        most bytes in use; the path as int32, the parts as int64.
+        most bytes in use; the path as int32, the parts and the spans as int64.
 
     Raises:
         ValueError: the plan is damaged.

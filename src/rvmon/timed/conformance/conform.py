@@ -1,10 +1,10 @@
 """Whether a recorded run is one of a network's runs, as far as the recording shows.
 
-All symbolic states that explain the recording so far are kept, with a clock for the time since its
-start. For each recorded action: close under unrecorded moves, cut to the instant of the action give
-or take the tolerance, take the moves with its label; a move with several labels stands for several
-actions of one instant. No state left is the first divergence. After the last action the network
-must be able to keep quiet until the recording's end.
+The recording becomes an automaton that watches the network: it waits for each action in turn, give
+or take the tolerance by a clock that is never set, and lets moves pass that the recording does not
+show; a move with several labels stands for several actions of one instant. Where no run gets
+further than some action is the first divergence. After the last action the network must be able to
+keep quiet until the recording's end.
 
 Source: Krichen and Tripakis, Conformance Testing for Real-Time Systems, Formal Methods in System
 Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tretmans' ioco.
@@ -12,20 +12,32 @@ Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tret
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import groupby
-from math import inf
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, groupby
 
 from rvmon.timed.conformance.outcome import Allowed, Conformance, Divergence, Recorded
+from rvmon.timed.model.expressions import (
+    FALSE,
+    MAX_TIME,
+    TRUE,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    UnaryOperation,
+)
+from rvmon.timed.model.guards import together
 from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import LocationKind, UnaryOp
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.search.explore import Node, explore
+from rvmon.timed.runs.space import check_clocks, check_start
 from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget
-from rvmon.timed.zones.dbm import Zone, constrain, cut, normalise
-from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps, check_clocks, check_start
+from rvmon.timed.search.sought import Seek, Sought
+from rvmon.timed.search.watcher import Watcher
 from rvmon.trace.time import TICKS_PER_UNIT
 
 RESOLUTION = TICKS_PER_UNIT["ms"]
@@ -61,169 +73,140 @@ def conform(
     if network.unit is None or network.unit % RESOLUTION:
         fix = "write its unit of time, such as `unit 50 ms`"
         raise model_error("TA023", "time is not in whole milliseconds", None, fix)
-    watcher = _Watcher(finer(network, network.unit // RESOLUTION), observed)
-    states = list(watcher.start())
+    if end + tolerance >= MAX_TIME * RESOLUTION:
+        fix = "compare a shorter part, with --until"
+        raise model_error("TA019", "the recording goes on for more than 24 days", None, fix)
+    fine, labels = finer(network, network.unit // RESOLUTION), tuple(sorted(observed))
+    most = len(network.automata) + 1
+    chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)
+    watcher = _following(fine, labels, chain, most)
+    over = watcher.add_location()
+    bound = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, chain[-1].earliest)))
+    watcher.add_edge(over - 1, over, TRUE, [bound], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+    if over in spans:
+        return Conformance(len(actions), None)
+    reached = max(spans, default=0)
+    place = chain[reached]
+    if meter.stopped:
+        return Conformance(place.explained, None, meter.stopped)
+    # What could come there instead, until the end of the recording.
+    ahead = [*chain[:reached], replace(place, latest=end // RESOLUTION, left=())]
+    allowed = _allowed(fine, labels, ahead, most, Meter(budget, None))
+    return Conformance(
+        place.explained, Divergence(place.t, place.left[0] if place.left else "", allowed)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """How far a recording is explained.
+
+    Attributes:
+        t: the instant of what comes next, in ticks.
+        left: the actions of this instant that are left; none at the end.
+        explained: the number of actions before.
+        earliest, latest: the instant give or take the tolerance, in units.
+        next: of the place that comes behind the instant; `None` at the end.
+    """
+
+    t: int
+    left: tuple[str, ...]
+    explained: int
+    earliest: int
+    latest: int
+    next: int | None
+
+
+def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) -> list[_Place]:
+    """The places of a recording; those of one instant stand together, with fewer and fewer left."""
+    chain: list[_Place] = []
     explained = 0
+
+    def add(t: int, choices: Sequence[tuple[str, ...]], *, last: bool = False) -> None:
+        earliest, latest = (t - tolerance) // RESOLUTION, -(-(t + tolerance) // RESOLUTION)
+        behind = None if last else len(chain) + len(choices)
+        for left in choices:
+            done = explained + len(choices[0]) - len(left)
+            chain.append(_Place(t, left, done, earliest, latest, behind))
+
     for t, group in groupby(actions, lambda action: action.t):
         labels = tuple(action.label for action in group)
-        earliest, latest = (t - tolerance) // RESOLUTION, -(-(t + tolerance) // RESOLUTION)
-        pending, rest = {labels: states}, labels
-        while pending:
-            rest = max(pending, key=len)
-            states = pending.pop(rest)
-            if not rest:
-                break
-            meter = Meter(budget, None)
-            reached = watcher.quiet(states, latest, meter)
-            if meter.stopped:
-                return Conformance(explained + len(labels) - len(rest), None, meter.stopped)
-            for left, after in watcher.fired(reached, rest, earliest, latest):
-                pending.setdefault(left, []).append(after)
-        explained += len(labels) - len(rest)
-        if rest:
-            allowed = watcher.allowed(states, end // RESOLUTION, Meter(budget, None))
-            return Conformance(explained, Divergence(t, rest[0], allowed))
-    meter = Meter(budget, None)
-    earliest, latest = (end - tolerance) // RESOLUTION, -(-(end + tolerance) // RESOLUTION)
-    if not watcher.reaches(states, earliest, latest, meter) and not meter.stopped:
-        allowed = watcher.allowed(states, end // RESOLUTION, meter)
-        return Conformance(len(actions), Divergence(end, "", allowed))
-    return Conformance(len(actions), None, meter.stopped)
+        add(t, sorted(_rests(labels, most), key=len, reverse=True))
+        explained += len(labels)
+    add(end, [()], last=True)
+    return chain
 
 
-class _Quiet:
-    """Moves that nobody sees, up to an instant."""
-
-    def __init__(
-        self,
-        steps: Steps,
-        begin: Sequence[tuple[State, Zone]],
-        observed: frozenset[str],
-        latest: int,
-    ) -> None:
-        self.steps = steps
-        self.dim = steps.dim
-        self.begin = begin
-        self.observed = observed
-        self.latest = latest
-
-    def start(self) -> Sequence[tuple[State, Zone]]:
-        """The states that explain the recording so far."""
-        return self.begin
-
-    def successors(self, site: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
-        """Unseen moves before the instant is over."""
-        dim = self.dim
-        for move, state, fresh in self.steps.successors(site, zone):
-            if not self.observed.isdisjoint(names_of(move, self.steps.space.network)):
-                continue
-            if constrain(fresh, dim, 0, dim - 1, float(self.latest)):
-                yield move, state, normalise(fresh)
+def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
+    """What can be left of actions of one instant before the last of them is explained."""
+    found, waiting = {labels}, [labels]
+    while waiting:
+        for _, left in _firsts(waiting.pop(), most):
+            if left and left not in found:
+                found.add(left)
+                waiting.append(left)
+    return found
 
 
-class _Watcher:
-    """The network with a last clock that is never reset."""
-
-    def __init__(self, network: Network, observed: frozenset[str]) -> None:
-        # The timer is compared with every instant of the recording: it must never be blurred.
-        timer = 1 + len(network.clocks)
-        self._observed = observed
-        self._network = network
-        self._steps = Steps(network, 1, [(timer, -inf)], [(timer, inf)])
-        self._dim = self._steps.dim
-
-    def start(self) -> Iterator[tuple[State, Zone]]:
-        """The initial state."""
-        return self._steps.start()
-
-    def quiet(
-        self, states: Sequence[tuple[State, Zone]], latest: int, meter: Meter
-    ) -> list[tuple[State, Zone]]:
-        """All states that unseen moves lead to, up to an instant."""
-        begin = []
-        for state, zone in states:
-            cut_zone = zone[:]
-            if constrain(cut_zone, self._dim, 0, self._dim - 1, float(latest)):
-                begin.append((state, normalise(cut_zone)))
-        kept: list[Node[State, Move]] = []
-        problem = _Quiet(self._steps, begin, self._observed, latest)
-        explore(problem, meter, kept.append)
-        return [(node.site, node.zone) for node in kept if not node.covered]
-
-    def fired(
-        self,
-        states: Sequence[tuple[State, Zone]],
-        labels: tuple[str, ...],
-        earliest: int,
-        latest: int,
-    ) -> Iterator[tuple[tuple[str, ...], tuple[State, Zone]]]:
-        """The states behind the first of some actions within a range of instants.
-
-        Each comes with the actions that are left: a move with several names stands for all of them.
-        """
-        timer = self._dim - 1
-        for state, zone in states:
-            now = zone[:]
-            if not cut(now, self._dim, [(timer, 0, -float(earliest)), (0, timer, float(latest))]):
-                continue
-            for move, target, fresh in self._steps.successors(state, now):
-                left = _without(labels, self._seen(move))
-                if left is not None:
-                    yield left, (target, normalise(fresh))
-
-    def _seen(self, move: Move) -> list[str]:
-        return [name for name in names_of(move, self._network) if name in self._observed]
-
-    def reaches(
-        self, states: Sequence[tuple[State, Zone]], earliest: int, latest: int, meter: Meter
-    ) -> bool:
-        """Whether some run can be quiet until an instant of a range."""
-        timer = self._dim - 1
-        return any(
-            constrain(zone[:], self._dim, timer, 0, -float(earliest))
-            for _, zone in self.quiet(states, latest, meter)
-        )
-
-    def allowed(
-        self, states: Sequence[tuple[State, Zone]], end: int, meter: Meter
-    ) -> tuple[Allowed, ...]:
-        """What some run can do next, with the earliest and the latest instant of each."""
-        timer = self._dim - 1
-        spans: dict[str, tuple[float, float]] = {}
-        for state, zone in self.quiet(states, end, meter):
-            for move in self._steps.space.moves(state):
-                seen, ready = self._seen(move), zone[:]
-                if not seen or not cut(ready, self._dim, move.guard):
-                    continue
-                for label in seen:
-                    low, high = spans.get(label, (inf, 0.0))
-                    spans[label] = (
-                        min(low, -ready[timer * self._dim]), max(high, ready[timer])
-                    )  # fmt: skip
-        found = [
-            Allowed(label, round(low) * RESOLUTION, round(high) * RESOLUTION)
-            for label, (low, high) in sorted(spans.items(), key=lambda item: item[1])
-        ]
-        if self.reaches(states, end, end, meter):
-            found.append(Allowed("", end * RESOLUTION, None))
-        return tuple(found)
+def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """At most so many names of a move that can be the first of some actions, and what is left."""
+    found = []
+    others = tuple(dict.fromkeys(name for name in labels[1:] if name != labels[0]))
+    for count in range(min(len(others), most - 1) + 1):
+        for more in combinations(others, count):
+            left = list(labels)
+            for name in (labels[0], *more):
+                left.remove(name)
+            found.append(((labels[0], *more), tuple(left)))
+    return found
 
 
-def _without(labels: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...] | None:
-    """The actions left behind a move that is the first of them; `None` if it cannot be."""
-    if labels[0] not in names:
-        return None
-    left = list(labels)
-    for name in names:
-        if name not in left:
-            return None
-        left.remove(name)
-    return tuple(left)
+def _following(
+    network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int
+) -> Watcher:
+    """The automaton that follows a recording up to the last of some places."""
+    watcher = Watcher(network, labels, [""])
+    for place in chain:
+        watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(place.latest))])
+    numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
+    for number, place in enumerate(chain):
+        watcher.add_edge(number, number, _named(watcher, labels, ()))
+        since = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, place.earliest)))
+        for names, left in _firsts(place.left, most) if place.left else ():
+            target = numbers.get((place.t, left)) if left else place.next
+            if target is not None and target < len(chain):
+                watcher.add_edge(number, target, _named(watcher, labels, names), [since])
+    return watcher
 
 
-def names_of(move: Move, network: Network) -> tuple[str, ...]:
-    """The names that a move has in recordings: the labels of its edges, and its channel's."""
-    first = move.edges[0]
-    channel = network.channels[first.channels[0]].name if first.channels else ""
-    names = (*(edge.edge.label for edge in move.edges), channel)
-    return tuple(dict.fromkeys(name for name in names if name))
+def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> Expression:
+    """Whether a move has just these of the observed names."""
+    return together(
+        watcher.has(name) if name in names else UnaryOperation(UnaryOp.NOT, watcher.has(name))
+        for name in labels
+    )
+
+
+def _allowed(
+    network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int, meter: Meter
+) -> tuple[Allowed, ...]:
+    """What some run can do at the last place, with the earliest and the latest instant of each."""
+    watcher, last = _following(network, labels, chain, most), len(chain) - 1
+    end = ClockCompare(watcher.clock, ClockOp.GE, Constant(chain[-1].latest))
+    names = {watcher.add_location(kind=LocationKind.URGENT): label for label in labels}
+    for place, label in names.items():
+        watcher.add_edge(last, place, watcher.has(label))
+        for op in (ClockOp.GE, ClockOp.LE):  # so that the clock counts there, as far as that
+            watcher.add_edge(place, place, TRUE, [replace(end, op=op)], watches=False)
+    over = watcher.add_location(kind=LocationKind.URGENT)
+    watcher.add_edge(last, over, TRUE, [end], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+    found = [
+        Allowed(names[place], round(low) * RESOLUTION, round(high) * RESOLUTION)
+        for place, (low, high) in sorted(spans.items(), key=lambda one: one[1])
+        if place in names
+    ]
+    if over in spans:
+        found.append(Allowed("", chain[-1].latest * RESOLUTION, None))
+    return tuple(found)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.diagnostics import Span
 from rvmon.timed.model.evaluate import chained
 from rvmon.timed.model.expressions import (
+    FALSE,
     TRUE,
     BinaryOperation,
     Choice,
@@ -205,12 +206,66 @@ def guards_of(expression: Expression) -> list[Guard]:
     """A condition as guards of which one holds where it does, and never two."""
     made = []
     for parts in _cases(normal_form(expression)):
-        data: Expression = TRUE
-        for part in parts:
-            if not isinstance(part, ClockCompare):
-                data = part if data == TRUE else BinaryOperation(BinaryOp.AND, data, part)
+        data = together(part for part in parts if not isinstance(part, ClockCompare))
         made.append(Guard(data, tuple(part for part in parts if isinstance(part, ClockCompare))))
     return made
+
+
+MOST_PIECES = 4000
+"""Alternatives of a formula that are taken apart."""
+
+
+def together(parts: Iterable[Expression]) -> Expression:
+    """One formula for parts that hold together."""
+    formula: Expression = TRUE
+    for part in parts:
+        formula = part if formula == TRUE else BinaryOperation(BinaryOp.AND, formula, part)
+    return formula
+
+
+def either(parts: Sequence[Expression]) -> Expression:
+    """One formula for parts of which one holds; halved again and again, so that it is not deep."""
+    if len(parts) < 2:
+        return parts[0] if parts else FALSE
+    middle = len(parts) // 2
+    return BinaryOperation(BinaryOp.OR, either(parts[:middle]), either(parts[middle:]))
+
+
+def alternatives_of(formula: Expression | None, due: Sequence[ClockCompare] = ()) -> list[Guard]:
+    """A plain normalised formula as guards of which some hold where it does; none for `None`.
+
+    Args:
+        formula: without path operators and `deadlock`.
+        due: bounds that hold besides in each.
+
+    Raises:
+        ModelError: they are too many.
+    """
+    if formula is None:
+        return []
+    return [
+        Guard(together(conditions), (*compares, *due)) for conditions, compares in _split(formula)
+    ]
+
+
+_Parts = tuple[list[Expression], list[ClockCompare]]
+
+
+def _split(formula: Expression) -> list[_Parts]:
+    if is_discrete(formula):
+        return [([formula], [])]
+    match formula:
+        case ClockCompare():
+            return [([], [formula])]
+        case BinaryOperation(BinaryOp.AND, left, right):
+            some, others = _split(left), _split(right)
+            if len(some) * len(others) > MOST_PIECES:
+                raise model_error("TA019", "the query has too many alternatives", None)
+            return [(a + c, b + d) for a, b in some for c, d in others]
+        case BinaryOperation(BinaryOp.OR, left, right):
+            return [*_split(left), *_split(right)]
+        case _:
+            raise AssertionError(f"{formula} is not normalised")
 
 
 def _cases(formula: Expression) -> list[list[Expression]]:

@@ -93,6 +93,8 @@ class Edge:
         weight: share of the runs that take it where they can, in (0, 1].
         label: the action's name in recordings; empty: the channel's name, if it has one.
         text: the edge for people.
+        watches: whether a watcher takes it along with each move of the others that its guard, which
+            reads what the move made of locations and variables, allows.
     """
 
     source: int
@@ -104,6 +106,7 @@ class Edge:
     label: str
     text: str
     span: Span | None = field(default=None, compare=False)
+    watches: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +233,10 @@ class Network:
         priorities: of steps; `None` if all are equal.
         has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
             under `or`.
+        original: the network of which this one says more: its runs are shown without the automata,
+            clocks and variables that stand behind those of that; `None`: it is none such.
+        is_watched: whether the last automaton watches the others: it takes part in each of their
+            moves, or the move is not possible.
     """
 
     name: str
@@ -245,6 +252,8 @@ class Network:
     names: Names = field(compare=False, repr=False)
     priorities: Priorities | None = None
     has_split_edges: bool = field(default=False, compare=False)
+    original: Network | None = None
+    is_watched: bool = False
 
     @property
     def rates(self) -> Iterator[tuple[Location, Rate]]:

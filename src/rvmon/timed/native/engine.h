@@ -100,10 +100,10 @@ typedef struct walk {
     int32_t *resets; /* clock, value */
     int32_t reset_count;
     int32_t *chosen, *group, *first, *pick;
+    int32_t *together, *watching; /* a move with an edge of the watcher; those that can go along */
     denials skipped, blockers; /* guards of receivers left out; what moves of some priority need */
     uint32_t blocker_count, *against, against_room, against_count, *skip, skip_room;
     bound *here; /* what the invariant says */
-    int32_t variant; /* among the ways in which the same edges move together */
     uint8_t *committed;
     bool delays;
     uint32_t ordinal;
@@ -146,10 +146,12 @@ typedef struct {
     walk out, look; /* the second looks for deadlocks while the first goes over moves */
     federation alive, dead, rest;
     uint32_t from_node, link, found;
-    int32_t *step_edges, step_edge_count, step_variant, *failed_edges; /* of a move that failed, or is found again */
+    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or is found again */
+    numbers step_bounds;                                 /* of what keeps the latter back, what fails */
     uint32_t wanted;
     numbers crossings, last_crossings; /* at hand; of the end that was found */
     numbers path;
+    int64_t *spans; /* by place of the watcher: least and largest value of the last clock */
     federation parts;
     int32_t ending, loop;
     uint32_t *triggers, trigger_count, trigger_room;

@@ -62,11 +62,13 @@ static PyObject *told(const answer *found)
     const Py_ssize_t parts = (Py_ssize_t)(found->part_count * part);
     const char *none = "";
     return Py_BuildValue(
-        "(iiiiLLLLy#y#)", (int)found->state, (int)found->ending, (int)found->loop,
+        "(iiiiLLLLy#y#y#)", (int)found->state, (int)found->ending, (int)found->loop,
         (int)found->improper, (long long)found->visited, (long long)found->stored,
         (long long)found->states, (long long)found->peak,
         (found->path.at != NULL) ? (const char *)found->path.at : none, path,
-        (found->parts != NULL) ? (const char *)found->parts : none, parts);
+        (found->parts != NULL) ? (const char *)found->parts : none, parts,
+        (found->spans != NULL) ? (const char *)found->spans : none,
+        (Py_ssize_t)(2 * found->span_count * sizeof *found->spans));
 }
 
 /* A plan and its costs as their own blocks, aligned, once they are checked; else an exception. */
@@ -97,7 +99,7 @@ static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbe
 
 /* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only): as zones.h says.
  * Gives state, ending, loop, improper, visited, stored, discrete states, most bytes in use, path and
- * parts as bytes. */
+ * parts and spans as bytes. */
 static PyObject *zones_search(PyObject *module, PyObject *args)
 {
     callbacks c = {NULL, NULL, NULL};

@@ -211,7 +211,9 @@ static bool each_way(engine *h, walk *w, sink take)
                 const bool all = !alone && ((edge[EDGE_FLAGS] & FLAG_BROADCAST) != 0);
                 bool on = true;
                 if ((all != (pass == 1)) || (!alone && !is_sender(edge))
-                    || (alone && committed && !w->committed[a])) {
+                    || (alone && committed && !w->committed[a] && !is_watcher(h, a))
+                    || ((edge[EDGE_FLAGS] & FLAG_WATCHES) != 0)
+                    || ((take == note_blocker) && is_watcher(h, a))) {
                     continue;
                 }
                 if (able(h, edge, w->places, w->values)) {

@@ -20,6 +20,8 @@ void release_answer(answer *found)
 {
     free(found->path.at);
     free(found->parts);
+    free(found->spans);
+    found->spans = NULL;
     found->path.at = NULL;
     found->parts = NULL;
 }

@@ -57,6 +57,9 @@ static void tell(engine *h, int32_t kind, int32_t piece, int32_t number, int32_t
     for (i = 0; i < edges; i++) {
         (void)put(h, &h->path, h->step_edges[i]);
     }
+    for (i = 0; (kind == STEP_MOVE) && (i < 4 * number); i++) {
+        (void)put(h, &h->path, h->step_bounds.at[i]);
+    }
 }
 
 static int tell_crossings(engine *h, const numbers *crossings)
@@ -89,7 +92,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     w->ordinal = 0;
     h->wanted = link;
     h->step_edge_count = 0;
-    h->step_variant = 0;
+    h->step_bounds.count = 0;
     h->crossings.count = 0;
     if ((before >= 0) && ((h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER))) {
         (void)each_stand(h, zone_of(h, from), before, h->delays[h->nodes[from].state] != 0, 0,
@@ -98,7 +101,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     } else {
         (void)each_move(h, w, match);
     }
-    tell(h, STEP_MOVE, piece, h->step_variant, h->step_edge_count);
+    tell(h, STEP_MOVE, piece, (int32_t)(h->step_bounds.count / 4), h->step_edge_count);
     return steps;
 }
 

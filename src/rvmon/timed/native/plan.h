@@ -23,6 +23,7 @@ enum {
     HEAD_BOUND,   /* of a late response; 1 where a run has to let time pass on */
     HEAD_SETS,    /* of acceptance */
     HEAD_LOCALS,  /* how many of the variables, the last, belong to functions */
+    HEAD_WATCHED, /* whether the last automaton watches the others */
     HEAD_SECTIONS
 };
 
@@ -62,7 +63,9 @@ enum { EDGE_AUTOMATON, EDGE_TARGET, EDGE_GUARD, EDGE_ATOM, EDGE_ATOMS,
        EDGE_CHANNEL, /* program or -1 */
        EDGE_FIRST, EDGE_STOP, /* the channels that it may be */
        EDGE_FLAGS, EDGE_SIZE };
-enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4 };
+/* An edge of a watcher that watches goes along with a move of the others: its guard reads what the
+ * move made of places and variables. Its other edges are moves of its own, which nothing keeps back. */
+enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4, FLAG_WATCHES = 8 };
 enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
 enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };

@@ -17,6 +17,17 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
     return cost;
 }
 
+/* Note between which values the last clock of the network is, by place of the watcher. */
+static void note_span(engine *h, const bound *z, const int32_t *places)
+{
+    const int32_t clock = h->plan[HEAD_CLOCKS];
+    int64_t *span = h->spans + (ptrdiff_t)2 * places[h->automaton_count - 1];
+    const bound low = z[clock * h->dim];
+    const int64_t high = (z[clock] < UNBOUNDED) ? (int64_t)z[clock] : INT64_MAX;
+    span[0] = (low > span[0]) ? low : span[0];
+    span[1] = (high > span[1]) ? high : span[1];
+}
+
 static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values);
 
 /* A zone just reached in a state whose data the invariants allow. */
@@ -47,6 +58,9 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
         return;
     }
     state = *at;
+    if (h->spans != NULL) {
+        note_span(h, z, places);
+    }
     if (h->policy != POLICY_SHORTEST) {
         n = new_node(h, state, z);
         if (n != NONE) {
@@ -103,12 +117,20 @@ static bool take(engine *h, walk *w, const int32_t *edges, int n)
 /* Find the move again whose number is wanted. */
 static bool match(engine *h, walk *w, const int32_t *edges, int n)
 {
+    uint32_t k;
     if (w->ordinal++ != h->wanted) {
         return true;
     }
-    h->step_variant = w->variant;
     (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
     h->step_edge_count = n;
+    for (k = 0; k < w->against_count; k++) {
+        uint32_t count;
+        const denied one = denied_by(w, k, &count)[w->skip[k]];
+        const bound b = negated(one.b);
+        (void)(put(h, &h->step_bounds, one.y) && put(h, &h->step_bounds, one.x)
+               && put(h, &h->step_bounds, (int32_t)((b - (b & 1)) / 2))
+               && put(h, &h->step_bounds, (int32_t)(b & 1)));
+    }
     return false;
 }
 

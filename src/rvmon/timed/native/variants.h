@@ -7,6 +7,11 @@
 
 typedef bool (*sink)(engine *h, walk *w, const int32_t *edges, int n);
 
+static bool is_watcher(const engine *h, int automaton)
+{
+    return (h->plan[HEAD_WATCHED] != 0) && (automaton == h->automaton_count - 1);
+}
+
 /* What the updates of a move make of its source, in `target`, `changed` and `resets`. */
 static bool apply(engine *h, walk *w, const int32_t *edges, int n)
 {
@@ -207,11 +212,12 @@ static bool is_same(const walk *w, const denial *one, const denial *other)
 /* What keeps a move back: the blockers of higher rank, each once; false if one always does. */
 static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
 {
-    const int32_t rank = (w->blocker_count > 0) ? rank_of(h, w, edges, n) : 0;
+    const bool waits = (w->blocker_count > 0) && !is_watcher(h, edge_at(h, edges[0])[EDGE_AUTOMATON]);
+    const int32_t rank = waits ? rank_of(h, w, edges, n) : 0;
     uint32_t had = 0;
     uint32_t k;
     uint32_t j;
-    for (k = 0; k < w->blocker_count; k++) {
+    for (k = 0; waits && (k < w->blocker_count); k++) {
         const denial *one = w->blockers.rows + k;
         if (one->rank <= rank) {
             continue;
@@ -232,6 +238,42 @@ static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
     return ROOM(h, w->skip, w->skip_room, (uint64_t)w->against_count + 1);
 }
 
+/* --- the watcher --------------------------------------------------------------------------------- */
+
+/* A move with each edge of the watcher that can go along with it; those of its own go alone. */
+static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink take)
+{
+    const search_state before = h->state;
+    const int32_t *place;
+    int32_t count = 0;
+    int32_t k;
+    if ((h->plan[HEAD_WATCHED] == 0) || (take == note_blocker)
+        || is_watcher(h, edge_at(h, edges[0])[EDGE_AUTOMATON])) {
+        return take(h, w, edges, n);
+    }
+    if (!apply(h, w, edges, n)) { /* told where the move itself is taken */
+        h->failed = false;
+        h->state = before;
+        return take(h, w, edges, n);
+    }
+    place = place_of(h, w->places, h->automaton_count - 1);
+    for (k = place[LOC_EDGE]; k < place[LOC_EDGE] + place[LOC_EDGES]; k++) {
+        const int32_t *edge = edge_at(h, k);
+        if (((edge[EDGE_FLAGS] & FLAG_WATCHES) != 0)
+            && holds(h, edge[EDGE_GUARD], w->target, w->changed)) {
+            w->watching[count++] = k;
+        }
+    }
+    (void)memcpy(w->together, edges, (size_t)n * sizeof *edges);
+    for (k = 0; (k < count) && !h->failed; k++) {
+        w->together[n] = w->watching[k];
+        if (!take(h, w, w->together, n + 1)) {
+            return false;
+        }
+    }
+    return !h->failed;
+}
+
 /* A move in all its variants. */
 static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink take)
 {
@@ -239,13 +281,11 @@ static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink t
     if (!find_blockers(h, w, edges, n)) {
         return runs(h) && !h->failed;
     }
-    w->variant = 0;
     (void)memset(w->skip, 0, (size_t)w->against_count * sizeof *w->skip);
     while (i >= 0) {
-        if (h->failed || !take(h, w, edges, n)) {
+        if (h->failed || !each_watched(h, w, edges, n, take)) {
             return false;
         }
-        w->variant++;
         for (i = (int64_t)w->against_count - 1; i >= 0; i--) {
             uint32_t count;
             (void)denied_by(w, (uint32_t)i, &count);
@@ -255,7 +295,6 @@ static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink t
             w->skip[i] = 0;
         }
     }
-    w->variant = 0;
     return true;
 }
 

@@ -55,11 +55,13 @@ static void make_walk(engine *h, walk *w)
     w->pick = block(h, places, sizeof *w->pick);
     w->committed = block(h, places, sizeof *w->committed);
     w->here = block(h, (size_t)h->dim, sizeof *w->here);
+    w->together = block(h, places, sizeof *w->together);
+    w->watching = block(h, (size_t)h->edge_count, sizeof *w->watching);
 }
 
 static void free_walk(walk *w)
 {
-    void *all[19];
+    void *all[21];
     size_t i;
     all[0] = w->places;
     all[1] = w->values;
@@ -80,8 +82,21 @@ static void free_walk(walk *w)
     all[16] = w->skipped.atoms;
     all[17] = w->blockers.rows;
     all[18] = w->blockers.atoms;
+    all[19] = w->together;
+    all[20] = w->watching;
     for (i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
+    }
+}
+
+/* No place of the watcher was met: bounds that no clock has. */
+static void make_spans(engine *h)
+{
+    const int32_t places = h->automata[3 * (h->automaton_count - 1) + 1];
+    int32_t i;
+    h->spans = block(h, 2 * (size_t)places, sizeof *h->spans);
+    for (i = 0; (h->spans != NULL) && (i < 2 * places); i++) {
+        h->spans[i] = INT64_MIN;
     }
 }
 
@@ -147,6 +162,9 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
     h->tables = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->tables);
     h->table_rooms = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->table_rooms);
+    if (plan[HEAD_WATCHED] && (plan[HEAD_CLOCKS] > 0) && (h->kind == SEEK_GOAL)) {
+        make_spans(h);
+    }
     return runs(h);
 }
 
@@ -159,7 +177,7 @@ static void free_engine(engine *h)
         h->lowers, h->uppers, h->test_entries, h->test_least, h->tightest, h->tightest_bound,
         h->top, h->spare, h->inside, h->copy, h->between, h->been, h->allowed, h->rest_allowed,
         h->rest_good, h->rest_on, h->rest_back, h->rank, h->open, h->roots, h->trail,
-        h->step_edges, h->failed_edges, h->crossings.at, h->last_crossings.at, h->alive.zones,
+        h->step_edges, h->failed_edges, h->step_bounds.at, h->crossings.at, h->last_crossings.at, h->alive.zones,
         h->dead.zones, h->rest.zones, h->parts.zones, h->guards.zones, h->pending.zones,
     };
     size_t i;
@@ -295,6 +313,7 @@ static void tell_end(engine *h)
     const int32_t failed = h->step_edge_count;
     const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER)
                             || (h->kind == SEEK_RUN);
+    h->step_bounds.count = 0;
     if (fails) {
         (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
     }
@@ -363,6 +382,8 @@ static answer search_here(const int32_t *plan, const double *costs, const caller
     told.peak = h->peak;
     told.path = h->path;
     told.dim = (uint32_t)h->dim;
+    told.spans = h->spans;
+    told.span_count = (h->spans != NULL) ? (uint32_t)h->automata[3 * h->automaton_count - 2] : 0;
     free_engine(h);
     return told;
 }

@@ -12,7 +12,8 @@ typedef enum { SEARCH_RUNS, SEARCH_ENDED, SEARCH_FOUND, SEARCH_STOPPED, SEARCH_F
 /* How a run ends that was found. */
 enum { END_REACHED, END_DEAD, END_IDLE, END_STUCK, END_LOOP, END_ZENO };
 
-/* Steps of a path, each told as: kind, piece behind (-1: none), a number, edges, their indices. */
+/* Steps of a path, each told as: kind, piece behind (-1: none), a number, edges, their indices. Of a
+ * move the number is of further bounds under which it can be taken, told as: x, y, c, 1 for `<= c`. */
 enum { STEP_MOVE, STEP_CROSSING, STEP_MARK };
 
 typedef struct {
@@ -25,6 +26,9 @@ typedef struct {
  *   path: first the piece in which it starts (-1: none), then its steps
  *   parts: of the last valuations, what is sought: rows of DBMs, 2c + 1 for `<= c`, 2c for `< c`,
  *          INT64_MAX for none
+ *   spans: of a search for a goal with a watcher, for each of its places between which bounds the last
+ *          clock of the network was: `-clock` at most the first, `clock` at most the second;
+ *          INT64_MIN where it never came
  *   loop: steps before the loop, -1 without one */
 typedef struct {
     search_state state;
@@ -38,6 +42,8 @@ typedef struct {
     numbers path;
     int64_t *parts;
     uint32_t part_count;
+    int64_t *spans;
+    uint32_t span_count;
     uint32_t dim;
 } answer;
 

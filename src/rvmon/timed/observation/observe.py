@@ -4,53 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
-from rvmon.logic.automaton import NOW
 from rvmon.logic.construct import Budget as TableBudget
 from rvmon.logic.construct import DoesNotCloseError, construct
-from rvmon.logic.formula import Factory, horizon, looks_back
+from rvmon.logic.formula import (
+    Core,
+    Factory,
+    Next,
+    Release,
+    Until,
+    horizon,
+    looks_back,
+    nodes_of,
+)
 from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import Obligation, lower
-from rvmon.logic.state_formula import StateOp
-from rvmon.spec.checked.formula import BoundAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.timed.conformance.recordings import labels_of
 from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator
-from rvmon.timed.model.expressions import VariableValue
+from rvmon.timed.model.expressions import Expression, InLocation, VariableValue
+from rvmon.timed.model.guards import either, together
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import BaseType
+from rvmon.timed.model.operators import BaseType, LocationKind
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import PlacedSymbol
-from rvmon.timed.observation.lasting import Lasting, open_means
-from rvmon.timed.observation.observer import (
-    Observed,
-    ObservedLink,
-    ObservedSite,
-    Phase,
-    is_failed,
-    is_passed,
-)
-from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
-from rvmon.timed.runs.paths import PathStep, invariant_of, make_run
-from rvmon.timed.runs.run import Ending, Run
-from rvmon.timed.runs.timing import TimedStep
-from rvmon.timed.search.explore import Node, explore
+from rvmon.timed.observation.observer import Observed
+from rvmon.timed.observation.propositions import NotExpressibleError
+from rvmon.timed.runs.run import Run
+from rvmon.timed.runs.space import check_clocks, check_start
 from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
-from rvmon.timed.zones.dbm import STRICT
-from rvmon.timed.zones.symbolic import check_clocks, check_start
-from rvmon.timed.zones.zone_unions import Constraint
+from rvmon.timed.search.sought import Seek, Sought
 from rvmon.trace.time import TICKS_PER_UNIT
 
 MET_IN_THE_END = "none stays open for ever while time passes on"
 OPEN_FOR_EVER = "an attempt stays open for ever"
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
 """What is reported of a requirement without deadline that no finite run fails."""
-
-_Node = Node[ObservedSite, ObservedLink]
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +115,9 @@ def observe(
 
 
 def _problem(
-    network: Network, spec: CheckedSpec, requirement: Requirement, *, ticks: bool = False
+    network: Network, spec: CheckedSpec, requirement: Requirement
 ) -> tuple[Network, Observed, Obligation]:
-    """The product of a network, in finer units if need be, with a requirement's monitor."""
+    """A network, in finer units if need be, and the same with a requirement's monitor."""
     if spec.time is not TimeModel.HELD:
         raise NotExpressibleError("only requirements in held time are checked on models")
     if requirement.captures or requirement.for_each is not None:
@@ -132,16 +125,11 @@ def _problem(
     factory = Factory()
     obligation = lower(requirement, factory)
     alphabet = alphabet_of(obligation.required)
-    labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
     if looks_back(obligation.required):
         raise NotExpressibleError("it looks back from what lies ahead")
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
-    if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
-        labelling.reader(trigger)
-    for proposition in alphabet.propositions:
-        labelling.reader(proposition)
     try:
         automaton = construct(factory.next(obligation.required), alphabet, TableBudget())
     except DoesNotCloseError as error:
@@ -150,31 +138,35 @@ def _problem(
     # A strict bound lies a tick behind its number; any other cut asks for a finer unit.
     if any(cut % unit > 1 for cut in automaton.cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
         network = finer(network, unit // TICKS_PER_UNIT["ms"])
-    product = Observed(network, obligation, requirement.pulse, automaton, labelling, ticks)
-    return network, product, obligation
+    signals, labels = _values(network), frozenset(labels_of(network))
+    watched = Observed(network, obligation, requirement.pulse, automaton, signals, labels)
+    return network, watched, obligation
 
 
 def _in_the_end(
     network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
 ) -> tuple[bool | None, Run | None, str]:
     """Whether what has no deadline is met, where no finite run fails it; else a run."""
-    network, problem, obligation = _problem(network, spec, requirement, ticks=True)
+    original, (_, problem, obligation) = network, _problem(network, spec, requirement)
     met = open_means(obligation.required)
     if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
         # Within a stretch without actions what one attempt meets the others do.
         attempts = replace(requirement, mode=Mode.UPON, pulse=True)
-        network, problem, obligation = _problem(network, spec, attempts, ticks=True)
+        _, problem, obligation = _problem(network, spec, attempts)
         met = open_means(obligation.required)
     if met is not False:
         return True, None, "" if met else UNDECIDED_IN_THE_END
-    found = Lasting(problem, meter).find()
+    run = None
+    # Best where nothing keeps time from passing for ever: a run that idles there is the shortest.
+    for first in (together((problem.rests, _unbounded(original))), problem.is_open):
+        if run is None and not meter.stopped:
+            sought = Sought(Seek.STAY_AFTER, first, problem.is_open)
+            run = seek(problem.network, sought, meter, proper_only=True).run
     if meter.stopped:
         return None, None, f"not decided: {meter.stopped}"
-    if found is None:
+    if run is None:
         return True, None, MET_IN_THE_END
-    node, loop = found
-    ending = Ending.IDLE if loop is None else Ending.LOOP
-    return False, observed_run(network, problem, node, ending, loop), OPEN_FOR_EVER
+    return False, run, OPEN_FOR_EVER
 
 
 def _observe(
@@ -182,98 +174,81 @@ def _observe(
 ) -> Observation:
     original = network
     network, problem, obligation = _problem(network, spec, requirement)
-    first: dict[str, _Node] = {}
-
-    def visit(node: _Node) -> None:
-        if node.site.phase is not Phase.IDLE:
-            first.setdefault("triggered", node)
-        if is_passed(node.site):
-            first.setdefault("passing", node)
-        elif is_failed(node.site):
-            first.setdefault("failing", node)
-
-    explore(problem, meter, visit)
-    runs = {name: observed_run(network, problem, node) for name, node in first.items()}
-    holds: bool | None = "failing" not in first
+    sought = {"failing": problem.failed, "triggered": problem.triggered, "passing": problem.passed}
+    runs = {name: _reached(problem, goal, meter) for name, goal in sought.items()}
+    holds: bool | None = runs["failing"] is None
+    if holds and _reached(problem, problem.lost, meter) is not None:
+        raise NotExpressibleError("its monitor is moved by time itself")
     remark = ""
     if meter.stopped and holds:
         holds, remark = None, f"not decided: {meter.stopped}"
-    elif holds and "triggered" not in first:
+    elif holds and runs["triggered"] is None:
         remark = "vacuous: no run triggers it"
     elif holds and horizon(obligation.required) is None:
-        holds, run, remark = _in_the_end(original, spec, requirement, meter)
-        runs.update({} if run is None else {"failing": run})
+        holds, runs["failing"], remark = _in_the_end(original, spec, requirement, meter)
     return Observation(
         requirement.id,
         requirement.text,
         holds,
-        runs.get("triggered"),
-        runs.get("passing"),
-        runs.get("failing"),
+        runs["triggered"],
+        runs["passing"],
+        runs["failing"],
         network,
         meter.statistics(),
         remark,
     )
 
 
+def _unbounded(network: Network) -> Expression:
+    """Every automaton is where no invariant bounds clocks."""
+    free = (
+        tuple(
+            InLocation(index, number)
+            for number, place in enumerate(automaton.locations)
+            if place.kind is LocationKind.NORMAL and not place.invariant.clocks
+        )
+        for index, automaton in enumerate(network.automata)
+    )
+    return together(either(places) for places in free)
+
+
+def _reached(problem: Observed, goal: Expression, meter: Meter) -> Run | None:
+    """A run to where an attempt is like that."""
+    if meter.stopped:
+        return None
+    run = seek(problem.network, Sought(Seek.GOAL, goal), meter).run
+    if run is not None and run.steps and run.steps[-1].action is None:
+        # It is decided a little later than time brings it about: that instant is not shown.
+        return replace(run, steps=run.steps[:-1], timing=None)
+    return run
+
+
+def open_means(required: Core) -> bool | None:
+    """Whether an attempt that stays open for ever is met; `None` if that depends on more.
+
+    Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
+    """
+    nodes = list(nodes_of(required))
+    unbounded = {
+        isinstance(node, Release)
+        for node in nodes
+        if isinstance(node, Until | Release) and node.high is None
+    }
+    if len(unbounded) > 1 or any(isinstance(node, Next) for node in nodes):
+        return None
+    return unbounded.pop() if unbounded else True
+
+
 def signals_of(network: Network) -> dict[str, Evaluator]:
     """How specifications' names are read off the network; its own variables come last."""
-    signals = {}
+    return {name: evaluator(value) for name, value in _values(network).items()}
+
+
+def _values(network: Network) -> dict[str, Expression]:
+    values: dict[str, Expression] = {}
     for name, symbol in network.names.top.symbols.items():
         if isinstance(symbol, PlacedSymbol) and symbol.kind is BaseType.INT and symbol.is_single:
-            signals[name] = evaluator(VariableValue(symbol.slot))
+            values[name] = VariableValue(symbol.slot)
     for signal in network.signals:
-        signals[signal.name] = evaluator(signal.value)
-    return signals
-
-
-def observed_run(
-    network: Network,
-    problem: Observed,
-    node: Node[ObservedSite, ObservedLink],
-    ending: Ending = Ending.REACHED,
-    loop: int | None = None,
-) -> Run:
-    """The run that leads to a node of the product."""
-    nodes = node.path()
-    clock_of = dict.fromkeys(range(problem.base, problem.dim), problem.dim)
-    steps = []
-    for number, (before, after) in enumerate(pairwise(nodes), start=1):
-        assert after.link is not None, "only the first node has no link"
-        own = problem.dim + number
-        steps.append(_step(problem, before.site, after.link, after.site, clock_of, own))
-    return make_run(network, nodes[0].site.state, steps, ending, loop)
-
-
-def _step(
-    problem: Observed,
-    here: ObservedSite,
-    link: ObservedLink,
-    behind: ObservedSite,
-    clock_of: dict[int, int],
-    own: int,
-) -> PathStep:
-    """One instant; `clock_of` says which step's clock each of the monitor's clocks is."""
-    state, move = here.state, link.move
-    leave: list[Constraint] = [invariant_of(state)]
-    if here.phase is Phase.HELD:
-        held = (*problem.held(here.location, here.region), (problem.since, 0, -STRICT))
-        leave.append(_renamed(held, clock_of))
-    if move is not None:
-        leave.append(move.guard)
-    for step in link.steps:
-        leave.append(_renamed(step.constraint, clock_of))
-        sources = [own if s == NOW else clock_of[problem.base + s] for s in step.sources]
-        clock_of.update(enumerate(sources, start=problem.base))
-    resets: tuple[tuple[int, float], ...] = ((own, 0.0),)
-    if move is not None:
-        clock_of[problem.since] = own
-        resets = (*move.resets, *resets)
-    waits = state.delays and here.phase is not Phase.FRESH
-    bounds = tuple(bound for constraint in leave for bound in constraint)
-    timed = TimedStep(waits, bounds, resets, invariant_of(behind.state))
-    return PathStep(timed, move, behind.state)
-
-
-def _renamed(constraint: Constraint, clock_of: dict[int, int]) -> Constraint:
-    return tuple((clock_of.get(x, x), clock_of.get(y, y), bound) for x, y, bound in constraint)
+        values[signal.name] = signal.value
+    return values

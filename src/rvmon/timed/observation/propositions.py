@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
+from math import ceil, floor
 
-from rvmon.logic.letters import Alphabet
-from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
+from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
 from rvmon.logic.state_formula import State as Proposition
 from rvmon.spec.checked.formula import (
     Compare,
+    CompareOp,
     Constant,
     EventAtom,
     Literal,
@@ -16,97 +18,99 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
 )
-from rvmon.timed.model.evaluate import Evaluator
-from rvmon.timed.zones.discrete import State
-
-Reader = Callable[[State, tuple[str, ...]], bool]
-"""Whether a proposition holds in a state, at an action with some names (none: between actions)."""
+from rvmon.timed.model.expressions import FALSE, TRUE, BinaryOperation, Expression, UnaryOperation
+from rvmon.timed.model.expressions import Constant as Number
+from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 
 class NotExpressibleError(Exception):
     """A requirement speaks of what the network does not have; the message says of what."""
 
 
-def speaks_of_events(proposition: Proposition) -> bool:
-    """Whether an event occurs in a proposition."""
-    return isinstance(proposition.leaf, EventAtom) or any(map(speaks_of_events, proposition.args))
+def events_of(proposition: Proposition) -> Iterator[str]:
+    """The events that occur in a proposition."""
+    if isinstance(proposition.leaf, EventAtom):
+        yield proposition.leaf.name
+    for argument in proposition.args:
+        yield from events_of(argument)
 
 
 class Labelling:
-    """Values of propositions.
+    """Propositions as expressions over a network.
 
     Args:
         signals: how each signal is read off locations and variables.
-        labels: the labels of the network's actions, which are its events.
+        event: whether an action has a name, or what that is between actions.
     """
 
-    def __init__(self, signals: Mapping[str, Evaluator], labels: frozenset[str]) -> None:
+    def __init__(
+        self, signals: Mapping[str, Expression], event: Callable[[str], Expression]
+    ) -> None:
         self._signals = signals
-        self._labels = labels
-        self._readers: dict[Proposition, Reader] = {}
+        self._event = event
 
-    def reader(self, proposition: Proposition) -> Reader:
-        """What reads a proposition off the network.
+    def expression(self, proposition: Proposition) -> Expression:
+        """A proposition of a state, or of an action that leads to it.
 
         Raises:
-            NotExpressibleError: it names an unknown signal or event, or looks into the past.
+            NotExpressibleError: it names an unknown signal, or looks into the past.
         """
-        found = self._readers.get(proposition)
-        if found is None:
-            found = self._readers[proposition] = self._new(proposition)
-        return found
-
-    def _new(self, proposition: Proposition) -> Reader:
-        args = [self.reader(argument) for argument in proposition.args]
+        args = [self.expression(argument) for argument in proposition.args]
         match proposition.op, proposition.leaf:
             case StateOp.NOT, _:
-                return lambda state, labels: not args[0](state, labels)
+                return UnaryOperation(UnaryOp.NOT, args[0])
             case StateOp.AND, _:
-                return lambda state, labels: all(arg(state, labels) for arg in args)
+                return _joined(BinaryOp.AND, args)
             case StateOp.OR, _:
-                return lambda state, labels: any(arg(state, labels) for arg in args)
+                return _joined(BinaryOp.OR, args)
             case StateOp.SURE, _:  # nothing is unknown
                 return args[0]
             case StateOp.LEAF, Constant(value=value):
-                return lambda _state, _labels: value
+                return Number(int(value))
             case StateOp.LEAF, Unborn() | Lost() | Lapsed():  # nor is anything unborn
-                return lambda _state, _labels: False
+                return FALSE
             case StateOp.LEAF, SignalAtom(name=name):
-                signal = self._signal(name)
-                return lambda state, _labels: bool(signal(state))
+                return self._signal(name)
             case StateOp.LEAF, EventAtom(name=name):
-                if name not in self._labels:
-                    raise NotExpressibleError(f"the network has no action `{name}`")
-                return lambda _state, labels: name in labels
+                return self._event(name)
             case StateOp.LEAF, Compare(op=op, left=left, right=right):
-                one, other = self._number(left), self._number(right)
-                return lambda state, _labels: bool(op.holds(one(state), other(state)))
+                return self._comparison(op, left, right)
             case StateOp.LEAF, _:
                 raise NotExpressibleError("it speaks of updates or of the trace's ends")
             case _:
                 raise NotExpressibleError("it speaks of the past")
 
-    def _number(self, number: Numeric) -> Callable[[State], float]:
+    def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> Expression:
+        match left, right:
+            case Literal(int() | float() as one), Literal(int() | float() as other):
+                return Number(int(op.holds(one, other)))
+            case Literal(), _:
+                return self._comparison(op.mirrored, right, left)
+            case _, Literal(float() as number) if not number.is_integer():
+                if op in (CompareOp.EQ, CompareOp.NE):  # a model has whole numbers
+                    return Number(int(op is CompareOp.NE))
+                up = op in (CompareOp.LT, CompareOp.GE)
+                return self._comparison(op, left, Literal(ceil(number) if up else floor(number)))
+            case _:
+                return BinaryOperation(BinaryOp(op), self._number(left), self._number(right))
+
+    def _number(self, number: Numeric) -> Expression:
         match number:
             case SignalValue(name):
                 return self._signal(name)
             case Literal(int() | float() as value):
-                return lambda _state: value
+                return Number(int(value))
             case _:
                 raise NotExpressibleError("it calculates with numbers")
 
-    def _signal(self, name: str) -> Callable[[State], int]:
+    def _signal(self, name: str) -> Expression:
         if name not in self._signals:
             fix = f"`--bind '{name}=…'` gives it a meaning"
             raise NotExpressibleError(f"the network has no signal `{name}`: {fix}")
-        read = self._signals[name]
-        return lambda state: read(state.vector.locations, state.values)
+        return self._signals[name]
 
-    def letter(self, alphabet: Alphabet, state: State, labels: tuple[str, ...]) -> int:
-        """The letter of a state, or of an action that leads to it."""
-        return sum(
-            entries[TRUE if self.reader(proposition)(state, labels) else FALSE]
-            for proposition, entries in zip(
-                alphabet.propositions, alphabet.pessimistic, strict=True
-            )
-        )
+
+def _joined(op: BinaryOp, args: list[Expression]) -> Expression:
+    if not args:
+        return TRUE if op is BinaryOp.AND else FALSE
+    return reduce(lambda left, right: BinaryOperation(op, left, right), args)

@@ -21,6 +21,26 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+Atom = tuple[int, int, float]
+"""`(x, y, bound)`: clock y − clock x is at most the bound; clock 0 is always 0."""
+
+STRICT = 2.0**-12
+"""What a strict bound lacks."""
+
+Zone = list[float]
+"""Clock valuations by their bounds: of `dim` clocks `dim²`, as an atom's at `x * dim + y`."""
+
+
+def bound_of(number: int, strict: bool) -> float:
+    """The bound `<= number`, or `< number` if strict."""
+    return number - STRICT if strict else float(number)
+
+
+def universe(dim: int) -> Zone:
+    """All valuations."""
+    return [0.0 if x == y or y == 0 else inf for x in range(dim) for y in range(dim)]
+
+
 Constraint = tuple[int, int, float]
 """`(p, q, bound)`: `t[q] − t[p] <= bound`, in grid steps."""
 

@@ -5,15 +5,18 @@ A run has the exact window of each wait, and concrete times that the plain rules
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.timed.model.network import Network
 from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.constraints import Atom
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep
+from rvmon.timed.runs.space import Move, State
 from rvmon.timed.runs.timing import TimedStep, earliest, timing_of, windows
-from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint
+
+Piece = tuple[Atom, ...]
+"""Bounds that hold together; without any they hold everywhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +34,12 @@ class PathStep:
     state: State
 
 
-def invariant_of(state: State) -> Constraint:
+def invariant_of(state: State) -> Piece:
     """A state's invariant as bounds."""
     return tuple((0, clock, bound) for clock, bound in state.invariant)
 
 
-def move_step(
-    state: State, move: Move, leave: Constraint = EVERYWHERE, enter: Constraint = EVERYWHERE
-) -> PathStep:
+def move_step(state: State, move: Move, leave: Piece = (), enter: Piece = ()) -> PathStep:
     """A move, with what else must hold before and after it."""
     target = move.target
     timed = TimedStep(
@@ -50,7 +51,7 @@ def move_step(
     return PathStep(timed, move, target)
 
 
-def mark_step(state: State, holds: Constraint, resets: Sequence[int] = ()) -> PathStep:
+def mark_step(state: State, holds: Piece, resets: Sequence[int] = ()) -> PathStep:
     """An instant at which something holds, and some clocks of the query start."""
     leave = (*invariant_of(state), *holds)
     return PathStep(
@@ -58,19 +59,10 @@ def mark_step(state: State, holds: Constraint, resets: Sequence[int] = ()) -> Pa
     )
 
 
-def crossing_step(state: State, leave: Constraint, enter: Constraint) -> PathStep:
+def crossing_step(state: State, leave: Piece, enter: Piece) -> PathStep:
     """The instant at which a run crosses from one piece of a formula to another."""
     timed = TimedStep(state.delays, (*invariant_of(state), *leave), (), enter)
     return PathStep(timed, None, state)
-
-
-def move_path(start: State, moves: Iterable[Move]) -> list[PathStep]:
-    """Moves in turn."""
-    steps, here = [], start
-    for move in moves:
-        steps.append(move_step(here, move))
-        here = move.target
-    return steps
 
 
 def make_run(
@@ -80,25 +72,36 @@ def make_run(
     ending: Ending = Ending.REACHED,
     loop: int | None = None,
 ) -> Run:
-    """The run along a path that does everything as early as possible."""
+    """The run along a path that does everything as early as possible.
+
+    Args:
+        network: whose run is shown. The path may be of another that has more automata, clocks and
+            variables behind those of this one.
+        start: where it starts.
+        steps: the path.
+        ending: how the run ends.
+        loop: the first step that is repeated, of a loop.
+    """
     timing = timing_of([step.timed for step in steps])
     assert timing is not None, "the search found a run along the path"
     run_steps = tuple(
-        RunStep(window, wait, action_of(step.move), position_of(step.state))
+        RunStep(window, wait, _action(network, step.move), _position(network, step.state))
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
-    run = Run(position_of(start), run_steps, ending, loop, timing)
+    run = Run(_position(network, start), run_steps, ending, loop, timing)
     replay(network, run)
     return run
 
 
-def action_of(move: Move | None) -> Action | None:
-    """The edges of a move."""
-    if move is None:
-        return None
-    return Action(tuple((edge.automaton, edge.edge) for edge in move.edges))
+def _action(network: Network, move: Move | None) -> Action | None:
+    edges = tuple(
+        (edge.automaton, network.automata[edge.automaton].edges[edge.number])
+        for edge in (() if move is None else move.edges)
+        if edge.automaton < len(network.automata)
+    )
+    return Action(edges) if edges else None
 
 
-def position_of(state: State) -> Position:
-    """A discrete state as runs show it."""
-    return Position(state.vector.locations, state.values)
+def _position(network: Network, state: State) -> Position:
+    automata, variables = len(network.automata), len(network.variables)
+    return Position(state.locations[:automata], state.values[:variables])

@@ -16,7 +16,7 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import ceil, inf, prod
 from random import Random
 
@@ -24,9 +24,8 @@ from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import Expression
 from rvmon.timed.model.network import Location, Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import Constraint, constraint_maker
+from rvmon.timed.runs.constraints import Atom
+from rvmon.timed.runs.space import Move, Space, State, pieces_of
 
 GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""
@@ -52,14 +51,14 @@ def trial_of(
 ) -> Callable[[], bool]:
     """What simulates one run and says whether it meets a normalised formula within a horizon."""
     space = Space(network)
-    constraints = constraint_maker(sought)
+    pieces = pieces_of(sought)
 
     def meets() -> bool:
         run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
         return any(
-            _window(constraint, clocks, rates, 0, stay) is not None
+            _window(piece, clocks, rates, 0, stay) is not None
             for state, clocks, rates, stay in run
-            for constraint in constraints(state.vector.locations, state.values)
+            for piece in pieces(state.locations, state.values)
         )
 
     return meets
@@ -76,8 +75,8 @@ def stretches(
         CutShortError: it may not go on.
     """
     state, paces = space.initial(), _Paces(space.network)
-    assert state is not None, "the network can start"
-    clocks, now = [0] * space.dim, 0
+    assert state is not None  # noqa: S101 - the network can start
+    clocks, now = [0] * (1 + len(space.network.clocks)), 0
     for number in range(1, MOST_MOVES + 1):
         if number % CHECK_EVERY == 0 and not goes_on():
             raise CutShortError
@@ -110,16 +109,12 @@ def _draw(
 ) -> tuple[Move, int] | None:
     """A move and its delay in grid steps; `None` if none is possible any more."""
     longest = _longest(state, clocks, rates)
-    begun: dict[int, dict[tuple[int, ...], _Choice]] = {}
-    for move in space.moves(state):
-        window = _move_window(move, clocks, rates, longest)
-        if window is not None:
-            own = begun.setdefault(move.edges[0].automaton, {})
-            own.setdefault(tuple(map(id, move.edges)), _Choice(move)).add(*window)
+    begun: dict[int, list[_Choice]] = {}
+    for choice in _possible(space, state, clocks, rates, longest):
+        begun.setdefault(choice.move.edges[0].automaton, []).append(choice)
     draws: list[tuple[int, float, Move]] = []
     while begun and not draws:
-        for automaton, choices in begun.items():
-            possible = [*choices.values()]
+        for automaton, possible in begun.items():
             weights = [prod(edge.edge.weight for edge in one.move.edges) for one in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)
@@ -142,7 +137,7 @@ class _Paces:
         self._known: dict[int, tuple[State, tuple[int, ...]]] = {}
 
     def _places(self, state: State) -> Iterator[Location]:
-        for automaton, place in zip(self._network.automata, state.vector.locations, strict=True):
+        for automaton, place in zip(self._network.automata, state.locations, strict=True):
             yield automaton.locations[place]
 
     def rates(self, state: State) -> tuple[int, ...]:
@@ -161,7 +156,7 @@ class _Paces:
         found: dict[int, int] = {}
         for place in self._places(state):
             for rate in place.rates:
-                value = evaluator(rate.value)(state.vector.locations, state.values)
+                value = evaluator(rate.value)(state.locations, state.values)
                 name = self._network.clocks[rate.clock].name
                 if value < 0 or found.setdefault(rate.clock + 1, value) != value:
                     problem = "below 0" if value < 0 else "set by two automata at once"
@@ -177,26 +172,51 @@ class _Paces:
         ]
 
     def _wait(self, place: Location, leaving: tuple[Expression, Expression], state: State) -> float:
-        often, units = (evaluator(one)(state.vector.locations, state.values) for one in leaving)
+        often, units = (evaluator(one)(state.locations, state.values) for one in leaving)
         if often <= 0 or units <= 0:
             message = f"`{place.name}` is left at a rate that is not above 0"
             raise model_error("TA017", message, place.span, "write one above 0, such as 1:20")
         return GRID * units / often
 
 
+def _possible(
+    space: Space, state: State, clocks: list[int], rates: Sequence[int], longest: float
+) -> list[_Choice]:
+    """The moves that are possible now or after a delay, with all such delays."""
+    found = []
+    for move in space.moves(state):
+        window = _move_window(move, clocks, rates, longest)
+        choice = _Choice(move, [] if window is None else [window])
+        for atoms in move.left_out:
+            taken = _window(atoms, clocks, rates, 0, longest)
+            if taken is not None:
+                choice.take_out(taken)
+        found.append(choice)
+    if space.network.priorities is not None:
+        whole = [(one.move.rank, one.windows) for one in found]
+        for one in found:
+            one.windows = [*one.windows]
+            for window in (w for rank, windows in whole if rank > one.move.rank for w in windows):
+                one.take_out(window)
+    return [one for one in found if one.windows]
+
+
 @dataclass(slots=True)
 class _Choice:
-    """A move in all its variants, which are one to chance, and when it is possible."""
+    """A move and when it is possible: first and last delays, ascending."""
 
     move: Move
-    windows: list[tuple[int, float]] = field(default_factory=list)
+    windows: list[tuple[int, float]]
 
-    def add(self, low: int, high: float) -> None:
-        """Add the delays from `low` to `high`."""
-        apart = [one for one in self.windows if one[1] < low or high < one[0]]
-        meeting = [one for one in self.windows if one not in apart]
-        low, high = min([low, *(a for a, _ in meeting)]), max([high, *(b for _, b in meeting)])
-        self.windows = sorted([*apart, (low, high)])
+    def take_out(self, window: tuple[int, float]) -> None:
+        """Leave out some delays."""
+        first, last = window
+        rest: list[tuple[int, float]] = []
+        for low, high in self.windows:
+            rest.append((low, min(high, first - 1)))
+            if last < inf:
+                rest.append((max(low, int(last) + 1), high))
+        self.windows = [(low, high) for low, high in rest if low <= high]
 
     def delay(self, random: Random, mean_wait: float) -> int:
         """A delay: uniformly from all windows, or if the last has no end exponentially in them."""
@@ -236,7 +256,7 @@ def _move_window(
 
 
 def _window(
-    atoms: Constraint, clocks: list[int], rates: Sequence[int], low: int, high: float
+    atoms: Sequence[Atom], clocks: list[int], rates: Sequence[int], low: int, high: float
 ) -> tuple[int, float] | None:
     """The delays in [low, high] after which all bounds hold; `None` if there are none."""
     for x, y, bound in atoms:

@@ -24,8 +24,7 @@ from rvmon.timed.model.network import Chance, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.simulate import GRID, CutShortError, stretches, trial_of
-from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.symbolic import check_start
+from rvmon.timed.runs.space import Space, check_start
 
 RUNS = 1_000
 """Runs of an estimate that does not say how many."""
@@ -162,7 +161,7 @@ def _mean(network: Network, query: Query, mean: Mean, random: Random, runs: _Run
 
     def reached() -> int:
         run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.goes_on)
-        return best([value(state.vector.locations, state.values) for state, *_ in run])
+        return best([value(state.locations, state.values) for state, *_ in run])
 
     found = list(runs.drawn(reached, mean.runs or RUNS))
     if len(found) < 2:

@@ -18,9 +18,8 @@ from itertools import pairwise, product
 from math import ceil, inf, isqrt
 from random import Random
 
-from rvmon.timed.runs.constraints import Constraint, Timing
+from rvmon.timed.runs.constraints import Atom, Constraint, Timing, Zone
 from rvmon.timed.runs.run import Window
-from rvmon.timed.zones.dbm import Atom, Zone
 
 
 @dataclass(frozen=True, slots=True)

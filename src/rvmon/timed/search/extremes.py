@@ -25,13 +25,12 @@ from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.concrete import replay
 from rvmon.timed.runs.run import Run
+from rvmon.timed.runs.space import Space, check_clocks, check_start
+from rvmon.timed.search.clock_bounds import value_range
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.clock_bounds import value_range
-from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.symbolic import check_clocks, check_start
 
 FARTHEST = 1_000_000
 """A clock that goes beyond so many units is said to do so; a larger bound is not looked for."""

@@ -15,9 +15,8 @@ from itertools import product
 from math import inf
 from typing import TYPE_CHECKING
 
-from rvmon.timed.runs.constraints import close
+from rvmon.timed.runs.constraints import Zone, close, universe
 from rvmon.timed.runs.timing import TimedStep, on_grid, timing_of
-from rvmon.timed.zones.dbm import Zone, universe
 
 if TYPE_CHECKING:
     import numpy as np

@@ -18,16 +18,22 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import has_paths, resets_in, speaks_of_deadlock
-from rvmon.timed.model.network import Edge, Network
+from rvmon.timed.model.guards import (
+    MOST_PIECES,
+    alternatives_of,
+    has_paths,
+    resets_in,
+    speaks_of_deadlock,
+    together,
+)
+from rvmon.timed.model.network import Edge, Guard, Network
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.search.clock_bounds import ClockBounds, location_bounds
 from rvmon.timed.search.linear import WayState
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.programs import Programs
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds
-from rvmon.timed.zones.zone_unions import MOST_PIECES, Alternative, alternatives_of, together
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 5000
@@ -101,7 +107,8 @@ class Plan:
         choose = list(Policy).index(sought.choose)
         head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
         sets = 0 if sought.ways is None else sought.ways.sets
-        self.numbers = _packed([*head, int(late or 0), sets, len(network.locals)], sections)
+        head += [int(late or 0), sets, len(network.locals), network.is_watched]
+        self.numbers = _packed(head, sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -139,7 +146,7 @@ class Plan:
         row += self._compares(edge.guard.clocks)
         row.append(self._programs.add_updates(edge.updates) if edge.updates else -1)
         if edge.sync is None:
-            return [*row, -1, 0, 0, 0]
+            return [*row, -1, 0, 0, edge.watches << 3]
         slot = edge.sync.slot
         channel = self._network.channels[slot.first]
         flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
@@ -162,10 +169,10 @@ class Plan:
             self._atoms += row
         return first, len(self._atoms) // 4 - first
 
-    def _alternatives(self, alternatives: Sequence[Alternative]) -> list[int]:
+    def _alternatives(self, alternatives: Sequence[Guard]) -> list[int]:
         for one in alternatives:
-            places = list(_places_of(one.condition))
-            for compare in one.compares:
+            places = list(_places_of(one.data))
+            for compare in one.clocks:
                 if compare.clock == len(self._network.clocks):
                     continue  # the timer
                 # Best the place of an automaton that sets the clock: its edges forget the number.
@@ -175,7 +182,7 @@ class Plan:
         return [
             number
             for one in alternatives
-            for number in (self._data(one.condition), *self._compares(one.compares))
+            for number in (self._data(one.data), *self._compares(one.clocks))
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:

@@ -6,26 +6,9 @@ import gc
 import mmap
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from rvmon.timed.search.outcome import Budget, Progress, Statistics, Watch
-
-CHECK_EVERY = 16
-"""States between two looks at the clock and at the memory."""
-
-
-@contextmanager
-def paused_collector() -> Iterator[None]:
-    """Keep the garbage collector still: a search makes many objects, and none in cycles."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 class Meter:
@@ -53,16 +36,6 @@ class Meter:
     def statistics(self) -> Statistics:
         """What was counted, as data."""
         return Statistics(self.visited, self.stored, self.seconds)
-
-    def count(self, waiting: int) -> bool:
-        """Count one state; False if the search must stop."""
-        self.visited += 1
-        budget = self._budget
-        if budget.states is not None and self.visited > budget.states:
-            self.stop_at_states()
-        elif self.visited % CHECK_EVERY == 0:
-            self._look(self.visited, waiting)
-        return not self.stopped
 
     @property
     def left(self) -> int:

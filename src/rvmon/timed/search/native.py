@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf
 
 from rvmon.native.zones import search
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.guards import together
+from rvmon.timed.model.network import Guard, Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.paths import PathStep, crossing_step, make_run, mark_step, move_step
+from rvmon.timed.runs.constraints import STRICT, Atom, Zone
+from rvmon.timed.runs.paths import PathStep, Piece, crossing_step, make_run, mark_step, move_step
 from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.runs.space import Space, State, atoms_of, pieces_of
 from rvmon.timed.runs.timing import timing_of
 from rvmon.timed.search.loops import time_passes
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.dbm import STRICT, Zone
-from rvmon.timed.zones.discrete import State, atoms_of
-from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import (
-    EVERYWHERE,
-    Alternative,
-    Constraint,
-    constraint_maker,
-    together,
-)
 
 _UNBOUNDED = (1 << 63) - 1
+_NOWHERE = -(1 << 63)
 
 
 class _State(IntEnum):
@@ -63,10 +57,13 @@ class Answer:
     Attributes:
         run: to what was sought; `None` if there is none or the search was stopped.
         improper: whether a way to stay was passed by because time stops on it.
+        spans: of a goal that was not found, with a watcher: by location of that which was met, the
+            least and largest value that the last clock came near there; `inf`: it has no end.
     """
 
     run: Run | None
     improper: bool
+    spans: Mapping[int, tuple[float, float]]
 
 
 def seek(
@@ -94,7 +91,7 @@ def seek(
         steps = [step.timed for step in paths.walk(path)[1][loop:]]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
-    state, ending, loop, improper, visited, stored, _, _, path, parts = search(
+    state, ending, loop, improper, visited, stored, _, _, path, parts, spans = search(
         plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only
     )
     meter.add(visited, stored)
@@ -109,10 +106,20 @@ def seek(
             fix = "choose a larger unit of time"
             raise model_error("TA019", "times grow too large in this network", None, fix)
         case _State.FOUND:
-            return Answer(paths.run(path, parts, _End(ending), loop), improper=bool(improper))
+            run = paths.run(path, parts, _End(ending), loop)
+            return Answer(run, bool(improper), {})
         case _State.ENDED:
             pass
-    return Answer(None, improper=bool(improper))
+    return Answer(None, bool(improper), _spans(array("q", spans)))
+
+
+def _spans(numbers: Sequence[int]) -> dict[int, tuple[float, float]]:
+    pairs = enumerate(zip(numbers[::2], numbers[1::2], strict=True))
+    return {
+        place: (-(low >> 1), inf if high == _UNBOUNDED else high >> 1)
+        for place, (low, high) in pairs
+        if low > _NOWHERE
+    }
 
 
 def _zone(numbers: Sequence[int]) -> Zone:
@@ -145,9 +152,8 @@ class _Paths:
             if timing_of([step.timed for step in marked]) is not None:
                 steps = marked
                 break
-        return make_run(
-            self._network, self._start, steps, _ending(end, last), None if loop < 0 else loop
-        )
+        shown = self._network.original or self._network
+        return make_run(shown, self._start, steps, _ending(end, last), None if loop < 0 else loop)
 
     def fail(self, path: bytes, sought: Sought) -> None:
         """Say what is wrong where a search could not go on.
@@ -166,7 +172,7 @@ class _Paths:
         labels = [] if sought.ways is None else [s.label for s in sought.ways.states]
         for formula in (sought.goal, sought.inside, *map(together, labels)):
             if formula is not None:
-                constraint_maker(formula)(state.vector.locations, state.values)
+                pieces_of(formula)(state.locations, state.values)
 
     def walk(self, path: bytes) -> tuple[State, list[PathStep]]:
         """The last state of a path and its steps.
@@ -183,7 +189,8 @@ class _Paths:
             match _Step(kind):
                 case _Step.MOVE:
                     edges = [self._plan.edges[edge] for edge in numbers[at - count : at]]
-                    step = self._move(state, edges, number, here, behind)
+                    bounds, at = numbers[at : at + 4 * number], at + 4 * number
+                    step = self._move(state, edges, (*_bounds(bounds), *here), behind)
                 case _Step.CROSSING:
                     there = self._constraint(self._plan.inside, behind, state)
                     leave = here if number else _rounded(here, uppers=True)
@@ -198,32 +205,22 @@ class _Paths:
         return state, steps
 
     def _move(
-        self,
-        state: State,
-        edges: list[tuple[int, int]],
-        variant: int,
-        leave: Constraint,
-        behind: int,
+        self, state: State, edges: Sequence[tuple[int, int]], leave: Piece, behind: int
     ) -> PathStep:
-        for move in self._space.moves(state):
-            same = [(edge.automaton, edge.number) for edge in move.edges] == edges
-            if same and move.variant == variant:
-                if move.failure is not None:
-                    raise move.failure
-                enter = self._constraint(self._plan.inside, behind, move.target)
-                return move_step(state, move, leave, enter)
-        raise AssertionError("the native search made a move that the rules have not")
+        move = self._space.step(state, edges)
+        assert move is not None  # noqa: S101 - the native search made it
+        if move.failure is not None:
+            raise move.failure
+        enter = self._constraint(self._plan.inside, behind, move.target)
+        return move_step(state, move, leave, enter)
 
-    def _constraint(
-        self, alternatives: Sequence[Alternative], number: int, state: State
-    ) -> Constraint:
+    def _constraint(self, alternatives: Sequence[Guard], number: int, state: State) -> Piece:
         """The bounds of an alternative in a state; none for −1."""
         if number < 0:
-            return EVERYWHERE
-        atoms = atoms_of(alternatives[number].compares, None)
-        return tuple(atoms(state.vector.locations, state.values))
+            return ()
+        return atoms_of(alternatives[number].clocks, None)(state.locations, state.values)
 
-    def _parts(self, parts: bytes) -> Iterator[Constraint]:
+    def _parts(self, parts: bytes) -> Iterator[Piece]:
         numbers, entries = array("q", parts), self.dim * self.dim
         for at in range(0, len(numbers), entries):
             zone = _zone(numbers[at : at + entries])
@@ -235,7 +232,13 @@ class _Paths:
             )
 
 
-def _rounded(constraint: Constraint, *, uppers: bool) -> Constraint:
+def _bounds(numbers: Sequence[int]) -> Iterator[Atom]:
+    """Bounds that a move needs besides its guards."""
+    for x, y, number, closed in zip(*[iter(numbers)] * 4, strict=True):
+        yield x, y, number - (0.0 if closed else STRICT)
+
+
+def _rounded(constraint: Piece, *, uppers: bool) -> Piece:
     """A piece with the instants at which time leaves it, or behind which it enters it."""
     return tuple(
         (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)

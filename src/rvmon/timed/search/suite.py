@@ -1,7 +1,7 @@
 """Few runs that together go through every location, edge, or pair of edges of a network.
 
-One search records a first way to each item; then ways are chosen greedily, the one with the most
-items that are still missing first.
+A shortest run to each item that the runs before do not go through is sought; then runs are chosen
+greedily, the one with the most items that are still missing first.
 
 Source: Blom, Hessel, Jonsson, Pettersson, Specifying and Generating Test Cases Using Observer
 Automata, FATES 2004 (coverage items as observers); Chvátal, A Greedy Heuristic for the Set-Covering
@@ -10,19 +10,29 @@ Problem, 1979.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from rvmon.timed.model.expressions import (
+    Assignment,
+    BinaryOperation,
+    Choice,
+    Constant,
+    Expression,
+    InLocation,
+    Slot,
+    Variable,
+    VariableValue,
+)
 from rvmon.timed.model.network import Network
-from rvmon.timed.runs.paths import make_run, move_path
+from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.runs.run import Run
-from rvmon.timed.search.explore import Node, explore
+from rvmon.timed.runs.space import check_clocks, check_start
 from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
-from rvmon.timed.zones.dbm import Zone
-from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps, check_clocks, check_start
+from rvmon.timed.search.sought import Seek, Sought
 
 
 class Criterion(StrEnum):
@@ -66,48 +76,6 @@ class Suite:
         return sum(len(items) for _, items in self.runs)
 
 
-@dataclass(frozen=True, slots=True)
-class _Site:
-    """A discrete state, and one automaton with the number of the edge that it took last."""
-
-    state: State
-    last: tuple[int, int] | None
-
-    @property
-    def uppers(self) -> tuple[tuple[int, float], ...]:
-        """Of the state."""
-        return self.state.uppers
-
-    @property
-    def lowers(self) -> tuple[tuple[int, float], ...]:
-        """Of the state."""
-        return self.state.lowers
-
-
-class _Tour:
-    """Goes everywhere; `watched` is the automaton whose last edge distinguishes sites."""
-
-    def __init__(self, network: Network, watched: int | None) -> None:
-        self._steps = Steps(network)
-        self._watched = watched
-        self.dim = self._steps.dim
-
-    def start(self) -> Iterator[tuple[_Site, Zone]]:
-        for state, zone in self._steps.start():
-            yield _Site(state, None), zone
-
-    def successors(self, site: _Site, zone: Zone) -> Iterator[tuple[Move, _Site, Zone]]:
-        for move, state, fresh in self._steps.successors(site.state, zone):
-            last = site.last
-            for edge in move.edges:
-                if edge.automaton == self._watched:
-                    last = edge.automaton, edge.number
-            yield move, _Site(state, last), fresh
-
-
-_Node = Node[_Site, Move]
-
-
 def build_suite(
     network: Network,
     criterion: Criterion,
@@ -128,23 +96,42 @@ def build_suite(
     """
     check_start(network)
     check_clocks(network)
-    meter = Meter(budget, watch)
-    ways: dict[Item, _Node] = {}
+    meter, found, covered = Meter(budget, watch), list[tuple[Run, frozenset[Item]]](), set[Item]()
+    for item in all_items(network, criterion):
+        if item not in covered and not meter.stopped:
+            run = _way_to(network, criterion, item, meter)
+            if run is not None:
+                found.append((run, _items_on(network, run, criterion) | {item}))
+                covered |= found[-1][1]
+    missing = tuple(item for item in all_items(network, criterion) if item not in covered)
+    return Suite(criterion, tuple(_chosen(found)), missing, meter.statistics(), meter.stopped)
 
-    def visit(node: _Node) -> None:
-        for item in _items_at(node, criterion):
-            ways.setdefault(item, node)
 
-    watched: Iterable[int | None] = [None]
-    if criterion is Criterion.EDGE_PAIRS:
-        watched = range(len(network.automata))
-    for automaton in watched:
-        explore(_Tour(network, automaton), meter, visit)
-        if meter.stopped:
-            break
-    runs = tuple(_chosen(network, ways, criterion))
-    missing = tuple(item for item in all_items(network, criterion) if item not in ways)
-    return Suite(criterion, runs, missing, meter.statistics(), meter.stopped)
+def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
+    """The shortest run to an item; `None` if there is none, or the search was stopped."""
+    if criterion is Criterion.LOCATIONS:
+        goal: Expression = InLocation(item.automaton, *item.numbers)
+        return seek(network, Sought(Seek.GOAL, goal), meter).run
+    # One more variable counts how many of the edges have just been taken in turn.
+    slot, count = Slot(len(network.variables)), len(item.numbers)
+    progress = Variable("", 0, count, 0)
+    last, edges = item.numbers[-1], [*network.automata[item.automaton].edges]
+    for number, edge in enumerate(edges):
+        taken: Expression = Constant(int(number == item.numbers[0]))
+        if count > 1 and number == last:
+            before = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(1))
+            taken = Choice(before, Constant(count), taken)
+        edges[number] = replace(edge, updates=(*edge.updates, Assignment(slot, taken, progress)))
+    automata = [*network.automata]
+    automata[item.automaton] = replace(automata[item.automaton], edges=tuple(edges))
+    counting = replace(
+        network,
+        variables=(*network.variables, progress),
+        automata=tuple(automata),
+        original=network,
+    )
+    goal = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(count))
+    return seek(counting, Sought(Seek.GOAL, goal), meter).run
 
 
 def all_items(network: Network, criterion: Criterion) -> Iterator[Item]:
@@ -174,49 +161,31 @@ def item_text(network: Network, item: Item, criterion: Criterion) -> str:
     )
 
 
-def _items_at(node: _Node, criterion: Criterion) -> list[Item]:
-    """The items that the last step to a node adds, as far as its site knows."""
-    if criterion is Criterion.LOCATIONS:
-        places = node.site.state.vector.locations
-        return [Item(index, (place,)) for index, place in enumerate(places)]
-    edges = () if node.link is None else node.link.edges
-    if criterion is Criterion.EDGES:
-        return [Item(edge.automaton, (edge.number,)) for edge in edges]
-    last = None if node.parent is None else node.parent.site.last
-    return [
-        Item(edge.automaton, (last[1], edge.number))
-        for edge in edges
-        if last is not None and edge.automaton == last[0]
-    ]
-
-
-def _items_on(node: _Node, criterion: Criterion) -> frozenset[Item]:
-    """All items on the way to a node."""
-    nodes = node.path()
-    if criterion is not Criterion.EDGE_PAIRS:
-        return frozenset(item for one in nodes for item in _items_at(one, criterion))
-    last: dict[int, int] = {}
-    found = set()
-    for one in nodes:
-        for edge in () if one.link is None else one.link.edges:
-            if edge.automaton in last:
-                found.add(Item(edge.automaton, (last[edge.automaton], edge.number)))
-            last[edge.automaton] = edge.number
-    return frozenset(found)
+def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Item]:
+    """All items that a run goes through."""
+    positions = (run.start, *(step.position for step in run.steps))
+    places = {Item(a, (place,)) for one in positions for a, place in enumerate(one.locations)}
+    edges, pairs, last = set[Item](), set[Item](), dict[int, int]()
+    numbers = {
+        id(edge): k for automaton in network.automata for k, edge in enumerate(automaton.edges)
+    }
+    actions = (step.action for step in run.steps if step.action is not None)
+    for automaton, edge in (pair for action in actions for pair in action.edges):
+        number = numbers[id(edge)]
+        edges.add(Item(automaton, (number,)))
+        if automaton in last:
+            pairs.add(Item(automaton, (last[automaton], number)))
+        last[automaton] = number
+    items = {Criterion.LOCATIONS: places, Criterion.EDGES: edges, Criterion.EDGE_PAIRS: pairs}
+    return frozenset(items[criterion])
 
 
 def _chosen(
-    network: Network, ways: Mapping[Item, _Node], criterion: Criterion
+    found: Sequence[tuple[Run, frozenset[Item]]],
 ) -> Iterator[tuple[Run, tuple[Item, ...]]]:
-    nodes = list(dict.fromkeys(ways.values()))
-    on_way = {node: _items_on(node, criterion) for node in nodes}
-    left = set(ways)
+    left = {item for _, items in found for item in items}
     while left:
         # The first of the best, so that equal networks have equal suites.
-        best = max(nodes, key=lambda node: len(on_way[node] & left))
-        added = on_way[best] & left
-        left -= added
-        path = best.path()
-        steps = move_path(path[0].site.state, [one.link for one in path if one.link is not None])
-        items = tuple(sorted(added, key=lambda item: (item.automaton, item.numbers)))
-        yield make_run(network, path[0].site.state, steps), items
+        run, items = max(found, key=lambda one: len(one[1] & left))
+        added, left = items & left, left - items
+        yield run, tuple(sorted(added, key=lambda item: (item.automaton, item.numbers)))

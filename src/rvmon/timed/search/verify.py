@@ -20,6 +20,7 @@ from rvmon.timed.model.guards import (
     is_linear,
     is_plain,
     normal_form,
+    together,
     with_deadlock,
 )
 from rvmon.timed.model.network import (
@@ -34,13 +35,12 @@ from rvmon.timed.model.network import (
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.runs.space import check_clocks, check_start
 from rvmon.timed.search.linear import check_linear, ways_of
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Outcome, Policy, Watch
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.symbolic import check_clocks, check_start
-from rvmon.timed.zones.zone_unions import together
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,9 +112,9 @@ def test_memory_that_ends_anywhere_is_an_answer():
 
 FAILS_IN_ITS_SECOND_STATE = zlib.decompress(
     base64.b85decode(
-        "c-nnZ!3hFE49q5r3I~GXPw?l%p9hv97U0VgEI_af%kX7=n&9j)hQq*+O(r|J9j@P>&J+2DAs6|LokJZx"
-        "xC3U7=wBSwaYep4){Y16|I4xa37r@EISY7>lClx^_Q-GG*~S;rX1(AmagArqF6l+&eQ|G28Y|55i~+5$"
-        "^bHD5i8tc8z7HO4M5&*>nI<ok>cG-58}Wtb;=D*Y+Yyf>dCGgDw&Y=@cQ@V=FZjpU#{zGg)(4-CPLB"
+        "c-nnZK?(vf3`~=vf*>f~1aDqEso*p80p5Iq4-miMGd%e{O>inhECz-&nRK!pcDp&A2J#6*F7g{|hdOrP"
+        "_n1GRe|A*I1^Mb&IPSRrFUS4|be`zvEZ{jx%0}GFqxX)I_(IyO7knkI@vJ#cdJ%bF+?$Zb9J4%QK<g`g"
+        "gMw4yjd-qaUyqie)X&}wlNU;LVCEQgeBrq`Pm|87<B=p!c~8`qJgoHY##`bA{}}sN;BC`-1Ir#xp8"
     )
 )
 """A plan that a fuzzer found: its search took a want of memory for a failure of the model."""

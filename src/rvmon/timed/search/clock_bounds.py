@@ -81,7 +81,8 @@ def location_bounds(
     changed = True
     while changed:
         changed = False
-        for edge, gone in zip(automaton.edges, resets, strict=True):
+        # Numbers go against the edges, which most often lead onwards.
+        for edge, gone in zip(reversed(automaton.edges), reversed(resets), strict=True):
             source, target = bounds[edge.source], bounds[edge.target]
             for here, behind in ((source.lower, target.lower), (source.upper, target.upper)):
                 for clock, number in list(behind.items()):

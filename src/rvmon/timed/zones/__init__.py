@@ -1,1 +1,0 @@
-"""The symbolic semantics: zones, discrete states, and the steps between them."""
