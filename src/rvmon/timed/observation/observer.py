@@ -95,7 +95,7 @@ class Observed:
         network: with a unit of time.
         obligation: trigger and what is required.
         pulse: whether the trigger starts an attempt wherever it holds.
-        automaton: of what is owed.
+        automaton: of what is required.
         signals: how each signal is read off locations and variables.
         labels: the labels of the network's actions, which are its events.
 
@@ -105,7 +105,7 @@ class Observed:
         lost: where no monitor of this kind can follow it.
         is_open: where an attempt is followed and not decided.
         rests: where it also stays so while time passes without end.
-        reads_events: whether what is owed speaks of events, which actions alone have.
+        reads_events: whether what is required speaks of events, which actions alone have.
 
     Raises:
         NotExpressibleError: it speaks of what the network does not have, or a window does not end
@@ -124,11 +124,11 @@ class Observed:
         self._automaton = automaton
         self._pulse = pulse
         alphabet = automaton.alphabet
-        owed = [name for one in alphabet.propositions for name in events_of(one)]
-        self.reads_events = bool(owed)
+        required = [name for one in alphabet.propositions for name in events_of(one)]
+        self.reads_events = bool(required)
         trigger = obligation.trigger
         bound = None if trigger is None or not isinstance(trigger.leaf, BoundAtom) else trigger.leaf
-        read = [*owed, *([] if trigger is None or bound else events_of(trigger))]
+        read = [*required, *([] if trigger is None or bound else events_of(trigger))]
         for name in read:
             if name not in labels:
                 raise NotExpressibleError(f"the network has no action `{name}`")
@@ -154,7 +154,7 @@ class Observed:
         if self._is_ready or (bound is not None and bound.bound is Bound.START):
             letter = self._tables.class_of(lambda one: evaluator(one)(*at_start))
             edge = self._tables.edge(automaton.initial, (), letter)
-            assert edge is not None  # noqa: S101 - every letter may begin a run
+            assert edge is not None, "every letter may begin a run"
             self._begun, _ = self._fresh(edge, ())
         for site in self._waiting:
             self._expand(site)

@@ -75,7 +75,7 @@ def stretches(
         CutShortError: it may not go on.
     """
     state, paces = space.initial(), _Paces(space.network)
-    assert state is not None  # noqa: S101 - the network can start
+    assert state is not None, "the network can start"
     clocks, now = [0] * (1 + len(space.network.clocks)), 0
     for number in range(1, MOST_MOVES + 1):
         if number % CHECK_EVERY == 0 and not goes_on():

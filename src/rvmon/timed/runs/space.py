@@ -288,7 +288,7 @@ class _Tried:
                     yield edge
 
     def _channel(self, edge: ReadyEdge) -> int:
-        assert edge.channel is not None  # noqa: S101 - asked of senders
+        assert edge.channel is not None, "asked of senders"
         return edge.channel(*self._here)
 
 

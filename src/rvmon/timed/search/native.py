@@ -208,7 +208,7 @@ class _Paths:
         self, state: State, edges: Sequence[tuple[int, int]], leave: Piece, behind: int
     ) -> PathStep:
         move = self._space.step(state, edges)
-        assert move is not None  # noqa: S101 - the native search made it
+        assert move is not None, "the native search made it"
         if move.failure is not None:
             raise move.failure
         enter = self._constraint(self._plan.inside, behind, move.target)
