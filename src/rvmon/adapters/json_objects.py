@@ -124,7 +124,9 @@ def decoded_object(text: bytes) -> Any:
     try:
         return decoded(text, msgspec.json.decode)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise TraceError(str(error)) from None
+        is_other = text.lstrip()[:1] != b"{"
+        wanted = '; wanted is `{"t": 0, "speed": 0.5}`; `rvmon run` reads CSV' if is_other else ""
+        raise TraceError(f"{error}{wanted}") from None
 
 
 def stamp_of(text: bytes, schema: Schema) -> int | None:

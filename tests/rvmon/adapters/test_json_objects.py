@@ -5,7 +5,14 @@ import os
 import pytest
 
 from rvmon import Verdict, loads
-from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
+from rvmon.adapters.json_objects import (
+    JsonObjects,
+    decoded_object,
+    feed_lines,
+    read_lines,
+    stamp_of,
+)
+from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
 from rvmon.readers.jsonl_rows import MORE, MOST_NAMES
 
@@ -166,3 +173,12 @@ def test_the_stamp_of_a_line():
     assert stamp_of(b'{"t_ns": 5}', schema) == 5
     assert stamp_of(b'{"x": 5}', schema) is None
     assert stamp_of(b"nonsense", schema) is None
+
+
+def test_what_is_no_object_says_what_is_wanted():
+    """Rows of a CSV, which a pipe gives as well, lead to what reads them."""
+    with pytest.raises(TraceError, match="`rvmon run` reads CSV"):
+        decoded_object(b"t,speed\n")
+    with pytest.raises(TraceError) as told:
+        decoded_object(b'{"t": 0, ')
+    assert "CSV" not in str(told.value)
