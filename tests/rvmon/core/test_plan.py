@@ -7,7 +7,7 @@ import re
 import struct
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from enum import IntEnum
 from itertools import product
 from pathlib import Path
@@ -32,7 +32,6 @@ from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import pack
 from rvmon.core.sections import RECORDS, Packed, Section, hash_of
 from rvmon.errors import RvmonError
-from rvmon.logic.automaton import Automaton
 from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.planned import planned_core
@@ -119,48 +118,6 @@ def test_the_core_takes_a_written_specification(path):
     """What the demonstration and the examples specify is packed whole, by the core's own check."""
     spec = rvmon.load(path)
     planned_core(spec._compiled, measured=True).monitor(frozenset())
-
-
-@pytest.mark.law
-def test_automata_are_those_of_their_judges():
-    """Each row leads where the automaton does that was constructed."""
-    seen = 0
-    for seed in range(40):
-        plan = drawn(seed)
-        if plan is None:
-            continue
-        read = Plan(pack(plan).data)
-        judges, forms = (iter(read.records[name]) for name in ("JUDGES", "FORMS"))
-        for part in (plan, *plan.units):
-            for (_, rule), judge in zip(part.judges, judges, strict=False):
-                if judge["automaton"] < 0:
-                    form = next(forms)
-                    assert rule.automaton is None or form["windows"][1] > 1
-                else:
-                    assert rule.automaton is not None
-                    made = read.records["AUTOMATA"][judge["automaton"]]
-                    assert list(_edges_read(read, made)) == list(_edges(rule.automaton))
-                    seen += 1
-    assert seen >= 40
-
-
-def _edges(automaton: Automaton) -> Iterator[object]:
-    """Per row and class, where an edge leads; where no run comes, any does."""
-    for row in range(len(automaton.time_values)):
-        for kind in range(automaton.classes):
-            edge = automaton.edges[row * automaton.classes + kind]
-            yield row, kind, (automaton.targets[max(edge, 0)], automaton.sources[max(edge, 0)])
-
-
-def _edges_read(plan: Plan, a: dict[str, int]) -> Iterator[object]:
-    widths = plan.run("INTS", a["widths"], a["locations"])
-    edges = plan.run("INTS", a["edges"], a["rows"] * a["classes"])
-    targets = plan.run("INTS", a["targets"], a["targets_count"])
-    sources = plan.run("INTS", a["sources"], a["targets_count"] * a["clocks"])
-    for place, edge in enumerate(edges):
-        first = edge * a["clocks"]
-        own = sources[first : first + widths[targets[edge]]]
-        yield place // a["classes"], place % a["classes"], (targets[edge], own)
 
 
 def test_letters_of_many_propositions_are_classed_by_a_diagram():
