@@ -18,18 +18,7 @@ from rvmon.readers.messages.fields import field_of
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.operators import BinaryOp, UnaryOp
-from rvmon.spec.syntax.expressions import (
-    Call,
-    Comparison,
-    Expression,
-    Group,
-    Infix,
-    Name,
-    Number,
-    Operation,
-    Prefix,
-    Truth,
-)
+from rvmon.spec.syntax import expressions
 from rvmon.spec.syntax.parse import parse_expression
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import TURNS, Applied, Constant, Elements, Field, Term
@@ -164,32 +153,32 @@ def _quoted(name: str) -> str:
     return name if name in _WORDS or name.startswith("`") else f"`{name}`"
 
 
-def _term(expression: Expression) -> Term:
+def _term(expression: expressions.Expression) -> Term:
     match expression:
-        case Group(inner=inner):
+        case expressions.Group(inner=inner):
             return _term(inner)
-        case Truth(value=value):
+        case expressions.Truth(value=value):
             return Constant(value)
-        case Number(value=value, unit=unit):
+        case expressions.Number(value=value, unit=unit):
             return _number(value, unit)
-        case Name(text=text):
+        case expressions.Name(text=text):
             field = field_of(text)
             if field is None:
                 raise RvmonError(f"`{text}` is no field: write `pose.position.x`, `ranges[0]`")
             return field
-        case Operation(op=op, args=args):
+        case expressions.Operation(op=op, args=args):
             return Applied(op.entry.apply, tuple(map(_term, args)), op.value)
-        case Comparison(op=op, left=left, right=right):
+        case expressions.Comparison(op=op, left=left, right=right):
             return Applied(op.holds, (_term(left), _term(right)), op.value)
-        case Infix(op=op, left=left, right=right) if op in CONNECTIVES:
+        case expressions.Infix(op=op, left=left, right=right) if op in CONNECTIVES:
             return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
-        case Prefix(op=UnaryOp.NOT, operand=operand):
+        case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
             return Applied(operator.not_, (_term(operand),), "not")
-        case Call(function=function, args=[Comparison() as compared]) if (
+        case expressions.Call(function=function, args=[expressions.Comparison() as compared]) if (
             function.text in _OF_ELEMENTS
         ):
             return _of_elements(function.text, compared)
-        case Call(function=function, args=args):
+        case expressions.Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
         f"`{expression.span.text}` speaks of more than one message: put it into the specification"
@@ -208,7 +197,7 @@ def _number(value: Fraction | None, unit: str) -> Constant:
         raise RvmonError("a number is too large") from None
 
 
-def _of_elements(name: str, compared: Comparison) -> Term:
+def _of_elements(name: str, compared: expressions.Comparison) -> Term:
     """A comparison of each element of an array with a number."""
     left, right = _term(compared.left), _term(compared.right)
     if not isinstance(left, Field) or not isinstance(right, Constant):
@@ -217,7 +206,7 @@ def _of_elements(name: str, compared: Comparison) -> Term:
     return Applied(operation, (Elements(left),), name)
 
 
-def _applied(name: str, args: Sequence[Expression]) -> Term:
+def _applied(name: str, args: Sequence[expressions.Expression]) -> Term:
     terms = tuple(map(_term, args))
     if name in TURNS:
         if len(terms) != 1 or not isinstance(terms[0], Field):

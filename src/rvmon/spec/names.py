@@ -19,27 +19,8 @@ from rvmon.spec.rules import Findings
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import requirements as trigger_rules
+from rvmon.spec.syntax import items
 from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name, expressions_in
-from rvmon.spec.syntax.items import (
-    ConstItem,
-    CoverItem,
-    CoverpointItem,
-    CrossItem,
-    DefineItem,
-    DelayItem,
-    EventItem,
-    EventSyntax,
-    Header,
-    ImportItem,
-    Item,
-    LetClause,
-    ParsedSpec,
-    PropertyItem,
-    RequirementItem,
-    SignalItem,
-    TimeItem,
-    TypeSyntax,
-)
 from rvmon.spec.syntax.parse import parse_expression
 
 
@@ -48,7 +29,7 @@ class DeclaredSignal:
     """One signal of an item."""
 
     name: Ident
-    type: TypeSyntax
+    type: items.TypeSyntax
     role: Role | None
     ignored: Span | None
     stale_after: Expression | None
@@ -59,11 +40,11 @@ class DeclaredEvent:
     """One event of an item."""
 
     name: Ident
-    event: EventSyntax
+    event: items.EventSyntax
     role: Role | None
 
 
-Declared = DeclaredSignal | DeclaredEvent | DefineItem | ConstItem
+Declared = DeclaredSignal | DeclaredEvent | items.DefineItem | items.ConstItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,22 +66,29 @@ class ResolvedSpec:
     """
 
     sources: tuple[Source, ...]
-    header: Header | None
-    time: TimeItem | None
-    delay: DelayItem | None
+    header: items.Header | None
+    time: items.TimeItem | None
+    delay: items.DelayItem | None
     declared: Mapping[str, Declared]
-    requirements: Mapping[str, RequirementItem]
-    properties: Mapping[str, PropertyItem]
-    covers: Mapping[str, CoverItem]
-    coverpoints: Mapping[str, CoverpointItem]
-    crosses: Mapping[str, CrossItem]
+    requirements: Mapping[str, items.RequirementItem]
+    properties: Mapping[str, items.PropertyItem]
+    covers: Mapping[str, items.CoverItem]
+    coverpoints: Mapping[str, items.CoverpointItem]
+    crosses: Mapping[str, items.CrossItem]
     doubtful: frozenset[str]
 
 
-_K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
+_K = TypeVar(
+    "_K",
+    items.RequirementItem,
+    items.PropertyItem,
+    items.CoverItem,
+    items.CoverpointItem,
+    items.CrossItem,
+)
 
 
-def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
+def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedSpec:
     """Gather the declarations of a file and of those it imports.
 
     Returns:
@@ -109,12 +97,12 @@ def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
     resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:
-            if number == 0 or not isinstance(item, Header):
+            if number == 0 or not isinstance(item, items.Header):
                 resolver.add(item)
     once = resolver.once
     return ResolvedSpec(
         tuple(file.source for file in parsed),
-        *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]  # each is of its own class
+        *(once.get(items.Header), once.get(items.TimeItem), once.get(items.DelayItem)),  # type: ignore[arg-type]  # each is of its own class
         resolver.declared,
         resolver.requirements,
         resolver.properties,
@@ -129,47 +117,47 @@ class _Resolver:
     def __init__(self, findings: Findings) -> None:
         self.doubled: set[str] = set()
         self._findings = findings
-        self.once: dict[type, Header | TimeItem | DelayItem] = {}
+        self.once: dict[type, items.Header | items.TimeItem | items.DelayItem] = {}
         self.declared: dict[str, Declared] = {}
-        self.requirements: dict[str, RequirementItem] = {}
-        self.properties: dict[str, PropertyItem] = {}
-        self.covers: dict[str, CoverItem] = {}
-        self.coverpoints: dict[str, CoverpointItem] = {}
-        self.crosses: dict[str, CrossItem] = {}
+        self.requirements: dict[str, items.RequirementItem] = {}
+        self.properties: dict[str, items.PropertyItem] = {}
+        self.covers: dict[str, items.CoverItem] = {}
+        self.coverpoints: dict[str, items.CoverpointItem] = {}
+        self.crosses: dict[str, items.CrossItem] = {}
         self._first: dict[tuple[str, str], Ident] = {}
 
-    def add(self, item: Item) -> None:
+    def add(self, item: items.Item) -> None:
         match item:
-            case Header() | TimeItem() | DelayItem():
+            case items.Header() | items.TimeItem() | items.DelayItem():
                 earlier = self.once.setdefault(type(item), item)
                 if earlier is not item:
                     word = item.span.text.split(maxsplit=1)[0]
                     self._findings.add(rules.double_item(word, item.span, earlier.span))
-            case SignalItem(names=names):
+            case items.SignalItem(names=names):
                 for name in names:
                     self._declare(
                         DeclaredSignal(name, item.type, item.role, item.ignored, item.stale_after)
                     )
-            case EventItem(events=events):
+            case items.EventItem(events=events):
                 for event in events:
                     self._declare(DeclaredEvent(event.name, event, item.role))
-            case DefineItem(parameters=parameters):
+            case items.DefineItem(parameters=parameters):
                 for number, parameter in enumerate(parameters or ()):
                     self._once_among(parameter, (parameters or ())[:number], "parameter")
                 self._declare(item)
-            case ConstItem():
+            case items.ConstItem():
                 self._declare(item)
-            case RequirementItem():
+            case items.RequirementItem():
                 self._keep(self.requirements, item)
-            case PropertyItem():
+            case items.PropertyItem():
                 self._keep(self.properties, item)
-            case CoverItem():
+            case items.CoverItem():
                 self._keep(self.covers, item)
-            case CoverpointItem():
+            case items.CoverpointItem():
                 self._keep(self.coverpoints, item)
-            case CrossItem():
+            case items.CrossItem():
                 self._keep(self.crosses, item)
-            case ImportItem():
+            case items.ImportItem():
                 pass  # its file is among those given
             case _:
                 assert_never(item)
@@ -180,7 +168,7 @@ class _Resolver:
 
     def _declare(self, declared: Declared) -> None:
         name = declared.name
-        if name.text in FUNCTIONS and isinstance(declared, DefineItem):
+        if name.text in FUNCTIONS and isinstance(declared, items.DefineItem):
             self._findings.add(rules.built_in(name.span))
         if self._is_new("name", name):
             self.declared[name.text] = declared
@@ -200,11 +188,13 @@ class _Resolver:
 
 
 def overridden(
-    files: Sequence[ParsedSpec], constants: Mapping[str, str], findings: Findings
-) -> list[ParsedSpec]:
+    files: Sequence[items.ParsedSpec], constants: Mapping[str, str], findings: Findings
+) -> list[items.ParsedSpec]:
     """The files with the values of some constants replaced."""
     values: dict[str, Expression] = {}
-    known = [item.name.text for file in files for item in file.items if isinstance(item, ConstItem)]
+    known = [
+        item.name.text for file in files for item in file.items if isinstance(item, items.ConstItem)
+    ]
     for name, text in constants.items():
         if name not in known:
             findings.add(rules.unknown_constant(name, known))
@@ -216,9 +206,9 @@ def overridden(
     return [_with_values(file, values) for file in files]
 
 
-def _with_values(file: ParsedSpec, values: Mapping[str, Expression]) -> ParsedSpec:
-    def item_with_value(item: Item) -> Item:
-        if isinstance(item, ConstItem) and item.name.text in values:
+def _with_values(file: items.ParsedSpec, values: Mapping[str, Expression]) -> items.ParsedSpec:
+    def item_with_value(item: items.Item) -> items.Item:
+        if isinstance(item, items.ConstItem) and item.name.text in values:
             return replace(item, value=values[item.name.text])
         return item
 
@@ -230,7 +220,7 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
     uses = {
         name: sorted(set(_used(item)) & declared.keys())
         for name, item in declared.items()
-        if isinstance(item, DefineItem | ConstItem)
+        if isinstance(item, items.DefineItem | items.ConstItem)
     }
     caught: set[str] = set()
     finished: set[str] = set()
@@ -258,10 +248,10 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
     return frozenset(caught)
 
 
-def _used(item: DefineItem | ConstItem) -> Iterator[str]:
+def _used(item: items.DefineItem | items.ConstItem) -> Iterator[str]:
     own: frozenset[str] = frozenset()
-    body: Expression = item.value if isinstance(item, ConstItem) else item.body
-    if isinstance(item, DefineItem) and item.parameters:
+    body: Expression = item.value if isinstance(item, items.ConstItem) else item.body
+    if isinstance(item, items.DefineItem) and item.parameters:
         own = frozenset(parameter.text for parameter in item.parameters)
     for part in expressions_in(body):
         if isinstance(part, Name) and part.text not in own:
@@ -304,12 +294,12 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
     main = spec.sources[0]
     uses = Counter(name for source in spec.sources for name in _names(source.text))
     for item in spec.declared.values():
-        if isinstance(item, DefineItem | ConstItem) and item.name.span.source is main:
-            kind = "define" if isinstance(item, DefineItem) else "const"
+        if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:
+            kind = "define" if isinstance(item, items.DefineItem) else "const"
             if uses[item.name.text] < 2:
                 yield name_rules.unused(item.name.span, kind)
     for requirement in spec.requirements.values():
-        lets = [clause for clause in requirement.clauses if isinstance(clause, LetClause)]
+        lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
         if lets and requirement.span.source is main:
             own = Counter(_names(requirement.span.text))
             yield from (

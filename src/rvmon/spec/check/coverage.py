@@ -32,33 +32,13 @@ from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import requirements as trigger_rules
-from rvmon.spec.syntax.expressions import (
-    Call,
-    Comparison,
-    Expression,
-    Ident,
-    Name,
-    Number,
-    Window,
-)
-from rvmon.spec.syntax.items import (
-    BinSyntax,
-    CoverItem,
-    CoverpointItem,
-    CrossItem,
-    GoalClause,
-    GoalClauses,
-    SampledClause,
-    StepsSyntax,
-    UnwantedClause,
-    WeightClause,
-)
+from rvmon.spec.syntax import expressions, items
 
 _MOST = 10**9
 """The largest goal and weight: what a test will never do is a slip of the pen."""
 
 
-def checked_cover(checker: Checker, item: CoverItem) -> Cover | None:
+def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
     """Check a cover goal; `None` if it is wrong, and then that is reported."""
     formula = checker.top(item.formula, EVERYWHERE)
     if formula is None:
@@ -70,14 +50,14 @@ def checked_cover(checker: Checker, item: CoverItem) -> Cover | None:
     return Cover(item.name.text, shown, item.span)
 
 
-def checked_coverpoint(checker: Checker, item: CoverpointItem) -> Coverpoint | None:
+def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoint | None:
     """Check a coverpoint; `None` if it is wrong, and then that is reported."""
     value: Value | None = None
     if item.expression is not None:
         value = checker.value(item.expression, EVERYWHERE)
         if value is None:
             return None
-    first: dict[str, BinSyntax] = {}
+    first: dict[str, items.BinSyntax] = {}
     bins: list[Bin] = []
     wrong = False
     for syntax in item.bins:
@@ -97,7 +77,7 @@ def checked_coverpoint(checker: Checker, item: CoverpointItem) -> Coverpoint | N
             wrong = True
     found = _clauses(checker, item.clauses)
     for clause in item.clauses:
-        if isinstance(clause, UnwantedClause):
+        if isinstance(clause, items.UnwantedClause):
             checker.report(rules.unwanted_in_point(clause.span))
             wrong = True
     if wrong or found is None:
@@ -107,9 +87,9 @@ def checked_coverpoint(checker: Checker, item: CoverpointItem) -> Coverpoint | N
 
 def checked_cross(
     checker: Checker,
-    item: CrossItem,
+    item: items.CrossItem,
     points: Mapping[str, Coverpoint],
-    declared: Mapping[str, CoverpointItem],
+    declared: Mapping[str, items.CoverpointItem],
 ) -> Cross | None:
     """Check a cross; `None` if it is wrong, and then that is reported."""
     names = [point.text for point in item.points]
@@ -203,25 +183,32 @@ def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
 
 
 def _bin_formula(
-    checker: Checker, expression: Expression | None, value: Value | None, bin_: BinSyntax
+    checker: Checker,
+    expression: expressions.Expression | None,
+    value: Value | None,
+    bin_: items.BinSyntax,
 ) -> Formula:
     labelled = isinstance(value, Quantity) and bool(value.labels)
     if bin_.values is None:
         if expression is None or not labelled:
             raise Refusal(rules.bin_without_values(bin_.span))
-        return _equals(checker, expression, Name(bin_.name.text, bin_.name.span))
-    if isinstance(bin_.values, Window):
+        return _equals(checker, expression, expressions.Name(bin_.name.text, bin_.name.span))
+    if isinstance(bin_.values, expressions.Window):
         return _in_window(checker, expression, bin_.values)
-    if isinstance(bin_.values, StepsSyntax):
+    if isinstance(bin_.values, items.StepsSyntax):
         return _stepped(checker, expression, bin_.values, labelled=labelled)
     return _valued(checker, expression, bin_.values, labelled=labelled)
 
 
 def _valued(
-    checker: Checker, expression: Expression | None, wanted: Expression, *, labelled: bool
+    checker: Checker,
+    expression: expressions.Expression | None,
+    wanted: expressions.Expression,
+    *,
+    labelled: bool,
 ) -> Formula:
     """That the expression has a value; without one, what is written is the formula."""
-    if labelled and expression is not None and isinstance(wanted, Name):
+    if labelled and expression is not None and isinstance(wanted, expressions.Name):
         return _equals(checker, expression, wanted)
     (found,) = checker.values((wanted,), EVERYWHERE)
     if isinstance(found, Quantity) and found.constant is not None:
@@ -236,7 +223,11 @@ def _valued(
 
 
 def _stepped(
-    checker: Checker, expression: Expression | None, steps: StepsSyntax, *, labelled: bool
+    checker: Checker,
+    expression: expressions.Expression | None,
+    steps: items.StepsSyntax,
+    *,
+    labelled: bool,
 ) -> Formula:
     """That the last update took the expression to the last value, and those before it to others.
 
@@ -244,8 +235,8 @@ def _stepped(
     """
     if expression is None:
         raise Refusal(rules.bin_needs_expression(steps.span))
-    prev = Ident(UpdateFunction.PREV.value, expression.span)
-    before = Call(prev, (expression,), expression.span)
+    prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
+    before = expressions.Call(prev, (expression,), expression.span)
     span = steps.span
     made: Formula | None = None
     entered: Formula | None = None
@@ -271,34 +262,38 @@ def _alike(one: Formula, other: Formula) -> bool:
     return format_formula(one) == format_formula(other)
 
 
-def _equals(checker: Checker, expression: Expression, other: Expression) -> Formula:
-    equation = Comparison(CompareOp.EQ, expression, other, other.span, other.span)
+def _equals(
+    checker: Checker, expression: expressions.Expression, other: expressions.Expression
+) -> Formula:
+    equation = expressions.Comparison(CompareOp.EQ, expression, other, other.span, other.span)
     return compared(checker, equation, EVERYWHERE)
 
 
-def _in_window(checker: Checker, expression: Expression | None, window: Window) -> Formula:
+def _in_window(
+    checker: Checker, expression: expressions.Expression | None, window: expressions.Window
+) -> Formula:
     """The bounds of a range as comparisons; `inf` bounds nothing."""
     if expression is None or window.low is None:
         raise Refusal(rules.bin_needs_expression(window.span))
     above = CompareOp.GT if window.low_open else CompareOp.GE
-    low = Comparison(above, expression, window.low, window.span, window.span)
+    low = expressions.Comparison(above, expression, window.low, window.span, window.span)
     if window.high is None:
         return compared(checker, low, EVERYWHERE)
     below = CompareOp.LT if window.high_open else CompareOp.LE
-    high = Comparison(below, expression, window.high, window.span, window.span)
+    high = expressions.Comparison(below, expression, window.high, window.span, window.span)
     left, right = compared(checker, low, EVERYWHERE), compared(checker, high, EVERYWHERE)
     return Binary(BinaryOp.AND, left, right, None, window.span)
 
 
 def _clauses(
-    checker: Checker, clauses: Sequence[GoalClauses]
+    checker: Checker, clauses: Sequence[items.GoalClauses]
 ) -> tuple[Formula | None, int, int] | None:
     """Where it is sampled, the goal and the weight; `None` if one is wrong."""
     upon: Formula | None = None
     goal = weight = 1
     for clause in clauses:
         match clause:
-            case SampledClause(trigger=trigger):
+            case items.SampledClause(trigger=trigger):
                 upon = checker.top(trigger, EVERYWHERE)
                 try:
                     upon = None if upon is None else present(upon)
@@ -307,12 +302,12 @@ def _clauses(
                     upon = None
                 if upon is None:
                     return None
-            case GoalClause(count=count):
+            case items.GoalClause(count=count):
                 if not _is_count(count, least=1):
                     checker.report(rules.bad_goal(count.span))
                     return None
                 goal = int(count.value or 1)
-            case WeightClause(count=count):
+            case items.WeightClause(count=count):
                 if not _is_count(count, least=0):
                     checker.report(rules.bad_weight(count.span))
                     return None
@@ -320,7 +315,7 @@ def _clauses(
     return upon, goal, weight
 
 
-def _is_count(number: Number, least: int) -> bool:
+def _is_count(number: expressions.Number, least: int) -> bool:
     value = number.value
     return (
         value is not None and not number.unit and value.denominator == 1 and least <= value <= _MOST
@@ -328,7 +323,7 @@ def _is_count(number: Number, least: int) -> bool:
 
 
 def _combinations(
-    checker: Checker, item: CrossItem, bins: Mapping[str, Sequence[str]], kind: BinKind
+    checker: Checker, item: items.CrossItem, bins: Mapping[str, Sequence[str]], kind: BinKind
 ) -> frozenset[tuple[str, ...]]:
     """The combinations for which a clause of that kind holds."""
     scope = Scope(
@@ -337,7 +332,7 @@ def _combinations(
     tests = [
         (checker.formula(clause.condition, scope), clause)
         for clause in item.clauses
-        if isinstance(clause, UnwantedClause) and clause.kind is kind
+        if isinstance(clause, items.UnwantedClause) and clause.kind is kind
     ]
     for formula, clause in tests:
         if not _about_bins(formula, bins):

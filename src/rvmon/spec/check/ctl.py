@@ -30,17 +30,7 @@ from rvmon.spec.print import format_formula
 from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import time as time_rules
-from rvmon.spec.syntax.expressions import (
-    Expression,
-    Group,
-    Infix,
-    LeadsTo,
-    Name,
-    Path,
-    Prefix,
-    Quantified,
-    expressions_in,
-)
+from rvmon.spec.syntax import expressions
 from rvmon.spec.syntax.items import PropertyClause, RequirementItem, TagsClause, TextClause
 
 
@@ -217,7 +207,9 @@ def _signs(formula: Formula, positive: bool) -> list[tuple[str, bool]]:
             return [(format_formula(formula), positive)]
 
 
-def checked_property(checker: Checker, name: str, expression: Expression) -> Property | None:
+def checked_property(
+    checker: Checker, name: str, expression: expressions.Expression
+) -> Property | None:
     """Check a property; `None` if it is wrong, and then that is reported."""
     foreign = _foreign(checker, expression)
     for part in foreign:
@@ -236,32 +228,34 @@ def checked_property(checker: Checker, name: str, expression: Expression) -> Pro
     return Property(name, span.text, formula, span)
 
 
-def _foreign(checker: Checker, expression: Expression) -> list[Name]:
+def _foreign(checker: Checker, expression: expressions.Expression) -> list[expressions.Name]:
     """The names that the spec does not declare, labels beside a signal not counted."""
     labels = {label for s in checker.table.signals.values() for label in s.type.labels}
     return [
         part
-        for part in expressions_in(expression)
-        if isinstance(part, Name)
+        for part in expressions.expressions_in(expression)
+        if isinstance(part, expressions.Name)
         and not checker.known(part.text, EVERYWHERE)
         and part.text not in labels | checker.table.doubtful
     ]
 
 
-def _state(checker: Checker, expression: Expression, foreign: frozenset[str]) -> StateFormula:
+def _state(
+    checker: Checker, expression: expressions.Expression, foreign: frozenset[str]
+) -> StateFormula:
     span = expression.span
     match expression:
-        case Group(inner=inner):
+        case expressions.Group(inner=inner):
             return _state(checker, inner, foreign)
-        case Path(universal=universal, op=op, operand=operand):
+        case expressions.Path(universal=universal, op=op, operand=operand):
             held = _state(checker, operand, foreign)
             if op is UnaryOp.NEXT and expression.window is not None:
                 raise Refusal(rules.next_window(expression.window.span))
             interval = checker.interval(expression.window, EVERYWHERE)
             return PathUnary(universal, op, held, None if op is UnaryOp.NEXT else interval, span)
-        case Quantified(universal=universal, path=path):
+        case expressions.Quantified(universal=universal, path=path):
             return _quantified(checker, universal, path, foreign)
-        case LeadsTo(left=left, right=right, window=window):
+        case expressions.LeadsTo(left=left, right=right, window=window):
             interval = checker.interval(window, EVERYWHERE)
             first, second = _both(checker, left, right, foreign)
             response = PathUnary(True, UnaryOp.EVENTUALLY, second, interval, right.span)
@@ -270,7 +264,9 @@ def _state(checker: Checker, expression: Expression, foreign: frozenset[str]) ->
     return _connected(checker, expression, foreign)
 
 
-def _connected(checker: Checker, expression: Expression, foreign: frozenset[str]) -> StateFormula:
+def _connected(
+    checker: Checker, expression: expressions.Expression, foreign: frozenset[str]
+) -> StateFormula:
     """Connectives and atoms."""
     span = expression.span
     if not _needs_splitting(expression, foreign):
@@ -278,14 +274,15 @@ def _connected(checker: Checker, expression: Expression, foreign: frozenset[str]
         _refuse_bare_time(formula, expression)
         return StateAtom(formula, span)
     match expression:
-        case Prefix(op=UnaryOp.NOT, operand=operand):
+        case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
             return StateNot(_state(checker, operand, foreign), span)
-        case Infix(op=op, left=left, right=right) if op.entry.tense is Tense.PRESENT:
+        case expressions.Infix(op=op, left=left, right=right) if op.entry.tense is Tense.PRESENT:
             return StateBinary(op, *_both(checker, left, right, foreign), span)
-        case Prefix() | Infix():
+        case expressions.Prefix() | expressions.Infix():
             raise Refusal(rules.bare_time(expression.op_span))
         case _ if any(
-            isinstance(p, Path | Quantified | LeadsTo) for p in expressions_in(expression)
+            isinstance(p, expressions.Path | expressions.Quantified | expressions.LeadsTo)
+            for p in expressions.expressions_in(expression)
         ):
             raise Refusal(rules.path_in_number(span))
         case _:
@@ -293,33 +290,36 @@ def _connected(checker: Checker, expression: Expression, foreign: frozenset[str]
 
 
 def _both(
-    checker: Checker, left: Expression, right: Expression, foreign: frozenset[str]
+    checker: Checker,
+    left: expressions.Expression,
+    right: expressions.Expression,
+    foreign: frozenset[str],
 ) -> tuple[StateFormula, StateFormula]:
     return _state(checker, left, foreign), _state(checker, right, foreign)
 
 
 def _quantified(
-    checker: Checker, universal: bool, path: Expression, foreign: frozenset[str]
+    checker: Checker, universal: bool, path: expressions.Expression, foreign: frozenset[str]
 ) -> PathBinary:
-    while isinstance(path, Group):
+    while isinstance(path, expressions.Group):
         path = path.inner
-    if not isinstance(path, Infix) or path.op not in FUTURE:
+    if not isinstance(path, expressions.Infix) or path.op not in FUTURE:
         raise Refusal(rules.no_path_formula(path.span))
     left, right = _both(checker, path.left, path.right, foreign)
     interval = checker.interval(path.window, EVERYWHERE)
     return PathBinary(universal, path.op, left, right, interval, path.span)
 
 
-def _needs_splitting(expression: Expression, foreign: frozenset[str]) -> bool:
+def _needs_splitting(expression: expressions.Expression, foreign: frozenset[str]) -> bool:
     """Whether path quantifiers or names of a model stand somewhere inside."""
     return any(
-        isinstance(part, Path | Quantified | LeadsTo)
-        or (isinstance(part, Name) and part.text in foreign)
-        for part in expressions_in(expression)
+        isinstance(part, expressions.Path | expressions.Quantified | expressions.LeadsTo)
+        or (isinstance(part, expressions.Name) and part.text in foreign)
+        for part in expressions.expressions_in(expression)
     )
 
 
-def _refuse_bare_time(formula: Formula, expression: Expression) -> None:
+def _refuse_bare_time(formula: Formula, expression: expressions.Expression) -> None:
     for part in subformulas(formula):
         if isinstance(part, Unary | Binary) and part.op.entry.tense is not Tense.PRESENT:
             raise Refusal(rules.bare_time(part.span or expression.span))

@@ -18,26 +18,7 @@ from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import syntax as rules
-from rvmon.spec.syntax.expressions import (
-    Call,
-    Choice,
-    Comparison,
-    Edge,
-    Expression,
-    Group,
-    Ident,
-    Immediately,
-    Infix,
-    LeadsTo,
-    Name,
-    Number,
-    Operation,
-    Path,
-    Prefix,
-    Quantified,
-    Truth,
-    Window,
-)
+from rvmon.spec.syntax import expressions
 
 _T = TypeVar("_T")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
@@ -73,92 +54,94 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
             start, end = place.start_pos, place.end_pos
         return Span(self._source, self._offset + start, self._offset + end)
 
-    def ident(self, token: Token) -> Ident:
+    def ident(self, token: Token) -> expressions.Ident:
         """A name with its place."""
-        return Ident(unquoted(token), self.span(token))
+        return expressions.Ident(unquoted(token), self.span(token))
 
-    def called(self, token: Token) -> Ident:
+    def called(self, token: Token) -> expressions.Ident:
         """The name in a token that ends with its bracket."""
         span = self.span(token)
-        return Ident(token[:-1], Span(span.source, span.start, span.end - 1))
+        return expressions.Ident(token[:-1], Span(span.source, span.start, span.end - 1))
 
-    def literal(self, meta: Meta, children: Children) -> Number:
+    def literal(self, meta: Meta, children: Children) -> expressions.Number:
         text = str(children[0])
         digits = text[: _NUMBER.match(text).end()]  # type: ignore[union-attr]  # terminal NUMBER
         decimal = Decimal(digits)
         small = abs(decimal.adjusted()) <= _LARGEST and len(digits) <= 2 * _LARGEST
         value = Fraction(decimal) if small or not decimal else None
-        return Number(value, text[len(digits) :].strip(), self.span(meta))
+        return expressions.Number(value, text[len(digits) :].strip(), self.span(meta))
 
-    def name(self, meta: Meta, children: Children) -> Name:
-        return Name(unquoted(children[0]), self.span(meta))
+    def name(self, meta: Meta, children: Children) -> expressions.Name:
+        return expressions.Name(unquoted(children[0]), self.span(meta))
 
-    def truth(self, meta: Meta, children: Children) -> Truth:
-        return Truth(children[0] == "true", self.span(meta))
+    def truth(self, meta: Meta, children: Children) -> expressions.Truth:
+        return expressions.Truth(children[0] == "true", self.span(meta))
 
-    def edge(self, meta: Meta, children: Children) -> Edge:
-        return Edge(Bound(children[0]), self.span(meta))
+    def edge(self, meta: Meta, children: Children) -> expressions.Edge:
+        return expressions.Edge(Bound(children[0]), self.span(meta))
 
-    def call(self, meta: Meta, children: Children) -> Call:
+    def call(self, meta: Meta, children: Children) -> expressions.Call:
         token, *args = children
-        return Call(self.called(token), tuple(args), self.span(meta))
+        return expressions.Call(self.called(token), tuple(args), self.span(meta))
 
-    def group(self, meta: Meta, children: Children) -> Group:
-        return Group(children[0], self.span(meta))
+    def group(self, meta: Meta, children: Children) -> expressions.Group:
+        return expressions.Group(children[0], self.span(meta))
 
-    def minus(self, meta: Meta, children: Children) -> Operation:
-        return Operation(NumericOp.NEG, (children[1],), self.span(meta))
+    def minus(self, meta: Meta, children: Children) -> expressions.Operation:
+        return expressions.Operation(NumericOp.NEG, (children[1],), self.span(meta))
 
-    def arithmetic(self, meta: Meta, children: Children) -> Operation:
+    def arithmetic(self, meta: Meta, children: Children) -> expressions.Operation:
         left, op, right = children
-        return Operation(NumericOp.of(str(op)), (left, right), self.span(meta))
+        return expressions.Operation(NumericOp.of(str(op)), (left, right), self.span(meta))
 
-    def comparison(self, meta: Meta, children: Children) -> Comparison:
+    def comparison(self, meta: Meta, children: Children) -> expressions.Comparison:
         if len(children) > 3:
             left, first, middle, second, right, *_ = children
             raise Refusal(rules.comparison_chain(left.span, first, middle.span, second, right.span))
         left, op, right = children
         compare = CompareOp("==" if op == "=" else str(op))
-        return Comparison(compare, left, right, self.span(op), self.span(meta))
+        return expressions.Comparison(compare, left, right, self.span(op), self.span(meta))
 
-    def among(self, meta: Meta, children: Children) -> Expression:
+    def among(self, meta: Meta, children: Children) -> expressions.Expression:
         left, *values = (child for child in children if not isinstance(child, Token))
         span = self.span(meta)
-        equal = [Comparison(CompareOp.EQ, left, one, one.span, span) for one in values]
-        either: Expression = equal[0]
+        equal = [expressions.Comparison(CompareOp.EQ, left, one, one.span, span) for one in values]
+        either: expressions.Expression = equal[0]
         for further in equal[1:]:
-            either = Infix(BinaryOp.OR, either, further, None, span, span)
-        either = Group(either, span)
+            either = expressions.Infix(BinaryOp.OR, either, further, None, span, span)
+        either = expressions.Group(either, span)
         denied = any(isinstance(child, Token) for child in children)
-        return Prefix(UnaryOp.NOT, either, None, span, span) if denied else either
+        return expressions.Prefix(UnaryOp.NOT, either, None, span, span) if denied else either
 
-    def choice(self, meta: Meta, children: Children) -> Choice:
+    def choice(self, meta: Meta, children: Children) -> expressions.Choice:
         _, condition, _, chosen, _, otherwise = children
-        return Choice(condition, chosen, otherwise, self.span(meta))
+        return expressions.Choice(condition, chosen, otherwise, self.span(meta))
 
-    def prefix(self, meta: Meta, children: Children) -> Prefix | Immediately:
+    def prefix(
+        self, meta: Meta, children: Children
+    ) -> expressions.Prefix | expressions.Immediately:
         token, *window, operand = children
         if token.type == "IMMEDIATELY":
-            return Immediately(operand, self.span(meta))
+            return expressions.Immediately(operand, self.span(meta))
         op = UnaryOp.of(token)
-        return Prefix(op, operand, first_of(window), self.span(token), self.span(meta))
+        return expressions.Prefix(op, operand, first_of(window), self.span(token), self.span(meta))
 
-    def bounded(self, meta: Meta, children: Children) -> Prefix:
+    def bounded(self, meta: Meta, children: Children) -> expressions.Prefix:
         token, bound, operand = children
         op = UnaryOp.EVENTUALLY if token.type == "WITHIN" else UnaryOp.ALWAYS
-        if isinstance(bound, Window):
-            return Prefix(op, operand, bound, self.span(token), self.span(meta))
-        window = Window(None, bound, False, False, bound.span)
-        return Prefix(op, operand, window, self.span(token), self.span(meta))
+        if isinstance(bound, expressions.Window):
+            return expressions.Prefix(op, operand, bound, self.span(token), self.span(meta))
+        window = expressions.Window(None, bound, False, False, bound.span)
+        return expressions.Prefix(op, operand, window, self.span(token), self.span(meta))
 
-    def chain(self, meta: Meta, children: Children) -> Infix:
+    def chain(self, meta: Meta, children: Children) -> expressions.Infix:
         operands, tokens = children[::2], children[1::2]
         if not _are_alike(operands):
             for operand in operands[:-1]:
                 self._check_reach(operand, operands[-1])
         if tokens[0].type != "IFF":
             self._check_sides(operands, tokens)
-        infix: Infix = self._balanced(operands, tokens)
+        infix: expressions.Infix = self._balanced(operands, tokens)
         return infix
 
     def _balanced(self, operands: Sequence[Any], tokens: Sequence[Token]) -> Any:
@@ -170,43 +153,51 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         right = self._balanced(operands[middle:], tokens[middle:])
         token = tokens[middle - 1]
         span = left.span.to(right.span)
-        return Infix(BinaryOp.of(token), left, right, None, self.span(token), span)
+        return expressions.Infix(BinaryOp.of(token), left, right, None, self.span(token), span)
 
-    def infix(self, meta: Meta, children: Children) -> Infix:
+    def infix(self, meta: Meta, children: Children) -> expressions.Infix:
         left, token, *window, right = children
         op = BinaryOp.of(" ".join(token.split()))
         self._check_reach(left, right)
-        if token.type == "INFIX" and isinstance(right, Infix) and right.op is not op:
+        if token.type == "INFIX" and isinstance(right, expressions.Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(self.span(token), right.op_span))
-        return Infix(op, left, right, first_of(window), self.span(token), self.span(meta))
+        return expressions.Infix(
+            op, left, right, first_of(window), self.span(token), self.span(meta)
+        )
 
     def _check_sides(self, operands: Sequence[Any], tokens: Sequence[Token]) -> None:
         """Between `until` or its kin and a connective a reader may see the other bracket first."""
         for number, operand in enumerate(operands):
-            if isinstance(operand, Infix) and operand.op.entry.level == BinaryOp.UNTIL.entry.level:
+            if (
+                isinstance(operand, expressions.Infix)
+                and operand.op.entry.level == BinaryOp.UNTIL.entry.level
+            ):
                 token = tokens[min(number, len(tokens) - 1)]
                 near = operand.right if number < len(tokens) else operand.left
                 self.findings.append(
                     rules.two_sides(operand.span, operand.op_span, self.span(token), near.span)
                 )
 
-    def _check_reach(self, left: Expression, last: Expression) -> None:
+    def _check_reach(self, left: expressions.Expression, last: expressions.Expression) -> None:
         """A temporal prefix right before a connective has to say how far it reaches."""
         edge = left
         while True:
             match edge:
-                case Prefix(op=UnaryOp.NOT, operand=inner) | Infix(right=inner):
+                case (
+                    expressions.Prefix(op=UnaryOp.NOT, operand=inner)
+                    | expressions.Infix(right=inner)
+                ):
                     edge = inner
-                case Prefix() | Path(reaching=False):
+                case expressions.Prefix() | expressions.Path(reaching=False):
                     break
                 case _:
                     return
-        if not isinstance(edge.operand, Group):
+        if not isinstance(edge.operand, expressions.Group):
             operand = edge.operand.span
             operator = Span(operand.source, edge.span.start, operand.start)
             self.findings.append(rules.reach(operator, operand, last.span))
 
-    def path(self, meta: Meta, children: Children) -> Path:
+    def path(self, meta: Meta, children: Children) -> expressions.Path:
         token, *window, operand = children
         reaching = token.type == "PATH"
         if reaching:
@@ -214,31 +205,31 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         else:
             op = UnaryOp.of(token[1])
         spans = self.span(token), self.span(meta)
-        return Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
+        return expressions.Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
 
-    def quantified(self, meta: Meta, children: Children) -> Quantified:
+    def quantified(self, meta: Meta, children: Children) -> expressions.Quantified:
         token, path = children
-        return Quantified(token == "A", path, self.span(meta))
+        return expressions.Quantified(token == "A", path, self.span(meta))
 
-    def leads_to(self, meta: Meta, children: Children) -> LeadsTo:
+    def leads_to(self, meta: Meta, children: Children) -> expressions.LeadsTo:
         left, _, *window, right = children
-        return LeadsTo(left, right, first_of(window), self.span(meta))
+        return expressions.LeadsTo(left, right, first_of(window), self.span(meta))
 
-    def at_most(self, meta: Meta, children: Children) -> Window:
+    def at_most(self, meta: Meta, children: Children) -> expressions.Window:
         (bound,) = (child for child in children if not isinstance(child, Token))
-        return Window(None, bound, False, False, self.span(meta))
+        return expressions.Window(None, bound, False, False, self.span(meta))
 
-    def window(self, meta: Meta, children: Children) -> Window:
+    def window(self, meta: Meta, children: Children) -> expressions.Window:
         opening, low, high, closing = children
         endless = isinstance(high, Token)
-        return Window(
+        return expressions.Window(
             low, None if endless else high, opening == "(", closing == ")", self.span(meta)
         )
 
 
 def _are_alike(operands: Sequence[Any]) -> bool:
     """Whether all begin with the same operator of time, which nobody takes for one in the other."""
-    firsts = {one.op if isinstance(one, Prefix) else None for one in operands}
+    firsts = {one.op if isinstance(one, expressions.Prefix) else None for one in operands}
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 
