@@ -111,6 +111,6 @@ COMPARISONS = {
         judge_lost,
         "runs through each door",
         (Lossy(),),
-        100,
+        500,
     ),
 }

@@ -21,13 +21,14 @@ import random
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
@@ -174,7 +175,15 @@ def _lines(path: Path) -> None:
         json.loads(line)
 
 
+def _database(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as database:
+        found = database.execute("PRAGMA integrity_check").fetchone()
+    if found != ("ok",):
+        raise ValueError(found)
+
+
 READERS: dict[str, Callable[[Path], object]] = {
+    ".db": _database,
     ".json": lambda path: json.loads(path.read_bytes()),
     ".jsonl": _lines,
     ".xml": ElementTree.parse,
@@ -190,7 +199,7 @@ def _is_half_written(path: Path) -> bool:
     if path.suffix in READERS:
         try:
             READERS[path.suffix](path)
-        except (ValueError, ElementTree.ParseError):
+        except (ValueError, ElementTree.ParseError, sqlite3.DatabaseError):
             return True
         return not body
     if path.suffix == ".html":
@@ -269,7 +278,7 @@ def resumed(commands: Sequence[str], folder: Path, kills: int, seed: int) -> Cou
 
 
 def _judged_and_resumed(kind: str, folder: Path, kills: int, seed: int) -> Counter[str]:
-    _write_recordings(folder, 200, 2000, random.Random(seed))
+    _write_recordings(folder, 100, 300, random.Random(seed))
     return resumed(RESUMED[kind], folder, kills, seed)
 
 

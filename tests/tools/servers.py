@@ -7,7 +7,7 @@ import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
@@ -15,7 +15,10 @@ from typing import NoReturn
 import pytest
 
 LONG = 30.0
-"""Seconds in which a server has to answer."""
+"""Seconds in which what was asked to end has to."""
+
+_LOOKS = 60_000
+"""So often something is looked for that has to come."""
 
 SYSTEM = "/usr/lib/python3/dist-packages"
 """Where Debian has rospy."""
@@ -53,20 +56,35 @@ def _free_port() -> int:
         return port
 
 
+def until(true: Callable[[], bool]) -> None:
+    """Wait until it is: for half a minute, or longer where the machine has much to do.
+
+    Raises:
+        TimeoutError: it does not come.
+    """
+    for _ in range(_LOOKS):
+        if true():
+            return
+        time.sleep(0.0005)
+    raise TimeoutError("it did not come")
+
+
 def _started(command: list[str], port: int) -> subprocess.Popen[bytes]:
     """A server that answers at its port."""
     quiet = subprocess.DEVNULL
     process = subprocess.Popen(command, stdout=quiet, stderr=quiet)  # noqa: S603
-    end = time.monotonic() + LONG
-    while time.monotonic() < end and process.poll() is None:
+
+    def answers() -> bool:
+        if process.poll() is not None:
+            raise ChildProcessError(f"{command[0]} has ended")
         try:
-            socket.create_connection(("127.0.0.1", port), 1).close()
+            socket.create_connection(("127.0.0.1", port)).close()
         except OSError:
-            time.sleep(0.02)
-        else:
-            return process
-    process.kill()
-    raise TimeoutError(f"{command[0]} does not answer")
+            return False
+        return True
+
+    until(answers)
+    return process
 
 
 class Broker:

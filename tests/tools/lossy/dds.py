@@ -17,9 +17,9 @@ from rvmon.live import Driver, SimulatedClock
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
 from tests.tools.lossy.live import closed
-from tests.tools.lossy.trial import Trial, Verdicts
-from tests.tools.lossy.wires import until, until_told
-from tests.tools.servers import LOOPBACK
+from tests.tools.lossy.trial import Trial, Verdicts, batches
+from tests.tools.lossy.wires import until_told
+from tests.tools.servers import LOOPBACK, until
 
 _TYPES = {
     Kind.BOOL: "std_msgs/msg/Bool",
@@ -50,10 +50,9 @@ class _Gate(MessageFeed):
 class _Talker:
     """One run: a topic for each name, and what hears them."""
 
-    def __init__(self, number: int, trial: Trial, mouth: _Mouth) -> None:
+    def __init__(self, home: str, trial: Trial, mouth: _Mouth) -> None:
         self.trial, self.samples = trial, trial.case.samples
         spec = trial.case.spec
-        home = f"/p{os.getpid()}r{number}"  # two processes may come to share a domain
         topics = {n: f"{home}/{n}" for n in (*spec.signals, *spec.events)}
         reading = trial.spec.reading(columns=topics)
         self.clock = SimulatedClock(self.samples[0].t)
@@ -136,7 +135,10 @@ class _Mouth:
         )
 
     def say(self, words: list[Any]) -> None:
-        """Have a topic, with its type; or something published on it; or (one word) look at it."""
+        """Have a topic, with its type; or something published on it.
+
+        One word: look at that topic; none: have none any more.
+        """
         assert self._process.stdin is not None
         self._process.stdin.write(json.dumps(words) + "\n")
         self._process.stdin.flush()
@@ -153,22 +155,33 @@ class _Mouth:
         self._process.communicate()
 
 
-def through_dds(trials: Sequence[Trial]) -> Iterator[Verdicts]:
+_TOGETHER = 8
+"""A domain of one machine has room for few participants more."""
+
+
+def through_dds(trials: Iterator[Trial]) -> Iterator[Verdicts]:
     """Runs in one domain, in which one process publishes, and this one reads."""
     os.environ.setdefault("CYCLONEDDS_URI", LOOPBACK)
     depth, dds._DEPTH = dds._DEPTH, 1
     try:
-        with ExitStack() as open_:
-            mouth = open_.enter_context(closing(_Mouth()))
-            talkers = [_Talker(number, trial, mouth) for number, trial in enumerate(trials)]
-            for talker in talkers:
-                open_.enter_context(talker.source)
-            for talker in talkers:
-                until(talker.is_connected)
-                talker.play()
-        yield from [closed(one.driver, one.clock, one.trial) for one in talkers]
+        with closing(_Mouth()) as mouth:
+            for number, batch in enumerate(batches(trials, _TOGETHER)):
+                # Two processes may come to share a domain.
+                yield from _heard(f"/p{os.getpid()}b{number}", batch, mouth)
     finally:
         dds._DEPTH = depth
+
+
+def _heard(home: str, trials: Sequence[Trial], mouth: _Mouth) -> Sequence[Verdicts]:
+    with ExitStack() as open_:
+        talkers = [_Talker(f"{home}r{n}", trial, mouth) for n, trial in enumerate(trials)]
+        for talker in talkers:
+            open_.enter_context(talker.source)
+        for talker in talkers:
+            until(talker.is_connected)
+            talker.play()
+    mouth.say([])
+    return [closed(one.driver, one.clock, one.trial) for one in talkers]
 
 
 def main() -> None:
@@ -180,15 +193,16 @@ def main() -> None:
     participant = DomainParticipant(int(sys.argv[1]))
     writers: dict[str, tuple[Any, Any]] = {}
     for line in sys.stdin:
-        topic, *words = json.loads(line)
-        match words:
+        match json.loads(line):
             case []:
+                writers.clear()
+            case [topic]:
                 print(_has_reader(writers[topic][0]), flush=True)
-            case [name]:
+            case [topic, name]:
                 kind = dds._idl_type(name, ())
                 writer = DataWriter(participant, DdsTopic(participant, f"rt{topic}", kind))
                 writers[topic] = writer, kind
-            case [_, value]:
+            case [topic, _, value]:
                 writer, kind = writers[topic]
                 field = next(iter(kind.__annotations__))
                 is_empty = field != "data"

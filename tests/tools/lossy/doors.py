@@ -18,9 +18,9 @@ DOORS = {
     "stdin": Door(live.stdin),
     "live": Door(live.live),
     "durable": Door(live.durable),
-    "mqtt": Door(wires.through_mqtt, at_once=25),
-    "dds": Door(dds.through_dds, TOPICS, at_once=8, plain=True),
-    "ros1": Door(ros1.through_ros1, TOPICS, at_once=20, plain=True),
+    "mqtt": Door(wires.through_mqtt),
+    "dds": Door(dds.through_dds, TOPICS, plain=True),
+    "ros1": Door(ros1.through_ros1, TOPICS, plain=True),
 }
 
 SERVERS = {"mqtt": ("mosquitto", mosquitto), "ros1": ("rosmaster, or rospy", rosmaster)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -58,7 +58,7 @@ def _text(
     write: Callable[[Content, Path], Path],
     damage: Callable[[Random, bytes], bytes],
     head: int,
-) -> Callable[[Sequence[Trial]], Iterator[Verdicts | None]]:
+) -> Callable[[Iterator[Trial]], Iterator[Verdicts | None]]:
     """Rows of text of which some are unreadable, torn, in another order, or lack a column.
 
     Args:

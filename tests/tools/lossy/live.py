@@ -20,11 +20,11 @@ from tests.tools.lossy.trial import Trial, Verdicts
 
 def one_by_one(
     through: Callable[[Trial], Verdicts | None],
-) -> Callable[[Sequence[Trial]], Iterator[Verdicts | None]]:
+) -> Callable[[Iterator[Trial]], Iterator[Verdicts | None]]:
     """What loses something of one run, for several."""
 
     @wraps(through)
-    def all_of_them(trials: Sequence[Trial]) -> Iterator[Verdicts | None]:
+    def all_of_them(trials: Iterator[Trial]) -> Iterator[Verdicts | None]:
         return map(through, trials)
 
     return all_of_them

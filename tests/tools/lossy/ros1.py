@@ -8,42 +8,59 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 from rvmon.live import Driver, SimulatedClock
 from rvmon.session import Spec
+from rvmon.testing.generate.trace import Case
 from rvmon.trace.schema import Kind
 from tests.tools.lossy.live import closed
-from tests.tools.lossy.trial import Trial, Verdicts
-from tests.tools.lossy.wires import until, until_told
-from tests.tools.servers import LONG, SYSTEM, master_of_ros1
+from tests.tools.lossy.trial import Trial, Verdicts, batches
+from tests.tools.lossy.wires import until_told
+from tests.tools.servers import SYSTEM, master_of_ros1, until
 
-_PATIENCE = 3 * LONG
-"""Seconds in which the process has to end."""
+_TOGETHER = 25
+
+_Given = tuple[str, Case, range, Path]
+"""A trial, as another process gets it."""
 
 
-def through_ros1(trials: Sequence[Trial]) -> Iterator[Verdicts]:
-    """Runs by one master, in a process: rospy is begun once in one."""
-    given = [(trial.name, trial.case, trial.lost, trial.folder) for trial in trials]
-    with master_of_ros1() as address:
-        done = subprocess.run(
+def through_ros1(trials: Iterator[Trial]) -> Iterator[Verdicts]:
+    """Runs by one master, some each in a process: rospy is begun once in one."""
+    with master_of_ros1() as address, closing(_Begun(address)) as process:
+        for batch in batches(trials, _TOGETHER):
+            for trial, (how, verdicts) in zip(batch, process.judged(batch), strict=True):
+                trial.is_named = how != "down"
+                yield verdicts
+
+
+class _Begun:
+    """A process that has rospy, and begins others, which have it, too."""
+
+    def __init__(self, master: str) -> None:
+        self._process = subprocess.Popen(
             [sys.executable, "-m", "tests.tools.lossy.ros1"],
-            input=pickle.dumps(given),
+            stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            timeout=_PATIENCE,
-            check=True,
-            env={
-                **os.environ,
-                "ROS_MASTER_URI": address,
-                "ROS_IP": "127.0.0.1",
-                "ROS_HOME": str(trials[0].folder),
-            },
+            env={**os.environ, "ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1"},
         )
-    judged: list[tuple[str, Verdicts]] = pickle.loads(done.stdout)  # noqa: S301 - of our own
-    for trial, (how, verdicts) in zip(trials, judged, strict=True):
-        trial.is_named = how != "down"
-        yield verdicts
+
+    def judged(self, trials: Sequence[Trial]) -> list[tuple[str, Verdicts]]:
+        """How each loses something, and its verdicts."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        given = [(trial.name, trial.case, trial.lost, trial.folder) for trial in trials]
+        pickle.dump(given, self._process.stdin)
+        self._process.stdin.flush()
+        judged: list[tuple[str, Verdicts]] = pickle.load(self._process.stdout)  # noqa: S301 - own
+        return judged
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.communicate()
 
 
 class _Talker:
@@ -132,12 +149,29 @@ class _Talker:
 
 
 def main() -> None:
-    """Judge the trials that come in, and give their verdicts."""
+    """Judge the trials that come in, some each in a process of their own."""
     sys.path.append(SYSTEM)
+    import rospy  # noqa: F401 - for all of them
+
+    out, sys.stdout = sys.stdout.buffer, sys.stderr
+    while True:
+        try:
+            given = pickle.load(sys.stdin.buffer)  # noqa: S301 - of our own
+        except EOFError:
+            return
+        if os.fork() == 0:
+            try:
+                out.write(pickle.dumps(_verdicts(given)))
+                out.flush()
+            finally:
+                os._exit(0)  # what rospy has begun ends by itself in seconds
+        os.wait()
+
+
+def _verdicts(given: Sequence[_Given]) -> list[tuple[str, Verdicts]]:
     import rospy
 
-    given = pickle.load(sys.stdin.buffer)  # noqa: S301 - of our own
-    out, sys.stdout = sys.stdout.buffer, sys.stderr
+    os.environ["ROS_HOME"] = str(given[0][-1])
     rospy.init_node("rvmon", anonymous=True, disable_signals=True)
     talkers = [
         _Talker(number, Trial(name, Spec(case.spec), case, lost, folder))
@@ -163,10 +197,7 @@ def main() -> None:
         until(talker.is_connected)
         until_told(talker.driver, len(talker._publishers))
         talker.play(range(talker.trial.lost.stop, len(talker.samples)))
-    verdicts = [(one.how, dict(closed(one.driver, one.clock, one.trial))) for one in talkers]
-    out.write(pickle.dumps(verdicts))
-    out.flush()
-    os._exit(0)  # what rospy has begun ends by itself in seconds
+    return [(one.how, dict(closed(one.driver, one.clock, one.trial))) for one in talkers]
 
 
 if __name__ == "__main__":

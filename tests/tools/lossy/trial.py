@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import random
 import shutil
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
@@ -97,14 +97,12 @@ class Door:
     Attributes:
         through: gives the verdicts of trials, in their order; `None`: it refuses the run.
         traces: what runs may hold.
-        at_once: so many trials are given to it together.
         ends: whether time goes on behind the last sample, by a tick.
         plain: whether it takes no events with payloads, nor names that no requirement reads.
     """
 
-    through: Callable[[Sequence[Trial]], Iterable[Verdicts | None]]
+    through: Callable[[Iterator[Trial]], Iterable[Verdicts | None]]
     traces: TraceProfile = _TRACES
-    at_once: int = 1
     ends: bool = True
     plain: bool = False
 
@@ -162,10 +160,11 @@ def _changes_a_letter(trial: Trial) -> bool:
 def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
     """Hold the verdicts of a door against those of the law, however what was lost is filled in."""
     rng = random.Random(f"{trial.name} fillings")
-    seen: dict[str, set[bool]] = {name: set() for name in trial.case.spec.requirements}
+    case = narrowed(trial.case)
+    seen: dict[str, set[bool]] = {name: set() for name in case.spec.requirements}
     bad = set()
     for which in range(FILLINGS):
-        filled = trial.case if which == 0 else _filled(rng, trial)
+        filled = case if which == 0 else _filled(rng, trial, case)
         if how.ends:
             filled = replace(filled, actions=(*filled.actions, trial.end))
         truly = judge(filled).verdicts
@@ -182,25 +181,29 @@ def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
     return Outcome(trial.name, tuple(sorted(bad)), split, verdicts is None)
 
 
-def _filled(rng: random.Random, trial: Trial) -> Case:
-    """The run with something else in place of what was lost."""
-    samples = list(trial.case.samples)
+def _filled(rng: random.Random, trial: Trial, case: Case) -> Case:
+    """The case of a trial with something else in place of what was lost."""
+    samples = list(case.samples)
     names = {*trial.names}
+    others: Any = random_trace(rng, case.spec, TraceProfile()).samples or samples
     for place in trial.lost:
-        others: Any = random_trace(rng, trial.case.spec, TraceProfile()).samples or samples
         told = samples[place].values
         heard = {n: v for n, v in told.items() if n not in names}
         may = names & told.keys() if trial.is_named else names
         values = {n: v for n, v in rng.choice(others).values.items() if n in may}
         samples[place] = Sample(samples[place].t, heard | values)
-    return replace(trial.case, actions=tuple(samples))
+    return replace(case, actions=tuple(samples))
 
 
 def outcomes(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
     """What comes of so many trials at a door."""
-    batch: list[Trial] = []
-    found = trials(door, how, count, seed, folder)
-    while batch := [trial for _, trial in zip(range(how.at_once), found, strict=False)]:
-        for trial, verdicts in zip(batch, how.through(batch), strict=True):
-            yield outcome(trial, how, verdicts)
-            shutil.rmtree(trial.folder)
+    given, kept = itertools.tee(trials(door, how, count, seed, folder))
+    for verdicts, trial in zip(how.through(given), kept, strict=True):
+        yield outcome(trial, how, verdicts)
+        shutil.rmtree(trial.folder)
+
+
+def batches(trials: Iterator[Trial], size: int) -> Iterator[list[Trial]]:
+    """Trials that go through a door together."""
+    while batch := [*islice(trials, size)]:
+        yield batch

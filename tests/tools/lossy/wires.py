@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -13,21 +12,8 @@ from rvmon.adapters.mqtt import MqttSource, address_of
 from rvmon.live import Driver, SimulatedClock
 from rvmon.trace.sample import Sample
 from tests.tools.lossy.live import closed, damaged, object_of
-from tests.tools.lossy.trial import Trial, Verdicts
-from tests.tools.servers import LONG, Broker
-
-
-def until(true: Callable[[], bool]) -> None:
-    """Wait until it is.
-
-    Raises:
-        TimeoutError: it does not come.
-    """
-    end = time.monotonic() + LONG
-    while not true():
-        if time.monotonic() > end:
-            raise TimeoutError("it did not come")
-        time.sleep(0.0005)
+from tests.tools.lossy.trial import Trial, Verdicts, batches
+from tests.tools.servers import Broker, until
 
 
 def until_told(driver: Driver, least: int = 1) -> None:
@@ -99,8 +85,17 @@ class _Subscribed:
         return closed(self.driver, self.clock, self.trial)
 
 
-def through_mqtt(trials: Sequence[Trial]) -> Iterator[Verdicts]:
-    """Runs by one broker, which goes and comes back once; some hear of it late."""
+_TOGETHER = 25
+
+
+def through_mqtt(trials: Iterator[Trial]) -> Iterator[Verdicts]:
+    """Some runs each by one broker."""
+    for batch in batches(trials, _TOGETHER):
+        yield from _by_one_broker(batch)
+
+
+def _by_one_broker(trials: Sequence[Trial]) -> Iterator[Verdicts]:
+    """Runs by a broker which goes and comes back once; some hear of it late."""
     from paho.mqtt.client import Client
     from paho.mqtt.enums import CallbackAPIVersion
 
@@ -110,7 +105,7 @@ def through_mqtt(trials: Sequence[Trial]) -> Iterator[Verdicts]:
 
     def publish(topic: str, text: bytes) -> None:
         until(client.is_connected)
-        client.publish(topic, text, qos=1).wait_for_publish(LONG)
+        until(client.publish(topic, text, qos=1).is_published)
 
     goes = trials[0].rng.random() < 0.4
     how = ("down", "down late") if goes else ("damaged", "late", "flood")
