@@ -150,7 +150,7 @@ def watched(fault: Fault) -> str:
     """What `rvmon.live` says, which `rvmon watch` uses."""
     clock, spec = SimulatedClock(), _ours(fault)
     driver = Driver(spec, clock=clock)
-    objects = JsonObjects(driver, spec.schema, clock=clock)
+    objects = JsonObjects(driver, clock=clock)
     for t, row in fault.samples:
         objects.take({"t": t, **row, "row": True})
         driver.work()

@@ -106,7 +106,7 @@ def test_a_fleet_over_mqtt(play, tmp_path):
     spec = load(EXAMPLES / "base.rv")
     address = address_of(f"mqtt://localhost:{broker.port}/robots/+/#")
     with Live(spec) as live:
-        with MqttSource(JsonObjects(live, spec.schema), address):
+        with MqttSource(JsonObjects(live), address):
             play("mqtt/fleet.py", broker.port)
             end = time.monotonic() + 20  # seconds that a busy machine may take
             while not live.status()["right"].counts and time.monotonic() < end:

@@ -53,7 +53,7 @@ class DdsSource:
         verdicts: str | None = None,
     ) -> None:
         try:
-            from cyclonedds.core import Listener
+            import cyclonedds  # noqa: F401 - says what to install
         except ImportError:
             raise not_installed("DDS", "cyclonedds") from None
         self._feed = feed
@@ -62,14 +62,13 @@ class DdsSource:
         self._verdicts = verdicts
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
-        self._found: dict[str, str] = {}
-        self._reported: set[str] = set()
+        self._types: dict[str, str] = {}  # on the wire, by topic, as it was published first
+        self._found: set[str] = set()  # of these, those that are to be read
+        self._given_up: set[str] = set()
         self._losses: dict[str, int] = {}  # by topic, until what waited then is taken
         self._lock = Lock()
         self._stops = False
-        # To be called for each message would hold up the thread of DDS that receives them, until
-        # the socket drops some and nobody learns of it; a loss is rare.
-        self._listener = Listener(on_sample_lost=self._lose, on_sample_rejected=self._lose)
+        self._listeners: list[Any] = []  # nobody else holds them
 
     def __enter__(self) -> DdsSource:
         """Join the domain.
@@ -98,28 +97,28 @@ class DdsSource:
         return self
 
     def _drive(self) -> None:
-        while not self._stops:
-            self._waiting.wait(_LONG_NS)
-            self._wake.set(False)
-            for reader, topic in self._readers.values():
-                losses, taken = self._losses.get(topic.name), []
-                try:
-                    taken = reader.take(N=_AT_ONCE)
-                    for content in taken:
-                        if content.sample_info.valid_data:
-                            self._feed.take(topic, content)
-                except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
-                    self._feed.lose(topic.name, f"cannot be unpacked ({error})", before=True)
-                if losses is not None and len(taken) < _AT_ONCE:
-                    self._end_of(topic.name, losses)
-            self._find()
+        with self._feed.heard():
+            while not self._stops:
+                self._waiting.wait(_LONG_NS)
+                self._wake.set(False)
+                for name, (reader, topic) in self._readers.items():
+                    self._take(name, reader, topic)
+                self._find()
 
-    def _end_of(self, topic: str, losses: int) -> None:
-        """All that waited when something was lost is taken, if no more was since."""
-        with self._lock:
-            if self._losses[topic] == losses:
-                del self._losses[topic]
-                self._feed.find(topic)
+    def _take(self, name: str, reader: Any, topic: Topic) -> None:
+        losses, taken = self._losses.get(topic.name), []
+        try:
+            taken = reader.take(N=_AT_ONCE)
+            for content in taken:
+                if content.sample_info.valid_data:
+                    self._feed.take(topic, content)
+        except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
+            self._feed.lose(topic.name, f"cannot be unpacked ({error})", before=True)
+        if losses is not None and len(taken) < _AT_ONCE:
+            with self._lock:  # all that waited then is taken, if no more was lost since
+                if self._losses[topic.name] == losses and name not in self._given_up:
+                    del self._losses[topic.name]
+                    self._feed.find(topic.name)
 
     def _wait_for(self, reader: Any) -> None:
         """Have the thread wake when there is something to be taken."""
@@ -128,14 +127,12 @@ class DdsSource:
         anything = SampleState.Any | ViewState.Any | InstanceState.Any
         self._waiting.attach(ReadCondition(reader, anything))
 
-    def _lose(self, reader: Any, _: object) -> None:
+    def _lose(self, topic: Topic) -> None:
         """Have a topic lost: what waits now was sent before, and ends no loss."""
-        for known, topic in tuple(self._readers.values()):
-            if known is reader:
-                with self._lock:
-                    self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
-                    self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
-                self._wake.set(True)
+        with self._lock:
+            self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
+            self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
+        self._wake.set(True)
 
     def _written(self, topic: str) -> Any:
         from cyclonedds.pub import DataWriter
@@ -150,32 +147,52 @@ class DdsSource:
         """Read the topics that are wanted and published."""
         for one in self._finder.take(N=1_000):
             name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # none: it left
-            if name in self._wanted and name not in self._readers:
-                self._found[name] = one.type_name
-        ready = [one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK]
+            if name not in self._wanted:
+                continue
+            if (known := self._types.setdefault(name, one.type_name)) != one.type_name:
+                self._give_up(name, f"it has two types, {known} and {one.type_name}")
+            elif name not in self._readers:
+                self._found.add(name)
+        ready = {one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK}
+        self._found -= ready
         for name in ready:
             try:
-                self._begin(name, self._found.pop(name))
+                self._begin(name, self._types[name])
             except Exception as error:  # noqa: BLE001 - as above: the others go on
-                self._feed.lose(self._wanted[name], f"{error}", for_good=True)
+                self._give_up(name, str(error))
+
+    def _give_up(self, name: str, why: str) -> None:
+        """Have lost for good, once, what a topic feeds: of somebody nothing can be heard."""
+        with self._lock:
+            if name not in self._given_up:
+                self._given_up.add(name)
+                self._feed.lose(self._wanted[name], why, for_good=True)
 
     def _begin(self, name: str, wire_type: str) -> None:
-        from cyclonedds.core import Policy, Qos
+        from cyclonedds.core import Listener, Policy, Qos
         from cyclonedds.sub import DataReader
         from cyclonedds.topic import Topic as DdsTopic
 
         kind = wire_type.replace("::dds_::", "/").replace("::", "/").removesuffix("_")
         topic, _ = ros_topic(self._wanted[name], kind, ("msg", ""), False, dict(self._definitions))
         if topic.fault:
-            if name not in self._reported:
-                self._reported.add(name)
-                self._feed.lose(topic.name, f"{kind}: {topic.fault}", for_good=True)
+            self._give_up(name, f"{kind}: {topic.fault}")
             return
         # A history that keeps the last messages would replace others and report nothing.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
-        reader = DataReader(self._participant, wire, qos=qos, listener=self._listener)
+        # To be called for each message would hold up the thread of DDS that receives them, until
+        # the socket drops some and nobody learns of it; a loss is rare.
+        listener = Listener(
+            on_sample_lost=lambda *_: self._lose(topic),
+            on_sample_rejected=lambda *_: self._lose(topic),
+            on_requested_incompatible_qos=lambda *_: self._give_up(
+                name, "a publisher has another type, or other terms"
+            ),
+        )
+        self._listeners.append(listener)
+        reader = DataReader(self._participant, wire, qos=qos, listener=listener)
         self._readers[name] = reader, topic
         self._wait_for(reader)
 

@@ -37,8 +37,7 @@ class JsonObjects:
     cannot be read may have reported anything: all names are lost there, between its neighbours.
 
     Args:
-        driver: gets the samples.
-        schema: the declared names, and what objects call them.
+        driver: gets the samples; its specification says what objects call the declared names.
         clock: follows the stamps of the objects; `None`: the clock of the driver runs by itself.
 
     Attributes:
@@ -47,30 +46,33 @@ class JsonObjects:
         unread: so many objects could not be read.
     """
 
-    def __init__(
-        self, driver: Driver, schema: Schema, *, clock: SimulatedClock | None = None
-    ) -> None:
+    def __init__(self, driver: Driver, *, clock: SimulatedClock | None = None) -> None:
         self.ignored: Counter[str] = Counter()
         self.unread = 0
         self.driver = driver
-        self._schema = schema
         self._clock = clock
         self._last: dict[str, int | None] = {}
         self._told = 0
         self._is_any_lost = False  # may have been the first of a robot that was not heard of yet
 
-    def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
+    def take(
+        self, fields: Any, robot: str = "", *, wait: bool = False, is_old: bool = False
+    ) -> None:
         """Offer what an object says.
 
         Args:
             fields: a decoded object.
             robot: whose it is.
             wait: whether to wait for room; see `Driver.offer`.
+            is_old: whether it was sent some time ago: its events are not of now.
 
         Raises:
             TraceError: it cannot be read; nothing was offered.
         """
-        t_ns, values = _read(fields, self._schema, self.ignored)
+        spec = self.driver.spec
+        t_ns, values = _read(fields, spec.schema, self.ignored)
+        if is_old:
+            values = {name: value for name, value in values.items() if name in spec.schema.signals}
         if len(self.ignored) > self._told:
             self._tell_of_ignored()
         if self._clock is not None and t_ns is not None:
@@ -80,6 +82,8 @@ class JsonObjects:
         if self._is_any_lost and robot not in self._last:
             self.driver.miss(robot=robot, why=_UNREADABLE)
         took = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+        if self.driver.spec is not spec:  # it was replaced meanwhile, by one with other names
+            self.driver.miss(robot=robot, why=_UNREADABLE)
         # Of robots that are one too many nothing is kept.
         if took or robot in self._last or len(self._last) < self.driver.most_robots:
             self._last[robot] = t_ns
@@ -88,9 +92,10 @@ class JsonObjects:
         """Say of a name that comes first, and feeds nothing, what it was probably meant for."""
         fresh = list(islice(self.ignored, self._told, None))
         self._told += len(fresh)
+        signals = self.driver.spec.schema.signals
         for name in fresh:
-            ends = [one for one in self._schema.signals if name.endswith(f".{one}")]
-            ends += [one for one in self._schema.signals if one.endswith(f".{name}")]
+            ends = [one for one in signals if name.endswith(f".{one}")]
+            ends += [one for one in signals if one.endswith(f".{name}")]
             if ends:
                 _log.warning(
                     "`%s` feeds nothing, and `%s` is declared: is `--map %s=%s` meant?",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
-from rvmon.errors import TraceError
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
 from rvmon.readers.messages.match import matched
@@ -92,8 +92,18 @@ class MessageFeed:
                 t_ns = None if t == _NOW else t
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
                 self._heard[topic.name] = self._driver.now_ns if t_ns is None else t_ns
-        except TraceError as error:
+        except Exception as error:  # noqa: BLE001 - what called this would swallow it, or end by it
             self.lose(topic.name, str(error))
+
+    @contextmanager
+    def heard(self) -> Iterator[None]:
+        """Have everything lost for good if what hears messages ends by an error."""
+        try:
+            yield
+        except Exception as error:  # noqa: BLE001 - nobody else would be told
+            _log.exception("no message is heard any more")
+            why = f"no message is heard any more ({type(error).__name__})"
+            self._driver.lose(robot=self._robot, why=why)
 
     def set_time(self, seconds: int, nanoseconds: int) -> None:
         """Have the clock follow what `/clock` says."""

@@ -117,9 +117,7 @@ class MqttSource:
         self._client.on_connect = self._on_connect
         self._client.on_subscribe = self._on_subscribe
         self._client.on_disconnect = self._on_disconnect
-        self._client.on_message = lambda _, __, message: self.hear(
-            message.topic, bytes(message.payload)
-        )
+        self._client.on_message = self._on_message
         if address.user:
             self._client.username_pw_set(address.user, address.password)
 
@@ -150,8 +148,11 @@ class MqttSource:
             # faster: at 4,000 messages in a second that is half of them.
             client.subscribe([(self._address.topics, 0), (_DROPPED, 0)])
 
-    def _on_subscribe(self, *_: object) -> None:
-        if self._connected.is_set():  # again
+    def _on_subscribe(self, _: object, __: object, ___: object, reasons: Any, ____: object) -> None:
+        if reasons[0].is_failure:
+            self._refusal = f"nobody may read {self._address.topics} here ({reasons[0]})"
+            _log.warning("the broker refuses: %s", self._refusal)  # what was lost stays so
+        elif self._connected.is_set():  # again
             self._objects.driver.found()
         self._heard = self._objects.driver.now_ns
         self._connected.set()
@@ -163,8 +164,20 @@ class MqttSource:
             _log.warning("%s (%s): what is published is not known until it is back", why, reason)
             self._objects.driver.lose(since_ns=self._heard, why=why)
 
-    def hear(self, topic: str, payload: bytes) -> None:
-        """Offer what a message says."""
+    def _on_message(self, _: object, __: object, message: Any) -> None:
+        try:
+            self.hear(message.topic, bytes(message.payload), is_old=message.retain)
+        except Exception as error:  # noqa: BLE001 - as of a topic that is no text: paho would end
+            self._objects.lose("a message", error, None)
+
+    def hear(self, topic: str, payload: bytes, *, is_old: bool = False) -> None:
+        """Offer what a message says.
+
+        Args:
+            topic: of it.
+            payload: of it.
+            is_old: whether the broker had kept it, from before this subscribed.
+        """
         self._heard = self._objects.driver.now_ns
         if topic == _DROPPED:
             self._hear_of_drops(payload)
@@ -176,7 +189,7 @@ class MqttSource:
             content = decoded_object(payload)
             for name in reversed(levels[self._address.prefix :]):
                 content = {name: content}
-            self._objects.take(content, robot)
+            self._objects.take(content, robot, is_old=is_old)
         except TraceError as error:
             self._objects.lose(f"a message of {topic}", error, robot)
 

@@ -54,7 +54,7 @@ class Ros2Source:
         self._feed = feed
         self._verdicts = verdicts
         self._publisher: Any = None
-        self._found: set[str] = set()
+        self._found: dict[str, set[str]] = {}  # the types of topics that were published
 
     def __enter__(self) -> Ros2Source:
         """Begin the node, in a thread and a context of its own: that of a program goes on."""
@@ -78,33 +78,40 @@ class Ros2Source:
         self._find()
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
-        self._thread = Thread(target=self._executor.spin, name="rvmon.ros2", daemon=True)
+        self._thread = Thread(target=self._spin, name="rvmon.ros2", daemon=True)
         self._thread.start()
         return self
+
+    def _spin(self) -> None:
+        with self._feed.heard():
+            self._executor.spin()
 
     def _find(self) -> None:
         """Subscribe to the topics that are wanted and published."""
         wanted = {*self._feed.topics()} if self._feed.has_time else {CLOCK}
-        wanted -= self._found
         for name, types in self._node.get_topic_names_and_types():
-            publishers = self._node.get_publishers_info_by_topic(name) if name in wanted else ()
-            if publishers:
-                self._found.add(name)
-                self._begin(name, types, [one.qos_profile for one in publishers])
+            if name not in wanted or (known := self._found.get(name, set())) >= {*types}:
+                continue
+            publishers = self._node.get_publishers_info_by_topic(name)
+            if not publishers:
+                continue
+            self._found[name] = known | {*types}
+            if len(self._found[name]) > 1:
+                several = ", ".join(sorted(self._found[name]))
+                self._feed.lose(name, f"it has several types, {several}", for_good=True)
+            else:
+                self._begin(name, types[0], [one.qos_profile for one in publishers])
 
-    def _begin(self, name: str, types: list[str], published: list[Any]) -> None:
+    def _begin(self, name: str, type_name: str, published: list[Any]) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
         from rosidl_runtime_py.utilities import get_message
 
-        if len(types) > 1:
-            self._feed.lose(name, f"it has several types, {', '.join(types)}", for_good=True)
-            return
         try:
-            kind = get_message(types[0])
-            topic = Topic(name, types[0], dict(_leaves(kind)))
+            kind = get_message(type_name)
+            topic = Topic(name, type_name, dict(_leaves(kind)))
         except (ImportError, AttributeError, ValueError) as error:
-            why = f"{error}: is the package of {types[0]} installed?"
+            why = f"{error}: is the package of {type_name} installed?"
             self._feed.lose(name, why, for_good=True)
             return
         # Who asks for more than is promised gets nothing at all.
@@ -124,7 +131,10 @@ class Ros2Source:
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=lambda _: self._feed.lose(
                     name, "some before it were lost", before=True
-                )
+                ),
+                incompatible_qos=lambda _: self._feed.lose(
+                    name, "a publisher promises less than those before it", for_good=True
+                ),
             ),
         )
 

@@ -162,7 +162,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         if began is not None and arguments.realtime is None:
             clock = followed = SimulatedClock(began)
         live = _live(arguments, spec, clock, shown.judged)
-        objects = JsonObjects(live, spec.schema, clock=followed)
+        objects = JsonObjects(live, clock=followed)
         every = itertools.chain([first], lines)
         faults: list[OSError] = []
 
@@ -194,7 +194,7 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
 
     address = address_of(arguments.source)
     live, hear = _live_here(arguments, spec, shown, _own_clock())
-    objects = JsonObjects(live, spec.schema)
+    objects = JsonObjects(live)
     source = MqttSource(objects, address, verdicts=arguments.publish)
     hear(source.publish)
     with live, source, shown:
@@ -256,14 +256,13 @@ def _domain_of(source: str) -> int | None:
 _ONE_ROBOT = "a domain or a master is one robot; start one for each"
 _NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
 _STAMPS = "a binding (--binding) names the field of the stamp"
+_TOPICS = ("ros1:", "ros2:", "dds:")
 _DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
     "mqtt:": (
         _watch_mqtt,
         {"robot": "the first + of the filter is the robot", "sim_time": _NO_CLOCK},
     ),
-    **dict.fromkeys(
-        ("ros1:", "ros2:", "dds:"), (_watch_topics, {"robot": _ONE_ROBOT, "time": _STAMPS})
-    ),
+    **dict.fromkeys(_TOPICS, (_watch_topics, {"robot": _ONE_ROBOT, "time": _STAMPS})),
     "": (
         _watch_lines,
         {"publish": "verdicts go to standard output (--format json)", "sim_time": _NO_CLOCK},
@@ -336,13 +335,34 @@ def _follow(
             if (age := _age(arguments.spec)) != arguments.made:
                 arguments.made = age
                 try:
-                    live.replace_spec(_loaded(arguments))
+                    _replace(arguments, live)
                     shown.note(f"{arguments.spec} has changed: the new one holds from here on")
                 except (SpecError, RvmonError) as error:
                     shown.note(f"{error}\nThe former specification goes on.")
             shown.show(live)
     except KeyboardInterrupt:
         shown.note("ended")
+
+
+def _replace(arguments: argparse.Namespace, live: Live) -> None:
+    """Have what watches go on with the specification as it is now.
+
+    Raises:
+        RvmonError: it cannot be used, or names what nobody listens to.
+    """
+    spec = _loaded(arguments)
+    if arguments.source.startswith(_TOPICS):
+        known = live.spec.schema
+        fresh = [
+            *(spec.schema.signals.keys() - known.signals),
+            *(spec.schema.events.keys() - known.events),
+        ]
+        if fresh or spec.schema.binding != known.binding:
+            raise RvmonError(
+                f"{f'`{min(fresh)}` is new, and ' if fresh else ''}topics are chosen as the watch "
+                "begins: end it, and begin another"
+            )
+    live.replace_spec(spec)
 
 
 def _age(path: str) -> tuple[int, int] | None:

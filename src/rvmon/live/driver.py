@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from threading import Condition, Lock, RLock
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger("rvmon.live")
 _input_log = logging.getLogger("rvmon.live.input")
-
-_T = TypeVar("_T")
 
 _BATCH = 1_000
 """So many entries are judged before anybody else gets a turn."""
@@ -224,14 +222,14 @@ class Driver:
             last = now if is_over else None
             if told is Told.FOUND and not self._runs_by_itself:
                 first = now + 1  # what bears this instant may have been sent before what was lost
-            robots = {*self._waiting.robots, *self._robots} if robot is None else {robot}
+            robots = [*self._waiting.robots] if robot is None else [robot]
             for one in robots:
                 if self._is_room_for(one):
                     self._waiting.put_gap(Gap(one, told, some, first, last, why))
         self.wake()
 
     def _is_room_for(self, robot: str) -> bool:
-        known = {*self._waiting.robots, *self._robots}
+        known = self._waiting.robots
         if robot in known or len(known) < self.most_robots:
             return True
         if not self.turned_away:
@@ -240,13 +238,19 @@ class Driver:
         return False
 
     def replace_spec(self, spec: Spec) -> None:
-        """Judge by another specification from now on: each robot begins a new run.
+        """Judge by another specification what comes from now on: each robot begins a new run.
 
         Raises:
             UnknownNameError: it lacks what `only` or `sources` names; the former one stays.
         """
         with self._driving():
-            self._watch, self._lag = self._watching(spec)
+            watching, former = self._watching(spec), self._watch
+            with self._has_room:
+                entries = self._waiting.take(len(self._waiting))
+                self._watch, self._lag = watching
+                self._has_room.notify_all()
+            for entry in entries:
+                self._take(entry, former)
             for robot in self._robots.values():
                 robot.end()
                 robot.begin(self._watch)
@@ -311,10 +315,10 @@ class Driver:
                 self._stamped = max(self._stamped, now)
             self._has_room.notify_all()
         for entry in entries:
-            self._take(entry)
+            self._take(entry, self._watch)
         return 0.0 if more else self._pass_to(now)
 
-    def _take(self, entry: Entry) -> None:
+    def _take(self, entry: Entry, watch: Watch) -> None:
         if isinstance(entry, NewRun):
             _input_log.warning("%s", entry.why)
             for robot in self._robots.values():
@@ -324,7 +328,7 @@ class Driver:
         found = self._robots.get(entry.robot)
         if found is None:
             _log.info("%sis watched", _heading(entry.robot))
-            found = Robot(entry.robot, self._watch, self._judged, self._ended)
+            found = Robot(entry.robot, watch, self._judged, self._ended)
             self._robots[entry.robot] = found
         match entry:
             case Offered(t=t, values=values):
@@ -380,15 +384,13 @@ class Driver:
 
     def _ended(self, robot: str, report: Report) -> None:
         _log.info("%sa run ended", _heading(robot))
-        if self._on_report is not None:
-            on_report = self._on_report
-            self._call(lambda one: on_report(robot, one), report)
+        self._call(self._on_report, robot, report)
 
-    def _call(self, callback: Callable[[_T], object] | None, what: _T) -> None:
+    def _call(self, callback: Callable[..., object] | None, *what: object) -> None:
         if callback is None:
             return
         try:
-            callback(what)
+            callback(*what)
         except Exception:  # noqa: BLE001 - what others do wrong stops no monitor
             self.errors += 1
             _log.exception("a callback failed")

@@ -35,6 +35,7 @@ class QoSProfile:
 @dataclass
 class SubscriptionEventCallbacks:
     message_lost: object = None
+    incompatible_qos: object = None
 
 
 class ClockType(IntEnum):

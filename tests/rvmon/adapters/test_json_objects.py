@@ -30,7 +30,7 @@ def live():
     """A driver, its clock and a reader of lines with stamps."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
-    return driver, clock, JsonObjects(driver, spec.schema, clock=clock)
+    return driver, clock, JsonObjects(driver, clock=clock)
 
 
 def _verdicts(driver, lines, source, robot=None):
@@ -57,6 +57,26 @@ def test_a_line_that_cannot_be_read_may_have_said_anything(live):
     found = _verdicts(driver, [b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], source)
     assert found == {"": Verdict.INCONCLUSIVE}
     assert source.unread == 1
+
+
+@pytest.mark.parametrize(("waits", "verdict"), [(True, "NT"), (False, "F")])
+def test_names_that_only_a_later_specification_declares_are_read(live, waits, verdict):
+    """From when it holds; what waits then is judged by the former, and counts no more."""
+    driver, _, source = live
+    feed_lines(source, [b'{"t": 0, "x": 0}'])
+    later = loads("signal y : real\nevent b\nrequirement R\n  upon b\n  then y <= 1")
+    lines = [b'{"t": 1, "y": 2, "b": true}']
+    if waits:
+        feed_lines(source, lines)
+        driver.replace_spec(later)
+        lines = []
+    else:
+        driver.replace_spec(later)
+    feed_lines(source, [*lines, b'{"t": 2}'])
+    driver.close()
+    former, latter = driver.close()[""]
+    assert [one.verdict.value for one in former.attempts] == ["P"]
+    assert latter.verdicts == {"R": verdict}
 
 
 def test_names_that_are_not_declared_are_counted(live):
@@ -90,7 +110,7 @@ def test_robots_that_are_turned_away_take_no_room(live):
     """What was last heard is known of those alone that there are."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock, most_robots=2)
-    source = JsonObjects(driver, spec.schema, clock=clock)
+    source = JsonObjects(driver, clock=clock)
     feed_lines(source, [b'{"t": 0, "x": 0, "r": "%d"}' % name for name in range(50)], "r")
     feed_lines(source, [b"x: 7"], "r")
     while driver.work() == 0:
@@ -103,7 +123,7 @@ def test_lines_without_a_time_are_stamped_as_they_arrive():
     """By the clock of the driver."""
     spec, clock = loads(SPEC), SimulatedClock(7)
     driver = Driver(spec, clock=clock)
-    assert _verdicts(driver, [b'{"x": 2}'], JsonObjects(driver, spec.schema)) == {"": Verdict.FAIL}
+    assert _verdicts(driver, [b'{"x": 2}'], JsonObjects(driver)) == {"": Verdict.FAIL}
     assert driver.close()[""][0].attempts[0].decided == 7
 
 
@@ -111,7 +131,7 @@ def test_a_stamp_of_another_epoch_is_told_and_stops_nothing():
     """The clock runs by itself: what the line said is unknown, the next one is judged."""
     spec = loads(SPEC)
     driver = Driver(spec)
-    source = JsonObjects(driver, spec.schema)
+    source = JsonObjects(driver)
     lines = [b'{"x": 0}', b'{"x": 0, "t": 1800000000}', b'{"x": 2}']
     assert _verdicts(driver, lines, source) == {"": Verdict.FAIL}
     assert source.unread == 1
@@ -129,7 +149,7 @@ def test_a_field_names_the_robot():
     """A line without it is of nobody known: it may be of any."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
-    source = JsonObjects(driver, spec.schema, clock=clock)
+    source = JsonObjects(driver, clock=clock)
     lines = [
         b'{"t": 0, "id": "left", "x": 0}',
         b'{"t": 0, "id": 2, "x": 3}',
@@ -149,7 +169,7 @@ def test_a_line_of_nobody_may_have_been_the_first_of_a_robot_that_comes_later():
     for lines, expected in ((["torn {"], "I"), ([], "P")):
         driver = Driver(spec, clock=SimulatedClock())
         stamped = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
-        objects = JsonObjects(driver, spec.schema, clock=driver._clock)
+        objects = JsonObjects(driver, clock=driver._clock)
         feed_lines(objects, [*(one.encode() for one in lines), *stamped], "id")
         (report,) = driver.close()["left"]
         assert report.verdicts["R"] == expected

@@ -1,8 +1,10 @@
 """MQTT, by a real broker."""
 
 import json
+import socket
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 from tests.tools.servers import LONG, Broker, missing, mosquitto
@@ -43,7 +45,7 @@ def publish(broker):
     client = Client(CallbackAPIVersion.VERSION2)
     client.connect("127.0.0.1", broker.port)
     client.loop_start()
-    yield lambda topic, text: client.publish(topic, text, qos=1)
+    yield lambda topic, text, **kept: client.publish(topic, text, qos=1, **kept)
     client.disconnect()
     client.loop_stop()
 
@@ -68,7 +70,7 @@ def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
     listener.loop_start()
     spec = loads(SPEC)
     live = Live(spec, on_judged=lambda one: source.publish(one))
-    objects = JsonObjects(live, spec.schema)
+    objects = JsonObjects(live)
     address = address_of(f"mqtt://127.0.0.1:{broker.port}/robots/+/#")
     source = MqttSource(objects, address, verdicts="verdicts")
     with live, source:
@@ -94,7 +96,7 @@ def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
     spec = loads(SPEC)
     failed = threading.Event()
     live = Live(spec, on_failure=lambda _: failed.set())
-    objects = JsonObjects(live, spec.schema)
+    objects = JsonObjects(live)
     address = address_of(f"mqtt://127.0.0.1:{broker.port}/#")
     with live, MqttSource(objects, address):
         publish("arm", '{"speed": 0.5}')
@@ -114,7 +116,7 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
     """It may have said anything."""
     spec = loads(SPEC)
     live = Live(spec)
-    objects = JsonObjects(live, spec.schema)
+    objects = JsonObjects(live)
     with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
         publish("arm/speed", "0.5")
         publish("arm/speed", "fast!")
@@ -127,7 +129,7 @@ def test_what_a_broker_has_dropped_may_have_been_ours():
     pytest.importorskip("paho.mqtt.client")
     spec = loads(SPEC)
     driver = Driver(spec, clock=(clock := SimulatedClock()))
-    source = MqttSource(JsonObjects(driver, spec.schema), address_of("mqtt://127.0.0.1:1/#"))
+    source = MqttSource(JsonObjects(driver), address_of("mqtt://127.0.0.1:1/#"))
     source.hear("arm/speed", b"0.5")
     for t, dropped in ((1, b"7"), (2, b"7"), (3, b"9")):
         clock.set_ns(t * 10**9)
@@ -139,6 +141,66 @@ def test_what_a_broker_has_dropped_may_have_been_ours():
     assert "dropped messages" in report.health[0].remark
 
 
+@pytest.mark.process
+def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
+    """The value of a signal holds; an event, of some time ago, is none of now."""
+    spec = loads(SPEC)
+    live = Live(spec)
+    for topic, text in (("stop", "true"), ("arm/speed", "5")):
+        publish(topic, text, retain=True).wait_for_publish(LONG)
+    with live, MqttSource(JsonObjects(live), address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
+        _until(lambda: live.status() and live.status()[""].samples == 2)
+    assert live.close()[""][0].verdicts == {"R1": "F", "R2": "NT"}
+
+
+@contextmanager
+def _answers(*answers):
+    """The port of a broker that says the same to whoever comes, at the second of his messages."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer():
+            with server.accept()[0] as one:
+                one.recv(4096)
+                one.sendall(b"\x20\x02\x00\x00")  # connected
+                one.recv(4096)
+                one.sendall(b"".join(answers))
+                while one.recv(4096):
+                    pass
+
+        answering = threading.Thread(target=answer)
+        answering.start()
+        yield server.getsockname()[1]
+        answering.join(LONG)
+
+
+def test_a_topic_that_may_not_be_read_is_told():
+    """Nothing would be heard, and all be well."""
+    pytest.importorskip("paho.mqtt.client")
+    driver = Driver(loads(SPEC), clock=SimulatedClock())
+    with _answers(b"\x90\x04\x00\x01\x80\x00") as port:
+        source = MqttSource(JsonObjects(driver), address_of(f"mqtt://127.0.0.1:{port}/arm/#"))
+        with pytest.raises(RvmonError, match="nobody may read arm/# here"):
+            source.__enter__()
+        source.__exit__()
+
+
+def test_a_message_that_no_broker_should_let_through_is_lost():
+    """Its topic is no text; those behind it are heard."""
+    pytest.importorskip("paho.mqtt.client")
+    driver = Driver(loads(SPEC), clock=SimulatedClock())
+    objects = JsonObjects(driver)
+    good = b"\x30\x0c\x00\x09arm/speed1"
+    answers = b"\x90\x04\x00\x01\x00\x00", good, b"\x30\x05\x00\x02\xff\xfe1", good
+    with (
+        _answers(*answers) as port,
+        MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")),
+    ):
+        _until(lambda: driver.waiting == 3)
+    driver.work()
+    assert objects.unread == 1
+    assert driver.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
 def test_a_broker_that_is_not_there_is_told():
     """With its place."""
     pytest.importorskip("paho.mqtt.client")
@@ -146,7 +208,7 @@ def test_a_broker_that_is_not_there_is_told():
     with (
         Live(spec) as live,
         pytest.raises(RvmonError, match=r"answers at 127\.0\.0\.1:1"),
-        MqttSource(JsonObjects(live, spec.schema), address_of("mqtt://127.0.0.1:1/#")),
+        MqttSource(JsonObjects(live), address_of("mqtt://127.0.0.1:1/#")),
     ):
         pass
 

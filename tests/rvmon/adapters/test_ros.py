@@ -12,11 +12,12 @@ from types import SimpleNamespace
 
 import pytest
 from tests.rvmon.adapters.talkers import SIMULATOR
+from tests.tools.lossy.wires import until
 from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
-from rvmon import RvmonError, loads
+from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.messages import MessageFeed
-from rvmon.live import Driver, SimulatedClock
+from rvmon.live import Driver, Live, SimulatedClock
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
 
@@ -97,6 +98,39 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
     talker = [sys.executable, EXAMPLES / "dds" / "talker.py", domain]
     found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LOOPBACK})
     assert found == [("B1#1", "F"), ("B2#1", "F")]
+
+
+@pytest.mark.process
+def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(monkeypatch):
+    """What the topic feeds is unknown for good, also where something of it was lost and found."""
+    pytest.importorskip("cyclonedds")
+    from cyclonedds.domain import DomainParticipant
+    from cyclonedds.pub import DataWriter
+    from cyclonedds.topic import Topic as DdsTopic
+
+    from rvmon.adapters import dds
+
+    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+    domain, topic = 100 + os.getpid() % 100, f"speed{os.getpid()}"
+    spec = loads(f"signal {topic} : real\nrequirement R\n  always {topic} <= 1")
+    live = Live(spec)
+    robots = [DomainParticipant(domain) for _ in range(2)]
+
+    def published(robot, name):
+        kind = dds._idl_type(f"std_msgs/msg/{name}", ())
+        return kind, DataWriter(robots[robot], DdsTopic(robots[robot], f"rt/{topic}", kind))
+
+    kind, writer = published(0, "Float64")
+    with live, dds.DdsSource(MessageFeed(live, spec.schema), domain=domain):
+        until(writer.get_matched_subscriptions)
+        writer.write(kind(data=0.5))
+        until(lambda: live.status() and live.status()[""].samples == 1)
+        others = published(1, "Float32")
+        until(lambda: live.status()[""].lost == 1)
+        writer.write(kind(data=0.5))
+        until(lambda: live.status()[""].samples == 2)
+    del others
+    assert live.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
 
 
 def test_what_is_not_there_is_told(tmp_path, monkeypatch):

@@ -12,6 +12,7 @@ from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.messages import MessageFeed
 from rvmon.adapters.ros2 import Ros2Source
 from rvmon.live import Driver, SimulatedClock
+from rvmon.trace.sample import HealthKind
 
 SPEC = """
 spec s
@@ -109,6 +110,25 @@ def test_what_was_lost_is_unknown(graph, started):
     graph.call(graph.subscriptions["/base/twist"][2].message_lost, None)
     started.work()
     assert started.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize("has_other_type", [False, True])
+def test_a_publisher_that_comes_later_and_cannot_be_heard_is_told(graph, started, has_other_type):
+    """It promises less than those before it, or has another type: what it says is unknown."""
+    _at(graph, started, 0)
+    _moves(graph, 0.5)
+    if has_other_type:
+        graph.publishers["/base/twist"] = ("geometry_msgs/msg/Twist std_msgs/msg/Bool", [LATCHED])
+        graph.call(graph.timers[0])
+        graph.call(graph.timers[0])
+        graph.publishers["/base/twist"] = ("geometry_msgs/msg/Twist", [LATCHED])
+    else:
+        graph.call(graph.subscriptions["/base/twist"][2].incompatible_qos, None)
+    _moves(graph, 0.5)
+    _at(graph, started, 10)
+    (report,) = started.close()[""]
+    assert report.verdicts["R1"] is Verdict.INCONCLUSIVE
+    assert [one.count for one in report.health if one.kind is HealthKind.DROPPED] == [1]
 
 
 @pytest.mark.parametrize("several", [False, True])

@@ -71,7 +71,7 @@ def stdin(trial: Trial) -> Verdicts:
             torn = b"\n".join(_lost(trial, lines))
             torn = torn[: rng.randrange(1, len(lines[trial.lost.start]) - 1)]
             kept.insert(trial.lost.start, torn)
-    feed_lines(JsonObjects(driver, driver.spec.schema, clock=clock), _piped(rng, kept))
+    feed_lines(JsonObjects(driver, clock=clock), _piped(rng, kept))
     return closed(driver, clock, trial)
 
 

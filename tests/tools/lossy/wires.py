@@ -26,8 +26,8 @@ class _Counted(JsonObjects):
 
     came = 0
 
-    def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
-        super().take(fields, robot, wait=wait)
+    def take(self, fields: Any, robot: str = "", **how: bool) -> None:
+        super().take(fields, robot, **how)
         self.came += 1
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
@@ -46,7 +46,7 @@ class _Subscribed:
         self.samples = trial.case.samples
         self.clock = SimulatedClock(self.samples[0].t)
         self.driver = Driver(trial.spec, clock=self.clock, sources=trial.case.names)
-        self.objects = _Counted(self.driver, trial.spec.schema)
+        self.objects = _Counted(self.driver)
         self.source = MqttSource(self.objects, address_of(f"mqtt://127.0.0.1:{port}/r{number}/#"))
         self._topic, self._publish, self._sent = f"r{number}/", publish, 0
 

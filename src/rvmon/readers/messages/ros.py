@@ -123,7 +123,28 @@ def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
         from rosbags import rosbag1, rosbag2
     except ImportError:
         raise not_installed("a bag", "rosbags") from None
-    return {"ros1": rosbag1.Reader, "ros2": rosbag2.Reader}
+
+    def ros2_reader(path: Path) -> Any:
+        _refuse_unclosed(path)
+        return rosbag2.Reader(path)
+
+    return {"ros1": rosbag1.Reader, "ros2": ros2_reader}
+
+
+def _refuse_unclosed(path: Path) -> None:
+    """Refuse files of SQLite of which a part is in another file, which no reader of bags looks at.
+
+    Raises:
+        TraceError: there is such a part, as where a recorder was killed.
+    """
+    for inner in sorted(path.glob("*.db3")) if path.is_dir() else [path]:
+        for ending in ("-wal", "-journal"):
+            rest = inner.with_name(inner.name + ending)
+            if rest.exists() and rest.stat().st_size:
+                raise TraceError(
+                    f"it was not closed: a part of it is in {rest.name}, and would not be read: "
+                    f"`sqlite3 {inner.name} 'PRAGMA journal_mode = DELETE'` puts it in"
+                )
 
 
 def bag_errors(form: str) -> AbstractContextManager[None]:

@@ -103,6 +103,21 @@ def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
         spec.evaluate(tmp_path / name)
 
 
+@pytest.mark.parametrize("is_folder", [True, False])
+def test_a_bag_whose_recorder_was_killed_is_told(tmp_path, spec, is_folder):
+    """What it wrote last is in a file beside, which no reader of bags looks at."""
+    folder, file = written(tmp_path, "sqlite3")
+    with closing(sqlite3.connect(file)) as bag:
+        bag.execute("PRAGMA journal_mode = WAL")
+        bag.execute("DELETE FROM messages WHERE timestamp > ?", (START + 10**9,))
+        bag.commit()
+        path = folder if is_folder else file
+        with pytest.raises(rvmon.TraceError, match=rf"a part of it is in {file.name}-wal"):
+            spec.evaluate(path)
+    folder.joinpath("metadata.yaml").unlink()  # SQLite closed it; that counts more
+    assert spec.evaluate(file).verdicts["R1"] == "P"
+
+
 @pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
 def test_a_bag_that_is_not_there_is_told(tmp_path, spec, name):
     """As any file."""
