@@ -164,21 +164,22 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         live = _live(arguments, spec, clock, shown.judged)
         objects = JsonObjects(live, clock=followed)
         every = itertools.chain([first], lines)
-        faults: list[OSError] = []
+        faults: list[str] = []
 
         def feed() -> None:
             try:
                 feed_lines(objects, every, arguments.robot)
-            except OSError as error:  # what comes is heard no more
-                live.lose(why=f"{arguments.source}: {error.strerror}")
-                faults.append(error)
+            except Exception as error:  # noqa: BLE001 - of whatever: what comes is heard no more
+                why = getattr(error, "strerror", None) or f"{type(error).__name__} {error}".strip()
+                faults.append(f"{arguments.source}: {why}")
+                live.lose(why=faults[0])
 
         feeding = threading.Thread(target=feed, daemon=True)
         with live, shown:
             feeding.start()
             _follow(arguments, live, shown, feeding)
         for fault in faults:
-            warn(f"{arguments.source}: {fault.strerror}: nothing more was heard")
+            warn(f"{fault}: nothing more was heard")
     _warn_ignored(objects)
     return live
 

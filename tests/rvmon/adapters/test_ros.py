@@ -133,6 +133,49 @@ def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(monkeypatch
     assert live.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
 
 
+@pytest.fixture
+def linked(monkeypatch):
+    """Of a stand-in for rospy what its one connection is, and what its master says."""
+    made = SimpleNamespace(socket=1, header={"callerid": "/robot"})
+    link = SimpleNamespace(impl=SimpleNamespace(connections=[made]), master=lambda: None)
+
+    def subscriber(topic, *_, **__):
+        return SimpleNamespace(resolved_name=topic, impl=link.impl, unregister=int)
+
+    monkeypatch.setitem(
+        sys.modules,
+        "rospy",
+        SimpleNamespace(
+            get_master=lambda: SimpleNamespace(getPid=int, getSystemState=lambda: link.master()),
+            init_node=lambda *_, **__: None,
+            Subscriber=subscriber,
+            AnyMsg=None,
+            signal_shutdown=str,
+        ),
+    )
+    return link
+
+
+@pytest.mark.parametrize("fault", ["nonsense of the master", "rospy itself"])
+def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fault):
+    """Nobody knows any more whether something is lost: that is lost."""
+    from rvmon.adapters.ros1 import Ros1Source
+
+    spec = loads(SPEC)
+    driver = Driver(spec, clock=SimulatedClock())
+    with Ros1Source(MessageFeed(driver, spec.schema)) as source:
+        until(lambda: source._links)
+        if fault == "rospy itself":
+            linked.impl.connections = 7
+        else:
+            linked.master = lambda: ("", "", "no lists")
+            linked.impl.connections = []
+        until(lambda: driver.waiting)
+    driver.offer({"base.speed": 0.5})
+    driver.work()
+    assert driver.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
 def test_what_is_not_there_is_told(tmp_path, monkeypatch):
     """With what to install, or where nobody answers."""
     from rvmon.adapters.ros1 import Ros1Source

@@ -6,7 +6,9 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import nullcontext
 from io import StringIO
+from types import SimpleNamespace
 
 import pytest
 
@@ -53,20 +55,45 @@ def test_as_json_each_line_can_be_read(door, capsys):
     assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
 
 
-def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("fault", "told"), [(OSError(5, "Input/output error"), "Input/output"), (MemoryError(), "Mem")]
+)
+def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch, fault, told):
     """As a serial line that is unplugged: what came behind it nobody heard."""
     pieces = [b'{"t": 0, "closed": true}\n']
 
     def read(*_):
         if pieces:
             return pieces.pop()
-        raise OSError(5, "Input/output error")
+        raise fault
 
     monkeypatch.setattr("rvmon.adapters.json_objects.os.read", read)
     assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
-    told = capsys.readouterr()
-    assert "D1   I  ?" in told.out
-    assert "a.jsonl: Input/output error: nothing more was heard" in told.err
+    shown = capsys.readouterr()
+    assert "D1   I  ?" in shown.out
+    assert f"a.jsonl: {told}" in shown.err
+    assert "rror: nothing more was heard" in shown.err
+
+
+def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, capsys, monkeypatch):
+    """Topics are chosen as the watch begins: a name that is new would be taken for silent."""
+    source = nullcontext(SimpleNamespace(publish=print))
+    source.publish = print
+    monkeypatch.setattr("rvmon.adapters.dds.DdsSource", lambda *_, **__: source)
+    changes = [SPEC + "event other\n", SPEC + "\n"]
+
+    def sleep(_):
+        if not changes:
+            raise KeyboardInterrupt
+        (door / "new.rv").write_text(changes.pop(0))
+        os.replace("new.rv", "door.rv")
+
+    monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
+    assert main(["watch", "door.rv", "dds:7", "--format", "text"]) == 0
+    said = capsys.readouterr()
+    said = " ".join((said.out + said.err).split())
+    assert "`other` is new, and topics are chosen as the watch begins" in said
+    assert "The former specification goes on. door.rv has changed: the new one holds" in said
 
 
 def test_what_passes_can_be_left_out(door, capsys):
