@@ -237,14 +237,44 @@ static void tell_since(gauging *w, int32_t place, int64_t at)
     tell_other(w, place, at, within(o->carried, bounds.low, bounds.high));
 }
 
+/* The next step of an operand that was not taken; NULL: there is none. */
+static inline const margin_step *next_of(const gauging *w, int32_t operand, const margin_edge *own)
+{
+    const margin_steps *from;
+    if (operand < 0) {
+        return NULL; /* it never changes */
+    }
+    from = &w->g->nodes[operand].out;
+    return (own->read < from->end) ? step_at(from, own->read) : NULL;
+}
+
+/* Take what operands are at a position; the next one at which one of them changes. */
+static inline int64_t take_operands(const gauging *w, const margin_place *shape, int64_t at)
+{
+    const int32_t *operands = &w->shape->operands[shape->edge];
+    margin_edge *edges = &w->g->edges[shape->edge];
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; i < shape->edge_count; i++) {
+        const margin_step *next = next_of(w, operands[i], &edges[i]);
+        if ((next != NULL) && (next->at == at)) {
+            edges[i].value = next->value;
+            edges[i].read++;
+            next = next_of(w, operands[i], &edges[i]);
+        }
+        found = (next != NULL) ? least(found, next->at) : found;
+    }
+    return found;
+}
+
 /* Take what operands are at the positions at which one of them changes, up to where all are known. */
 static void join_operands(gauging *w, int32_t place, void (*tell)(gauging *w, int32_t place, int64_t at))
 {
     const margin_place *shape = &w->shape->places[place];
     const int32_t *operands = &w->shape->operands[shape->edge];
-    margin_edge *edges = &w->g->edges[shape->edge];
     margin_node *o = &w->g->nodes[place];
     int64_t known = NEVER;
+    int64_t at;
     int32_t i;
     for (i = 0; i < shape->edge_count; i++) {
         if (operands[i] >= 0) {
@@ -255,29 +285,11 @@ static void join_operands(gauging *w, int32_t place, void (*tell)(gauging *w, in
         return;
     }
     o->joined = known;
-    for (;;) {
-        int64_t at = known + 1;
-        for (i = 0; i < shape->edge_count; i++) {
-            if (operands[i] >= 0) {
-                const margin_steps *from = &w->g->nodes[operands[i]].out;
-                if (edges[i].read < from->end) {
-                    at = least(at, step_at(from, edges[i].read)->at);
-                }
-            }
-        }
-        if (at > known) {
-            break;
-        }
-        for (i = 0; i < shape->edge_count; i++) {
-            if (operands[i] >= 0) {
-                const margin_steps *from = &w->g->nodes[operands[i]].out;
-                if ((edges[i].read < from->end) && (step_at(from, edges[i].read)->at == at)) {
-                    edges[i].value = step_at(from, edges[i].read)->value;
-                    edges[i].read++;
-                }
-            }
-        }
+    at = take_operands(w, shape, -NEVER);
+    while (at <= known) {
+        const int64_t next = take_operands(w, shape, at);
         tell(w, place, at);
+        at = next;
     }
 }
 

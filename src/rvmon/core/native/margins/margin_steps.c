@@ -79,22 +79,17 @@ bool is_asked(const gauging *w, int64_t left, int64_t right)
     return (low < q->asks_end) && (ask_at(q, low)->position <= right);
 }
 
-/* Tell those that read a node that it has another value from a position on. Where that matters at
- * positions alone that are asked for, one before that nobody asks for may have any. */
-void tell_step(gauging *w, int32_t place, int64_t at, double value)
+/* Whether a node has room for a step that it is to tell. Where its value matters at positions alone that
+ * are asked for, the one before takes the value over if nobody asks for it. */
+bool takes_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
     if (is_thin(w, place) && (place < w->shape->count - 1) && (s->end > s->first)
         && is_last_unread(w, place) && !is_asked(w, step_at(s, s->end - 1)->at, at - 1)) {
         step_at(s, s->end - 1)->value = value;
-        return;
+        return false;
     }
-    if ((s->end - s->first == s->room) && !room_for_step(w, s, oldest_unread(w, place))) {
-        return;
-    }
-    step_at(s, s->end)->at = at;
-    step_at(s, s->end)->value = value;
-    s->end++;
+    return (s->end - s->first < s->room) || room_for_step(w, s, oldest_unread(w, place));
 }
 
 /* Take it that there is a position, where only samples are some. */
@@ -115,8 +110,7 @@ void note_position(gauging *w, int64_t at)
             return;
         }
     }
-    step_at(s, s->end)->at = at;
-    s->end++;
+    add_step(s, at, 0.0);
 }
 
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s)

@@ -33,24 +33,27 @@ static void drop_exits(margin_steps *wedge, int64_t position)
 }
 
 /* Tell what windows are up to a position. */
-static void tell_windows(windowing *x, int64_t stop)
+static void tell_windows(const windowing *x, int64_t stop)
 {
-    margin_steps *wedge = &x->o->wedge;
-    while (x->o->next <= stop) {
+    margin_node *o = x->o;
+    margin_steps *wedge = &o->wedge;
+    int64_t at = o->next;
+    while (at <= stop) {
         double best = x->nothing;
         int64_t right = stop;
-        drop_exits(wedge, x->o->next);
+        drop_exits(wedge, at);
         if (wedge->first < wedge->end) {
             best = step_at(wedge, wedge->first)->value;
             right = least(exit_of(wedge), stop);
         }
-        if (!x->o->begun || (best != x->o->carried)) {
-            x->o->begun = true;
-            x->o->carried = best;
-            tell_step(x->w, x->place, x->o->next, best);
+        if (!o->begun || (best != o->carried)) {
+            o->begun = true;
+            o->carried = best;
+            tell_step(x->w, x->place, at, best);
         }
-        x->o->next = right + 1;
+        at = right + 1;
     }
+    o->next = at;
 }
 
 /* The same where only samples are positions. */
@@ -77,17 +80,16 @@ static void enter_wedge(windowing *x, int64_t at, double value)
     if (!x->w->sparse && (wedge->first < wedge->end)) {
         step_at(wedge, wedge->end - 1)->at = at - x->low - 1;
     }
-    while ((wedge->first < wedge->end)
-           && (x->every ? (step_at(wedge, wedge->end - 1)->value >= value)
-                        : (step_at(wedge, wedge->end - 1)->value <= value))) {
+    while (wedge->first < wedge->end) {
+        const double last = step_at(wedge, wedge->end - 1)->value;
+        if (x->every ? (last < value) : (last > value)) {
+            break;
+        }
         wedge->end--;
     }
-    if (!room_for_step(x->w, wedge, wedge->first)) {
-        return;
+    if ((wedge->end - wedge->first < wedge->room) || room_for_step(x->w, wedge, wedge->first)) {
+        add_step(wedge, x->w->sparse ? at - x->low : NEVER, value);
     }
-    step_at(wedge, wedge->end)->at = x->w->sparse ? at - x->low : NEVER;
-    step_at(wedge, wedge->end)->value = value;
-    wedge->end++;
 }
 
 /* The next step of the operand that some window up to a position holds; behind the end, nothing. */

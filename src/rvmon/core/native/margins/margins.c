@@ -145,9 +145,9 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
     int64_t due = NEVER;
     if (q->active && (q->asks_first < q->asks_end) && !awaits_the_end(r, index)) {
         due = sum(ask_at(q, q->asks_first)->position * step_of(r), s->lag);
-        if ((due <= reached) && !s->passes && (q->letter_count == 0)
-            && (now >= floored(reached, step_of(r)))) {
-            due = NEVER; /* all that is known was looked at */
+        if (due <= reached) {
+            const bool all = !s->passes && (q->letter_count == 0) && (now >= floored(reached, step_of(r)));
+            due = all ? NEVER : reached + 1; /* NEVER: all that is known was looked at */
         }
     }
     timers_set(&r->margins_due, index, due);
@@ -329,9 +329,6 @@ static void settle_run(run *r, int64_t reached)
     while (timers_next(&r->margins_due) <= reached) {
         const int32_t index = r->margins_due.ids[0];
         come_to_margin(r, index, floored(seen, step_of(r)), reached);
-        if (r->margins_due.due[index] <= reached) {
-            timers_set(&r->margins_due, index, reached + 1);
-        }
     }
 }
 

@@ -101,7 +101,7 @@ static inline margin_ask *ask_at(const measuring *q, int64_t number)
 
 /* ---- margin_steps.c */
 bool room_for_step(gauging *w, margin_steps *s, int64_t oldest);
-void tell_step(gauging *w, int32_t place, int64_t at, double value);
+bool takes_step(gauging *w, int32_t place, int64_t at, double value);
 bool is_asked(const gauging *w, int64_t left, int64_t right);
 void note_position(gauging *w, int64_t at);
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s);
@@ -109,6 +109,24 @@ bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s);
 void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone);
 bool parts_settled(const margin_parts *s, double *value);
 void parts_leave(margin_parts *s);
+
+/* Add a step, for which there is room. */
+static inline void add_step(margin_steps *s, int64_t at, double value)
+{
+    margin_step *made = step_at(s, s->end);
+    made->at = at;
+    made->value = value;
+    s->end++;
+}
+
+/* Tell those that read a node that it has another value from a position on. */
+static inline void tell_step(gauging *w, int32_t place, int64_t at, double value)
+{
+    margin_steps *s = &w->g->nodes[place].out;
+    if ((!w->thin && (s->end - s->first < s->room)) || takes_step(w, place, at, value)) {
+        add_step(s, at, value);
+    }
+}
 
 /* ---- margin_leaves.c: operators that join values */
 void gauge_join(gauging *w, int32_t place);
