@@ -37,7 +37,7 @@ def interval(count: int, runs: int, confidence: float = CONFIDENCE) -> tuple[flo
     return low, high
 
 
-def interval_text(count: int, runs: int, confidence: float = CONFIDENCE) -> str:
+def interval_text(count: int, runs: int) -> str:
     """The interval in percent, rounded outwards; empty if there are no runs.
 
     >>> interval_text(0, 100), interval_text(33, 100), interval_text(4, 4), interval_text(0, 0)
@@ -45,7 +45,7 @@ def interval_text(count: int, runs: int, confidence: float = CONFIDENCE) -> str:
     """
     if not runs:
         return ""
-    low, high = interval(count, runs, confidence)
+    low, high = interval(count, runs)
     return f"{floor(100 * low)}–{ceil(100 * high)}"
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -35,33 +37,31 @@ _LONGEST = 3
 
 def random_ltl(rng: Rng, depth: int) -> Formula:
     """A random untimed formula of future operators, at most `depth` of them nested."""
-    if depth == 0 or chance(rng, 8):
-        return SignalAtom(pick(rng, BOOLS))
-    if chance(rng, 45):
-        unary = pick(rng, _UNARY)
-        window = _EVER if unary in _TIMED else None
-        return Unary(unary, random_ltl(rng, depth - 1), window)
-    binary = pick(rng, _BINARY)
-    window = _EVER if binary in _TIMED else None
-    left = random_ltl(rng, rng.randint(0, depth - 1))
-    return Binary(binary, left, random_ltl(rng, depth - 1), window)
+    return _formula(rng, depth, _UNARY, lambda _: _EVER)
 
 
 def random_mtl(rng: Rng, depth: int) -> Formula:
     """A random formula of future operators with windows of a few ticks, without `X`."""
+    unary = tuple(op for op in _UNARY if op is not UnaryOp.NEXT)
+    return _formula(rng, depth, unary, lambda op: _window(rng, from_zero=op in _FROM_ZERO))
+
+
+def _formula(
+    rng: Rng, depth: int, unary: Sequence[UnaryOp], window: Callable[[UnaryOp | BinaryOp], Interval]
+) -> Formula:
     if depth == 0 or chance(rng, 8):
         return SignalAtom(pick(rng, BOOLS))
     if chance(rng, 45):
-        unary = pick(rng, (UnaryOp.NOT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS))
-        window = _window(rng) if unary in _TIMED else None
-        return Unary(unary, random_mtl(rng, depth - 1), window)
+        op = pick(rng, unary)
+        interval = window(op) if op in _TIMED else None
+        return Unary(op, _formula(rng, depth - 1, unary, window), interval)
     binary = pick(rng, _BINARY)
-    window = _window(rng, from_zero=binary in _FROM_ZERO) if binary in _TIMED else None
-    left = random_mtl(rng, rng.randint(0, depth - 1))
-    return Binary(binary, left, random_mtl(rng, depth - 1), window)
+    interval = window(binary) if binary in _TIMED else None
+    left = _formula(rng, rng.randint(0, depth - 1), unary, window)
+    return Binary(binary, left, _formula(rng, depth - 1, unary, window), interval)
 
 
-def _window(rng: Rng, *, from_zero: bool = False) -> Interval:
+def _window(rng: Rng, *, from_zero: bool) -> Interval:
     low = 0 if from_zero or chance(rng, 60) else rng.randint(1, _LONGEST)
     if chance(rng, 20):
         return Interval(low, None)

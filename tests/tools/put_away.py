@@ -20,9 +20,6 @@ from tests.tools.drive import Found, Lost, told
 HEAD = 32
 """Bytes of the head of a snapshot; the last eight are the hash of what follows."""
 
-EXTREMES = (0, 1, -1, (1 << 62) - 1, -(1 << 62), (1 << 63) - 1)
-"""Numbers at which something may go wrong."""
-
 
 class Twins:
     """Two runs that are told the same; all that they say has to be alike.

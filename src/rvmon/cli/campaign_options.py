@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import ArgumentParser
 
-from rvmon.cli.options import add_dask
+from rvmon.cli.options import add_dask, add_format
 from rvmon.cli.parser import duration, number_or_folder, positive, shard
 
 
@@ -143,9 +143,4 @@ def _add_seed_and_jobs(parser: ArgumentParser) -> None:
 def add_judging_options(parser: ArgumentParser) -> None:
     """Declare what judges, and in which form verdicts are printed."""
     parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)

@@ -7,6 +7,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rvmon.cli.options import add_const
+from rvmon.cli.parser import instant
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.schema import READINGS_OF_NAN
 
@@ -85,6 +87,19 @@ def add_allow_missing(parser: argparse.ArgumentParser) -> None:
         help="evaluate recordings in columns that lack these names (default: any): what reads them "
         "is I, and the exit code 1",
     )
+
+
+def add_evaluated(parser: argparse.ArgumentParser) -> None:
+    """Declare the constants, how far and how recordings are evaluated, and what they may lack."""
+    add_const(parser)
+    parser.add_argument(
+        "--until",
+        metavar="T",
+        type=instant,
+        help="evaluate to T seconds, be it before or after the last sample",
+    )
+    add_reading(parser)
+    add_allow_missing(parser)
 
 
 def with_values(words: Sequence[str]) -> list[str]:

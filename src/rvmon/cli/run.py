@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import (
-    add_const,
     add_dask,
     add_format,
     add_max_memory,
@@ -18,12 +17,8 @@ from rvmon.cli.options import (
     refuse_over,
 )
 from rvmon.cli.output import rendered, say_json, warn
-from rvmon.cli.parser import instant, positive, shard
-from rvmon.cli.reading import (
-    add_allow_missing,
-    add_reading,
-    reading_words,
-)
+from rvmon.cli.parser import positive, shard
+from rvmon.cli.reading import add_evaluated, reading_words
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
@@ -59,15 +54,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
     add_only(parser, "evaluate these requirements")
-    add_const(parser)
-    parser.add_argument(
-        "--until",
-        metavar="T",
-        type=instant,
-        help="evaluate to T seconds, be it before or after the last sample",
-    )
-    add_reading(parser)
-    add_allow_missing(parser)
+    add_evaluated(parser)
     parser.add_argument(
         "--join",
         action="store_true",

@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from rvmon.cli.options import add_const, add_format, constants_of
+from rvmon.cli.options import add_format, constants_of
 from rvmon.cli.output import busy, say_json, shown_while_reading
-from rvmon.cli.parser import instant
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
-    add_allow_missing,
-    add_reading,
+    add_evaluated,
     allowed_names,
     chosen_attempt,
     named_attempt,
@@ -38,15 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="ID#N",
         help=ATTEMPT_HELP,
     )
-    add_const(parser)
-    parser.add_argument(
-        "--until",
-        metavar="T",
-        type=instant,
-        help="evaluate to T seconds, be it before or after the last sample",
-    )
-    add_reading(parser)
-    add_allow_missing(parser)
+    add_evaluated(parser)
     add_format(parser)
 
 

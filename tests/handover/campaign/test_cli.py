@@ -293,24 +293,6 @@ def test_a_folder_that_cannot_be_written_to_is_told_first(demo, capsys):
     assert not told.out
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["run", "--strategy", "lucky"], "no strategy `lucky`"),
-        (["run", "--strategy", ","], "names none"),
-        (["run", "--spec", "gone.rv"], "gone.rv"),
-        (["run", "--tests", "0"], "at least 1"),
-        (["run", "--tests", "many"], "at least 1"),
-        (["run", "--out", __file__], "it is a file: name a folder"),
-        (["fly"], "invalid choice"),
-    ],
-)
-def test_wrong_use_is_told(capsys, words, told):
-    """Exit 2 and the reason, before anything is played."""
-    assert main(words) == 2
-    assert told in capsys.readouterr().err
-
-
 def test_a_name_cannot_leave_the_folder(tmp_path, capsys):
     """A test's name from a file is no path."""
     path = save(next(test for test in directed() if test.name == "released"), tmp_path)

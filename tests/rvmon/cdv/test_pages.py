@@ -69,7 +69,11 @@ def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
     [
         (["run", "--strategy", "luck"], "no strategy `luck`: there are climbs"),
         (["run", "--robot", "r"], "no robot `r`: there are toy"),
+        (["run", "--strategy", ","], "names none"),
         (["run", "--spec", "gone.rv"], "gone.rv"),
+        (["run", "--tests", "0"], "at least 1"),
+        (["run", "--tests", "many"], "at least 1"),
+        (["run", "--out", __file__], "it is a file: name a folder"),
         (["run", "--timeout", "soon"], "expected a time in seconds"),
         (["run", "--junit", "/gone/x.xml"], "cannot write /gone/x.xml: there is no folder"),
         (["replay", "gone.json"], "gone.json: No such file"),
