@@ -8,7 +8,7 @@ Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, secti
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from random import Random
 
 import networkx as nx
@@ -20,15 +20,24 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_plain, parts_of
+from rvmon.timed.model.guards import (
+    has_paths,
+    is_plain,
+    normal_form,
+    parts_of,
+    speaks_of_deadlock,
+    with_deadlock,
+)
 from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
-from tests.tools.timed_regions import Region, RegionGraph, satisfies
+from tests.tools.timed_regions import Region, RegionGraph, Steps, satisfies
 
 Regions = frozenset[Region]
 
 
-def holds_at_start(network: Network, query: Query, limit: int = 2_000) -> bool:
+def holds_at_start(
+    network: Network, query: Query, limit: int = 2_000, steps: Steps | None = None
+) -> bool:
     """Whether a query holds, whatever operators of CTL it has.
 
     Raises:
@@ -40,21 +49,23 @@ def holds_at_start(network: Network, query: Query, limit: int = 2_000) -> bool:
         answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
         implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)
         formula = PathFormula(PathOp.INVARIANTLY, implied)
-    truth = _Truth(network, formula, limit)
+    truth = _Truth(network, formula, limit, steps)
     return truth.start in truth.where(formula)
 
 
 class _Truth:
     """Where formulas hold."""
 
-    def __init__(self, network: Network, formula: Expression, limit: int) -> None:
+    def __init__(
+        self, network: Network, formula: Expression, limit: int, steps: Steps | None
+    ) -> None:
         bounds = [p.bound for p in parts_of(formula) if isinstance(p, PathFormula)]
         known = [bound for bound in bounds if bound is not None]
-        self._regions = RegionGraph(network, [formula], None, limit)
+        self._regions = RegionGraph(network, [formula], None, limit, steps)
         self.start = self._regions.start()
         self._plain = _Steps(self._regions, self._regions.reachable([self.start]))
         if known:
-            timed = RegionGraph(network, [formula], max(known), 4 * limit)
+            timed = RegionGraph(network, [formula], max(known), 4 * limit, steps)
             starts = map(timed.restarted, self._plain.nodes)
             self._timed = _Steps(timed, timed.reachable(starts))
             self._restart = timed.restarted
@@ -143,6 +154,75 @@ class _Steps:
             if node in self._delays:
                 found |= nx.ancestors(self._delays, node)
         return frozenset(found)
+
+
+MakeRegions = Callable[..., RegionGraph]
+"""Makes the regions of a network, for formulas and a bound."""
+
+
+def decide(network: Network, query: Query, limit: int = 5_000, steps: Steps | None = None) -> bool:
+    """Whether a query holds, by walking through all regions; flat ones in the quickest way.
+
+    Raises:
+        TooManyRegionsError: there are more than `limit`.
+    """
+
+    def regions(formulas: Iterable[Expression], bound: int | None = None) -> RegionGraph:
+        return RegionGraph(network, formulas, bound, limit, steps)
+
+    match query.formula:
+        case LeadsToFormula(left, right, bound):
+            return _responds(regions, left, right, bound)
+        case PathFormula(_, body) if has_paths(body):
+            return holds_at_start(network, query, limit, steps)
+        case PathFormula(PathOp.POSSIBLY, body, bound):
+            return _reaches(regions, normal_form(body), bound)
+        case PathFormula(PathOp.INVARIANTLY, body, bound):
+            return not _reaches(regions, normal_form(body, positive=False), bound)
+        case PathFormula(PathOp.EVENTUALLY, body, bound):
+            return not _avoids(regions, normal_form(body, positive=False), bound)
+        case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, bound):
+            return _avoids(regions, normal_form(body), bound)
+        case _:
+            raise AssertionError(f"{query.text} has no path operator")
+
+
+def _reaches(regions: MakeRegions, formula: Expression, bound: int | None) -> bool:
+    graph = regions([formula], bound)
+    found = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
+    if not speaks_of_deadlock(formula):
+        return any(satisfies(region.now, formula) for region in found)
+    by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
+    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in found)
+
+
+def _avoids(regions: MakeRegions, formula: Expression, bound: int | None) -> bool:
+    """Whether some run stays inside a formula for ever, or until the bound is over."""
+    graph = regions([formula], bound)
+    starts = [graph.start()]
+    if bound is not None and _is_late(graph, starts, formula, bound):
+        return True
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, formula))
+    return bool(graph.staying(inside) & set(starts))
+
+
+def _responds(regions: MakeRegions, left: Expression, right: Expression, bound: int | None) -> bool:
+    graph = regions([left, right], bound)
+    missing = normal_form(right, positive=False)
+    everywhere = graph.reachable([graph.start()])
+    starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
+    if bound is not None and _is_late(graph, starts, missing, bound):
+        return False
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, missing))
+    return not graph.staying(inside) & set(starts)
+
+
+def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:
+    """Whether the timer can pass the bound with the formula true until then."""
+    waiting = graph.reachable(
+        starts, lambda region: region.timer <= bound and satisfies(region.now, inside)
+    )
+    return any(later is not None and later.timer > bound for later in map(graph.later, waiting))
 
 
 def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:

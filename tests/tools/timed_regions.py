@@ -24,19 +24,14 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     Constant,
     Expression,
-    PathFormula,
     UnaryOperation,
 )
 from rvmon.timed.model.guards import (
     compares_of,
-    has_paths,
     is_discrete,
-    normal_form,
-    speaks_of_deadlock,
-    with_deadlock,
 )
-from rvmon.timed.model.network import LeadsToFormula, Network, Query
-from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,
@@ -226,17 +221,6 @@ class RegionGraph:
         good |= {a for a, b in taken if component_of[a] == component_of[b]}
         return leading_to(graph, good)
 
-    def whole(self) -> nx.DiGraph:
-        """All regions that can be reached, with an edge for each action and each delay."""
-        regions = self.reachable([self.start()])
-        graph = nx.DiGraph()
-        graph.add_nodes_from(regions)
-        for region in regions:
-            later = self.later(region)
-            onward = [*self.actions(region), *([] if later is None else [later])]
-            graph.add_edges_from((region, after) for after in onward)
-        return graph
-
     def _canonical(self, now: Configuration, timer: Fraction) -> Region:
         """The representative of a configuration's region."""
         clocks = [*now.clocks, *([timer] if self._timed else [])]
@@ -263,101 +247,3 @@ def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:
         if target in graph:
             found |= nx.ancestors(graph, target)
     return found
-
-
-Regions = Callable[..., RegionGraph]
-"""Makes the regions of a network, for formulas and a bound."""
-
-
-def decide(network: Network, query: Query, limit: int = 5_000, steps: Steps | None = None) -> bool:
-    """Whether a query holds, by walking through all regions.
-
-    Raises:
-        TooManyRegionsError: there are more than `limit`.
-    """
-
-    def regions(formulas: Iterable[Expression], bound: int | None = None) -> RegionGraph:
-        return RegionGraph(network, formulas, bound, limit, steps)
-
-    match query.formula:
-        case LeadsToFormula(left, right, bound):
-            return _responds(regions, left, right, bound)
-        case PathFormula(PathOp.POSSIBLY, body, None) if has_paths(body):
-            return bool(_satisfying(regions, normal_form(body)))
-        case PathFormula(PathOp.INVARIANTLY, body, None) if has_paths(body):
-            return not _satisfying(regions, normal_form(body, positive=False))
-        case PathFormula(PathOp.POSSIBLY, body, bound):
-            return _reaches(regions, normal_form(body), bound)
-        case PathFormula(PathOp.INVARIANTLY, body, bound):
-            return not _reaches(regions, normal_form(body, positive=False), bound)
-        case PathFormula(PathOp.EVENTUALLY, body, bound):
-            return not _avoids(regions, normal_form(body, positive=False), bound)
-        case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, bound):
-            return _avoids(regions, normal_form(body), bound)
-        case _:
-            raise AssertionError(f"{query.text} has no path operator")
-
-
-def _reaches(regions: Regions, formula: Expression, bound: int | None) -> bool:
-    graph = regions([formula], bound)
-    found = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
-    if not speaks_of_deadlock(formula):
-        return any(satisfies(region.now, formula) for region in found)
-    by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
-    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in found)
-
-
-def _avoids(regions: Regions, formula: Expression, bound: int | None) -> bool:
-    """Whether some run stays inside a formula for ever, or until the bound is over."""
-    graph = regions([formula], bound)
-    starts = [graph.start()]
-    if bound is not None and _is_late(graph, starts, formula, bound):
-        return True
-    inside = graph.reachable(starts, lambda region: satisfies(region.now, formula))
-    return bool(graph.staying(inside) & set(starts))
-
-
-def _responds(regions: Regions, left: Expression, right: Expression, bound: int | None) -> bool:
-    graph = regions([left, right], bound)
-    missing = normal_form(right, positive=False)
-    everywhere = graph.reachable([graph.start()])
-    starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
-    if bound is not None and _is_late(graph, starts, missing, bound):
-        return False
-    inside = graph.reachable(starts, lambda region: satisfies(region.now, missing))
-    return not graph.staying(inside) & set(starts)
-
-
-def _satisfying(make: Regions, formula: Expression) -> set[Region]:
-    """The regions that can be reached and satisfy a formula that speaks of runs."""
-    regions = make([formula])
-    graph = regions.whole()
-
-    def where(part: Expression) -> set[Region]:
-        if not has_paths(part):
-            return {region for region in graph if satisfies(region.now, part)}
-        match part:
-            case BinaryOperation(BinaryOp.AND, left, right):
-                return where(left) & where(right)
-            case BinaryOperation(BinaryOp.OR, left, right):
-                return where(left) | where(right)
-            case PathFormula(PathOp.POSSIBLY, body, None):
-                return leading_to(graph, where(body))
-            case PathFormula(PathOp.INVARIANTLY, body, None):
-                return set(graph) - leading_to(graph, where(normal_form(body, positive=False)))
-            case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, None):
-                return regions.staying(where(body))
-            case PathFormula(PathOp.EVENTUALLY, body, None):
-                return set(graph) - regions.staying(where(normal_form(body, positive=False)))
-            case _:
-                raise AssertionError(f"{part} is not decided here")
-
-    return where(formula)
-
-
-def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:
-    """Whether the timer can pass the bound with the formula true until then."""
-    waiting = graph.reachable(
-        starts, lambda region: region.timer <= bound and satisfies(region.now, inside)
-    )
-    return any(later is not None and later.timer > bound for later in map(graph.later, waiting))

@@ -1,8 +1,9 @@
 """The model checker agrees with the region graph, which shares no code with its search."""
 
 import pytest
+from tests.tools.timed_ctl import decide
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import TooManyRegionsError, decide
+from tests.tools.timed_regions import TooManyRegionsError
 from tests.tools.timed_runs import shows
 
 from rvmon.timed.language.load import loads_network

@@ -1,8 +1,8 @@
 """Cases in which the model checker once was wrong, found by comparison with the region graph."""
 
 import pytest
+from tests.tools.timed_ctl import decide
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import decide
 from tests.tools.timed_runs import shows
 
 from rvmon.timed.language.load import loads_network
