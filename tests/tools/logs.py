@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -73,13 +73,14 @@ def write_tlog(path: Path, rows: Sequence[Row]) -> Path:
     return path
 
 
-def write_can(path: Path, rows: Sequence[Row]) -> Path:
-    """A log of CAN, by its ending, with the database beside it."""
+def write_can(path: Path, rows: Sequence[Row], said: Mapping[int, int] = {}) -> Path:
+    """A log of CAN, by its ending, with the database beside it; objects of BLF behind some rows."""
     import can
 
     (path.parent / "car.dbc").write_text(DBC)
-    with can.Logger(path) as writer:
-        for t, speed, mode in rows:
+    writer: Any = can.Logger(path)
+    with writer:
+        for place, (t, speed, mode) in enumerate(rows, 1):
             data = struct.pack("<fB", speed, mode)
             writer(
                 can.Message(
@@ -90,6 +91,8 @@ def write_can(path: Path, rows: Sequence[Row]) -> Path:
                     channel=1,
                 )
             )
+            if place in said:
+                writer._add_object(said[place], bytes(24), t / 1e6)
     return path
 
 

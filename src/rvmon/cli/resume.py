@@ -14,7 +14,7 @@ from rvmon.cli.judging import Judged, Options
 from rvmon.coverage import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
-from rvmon.readers.messages.forms import form_of_folder
+from rvmon.readers.messages.forms import databases_beside, form_of_folder
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 from rvmon.verdict.report import Report
@@ -154,10 +154,12 @@ def _stamp(trace: str) -> tuple[int, int] | None:
     """What distinguishes the files of a recording from others; `None` if there are none."""
     try:
         files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
-        found = [file.stat() for file in files]
+        found = [file.stat() for file in [*files, *map(Path, databases_beside(trace))]]
     except (OSError, ValueError):
         return None
-    return sum(one.st_size for one in found), max(one.st_mtime_ns for one in found)
+    # A file may be given any time of change; that of its place on the disk is the system's.
+    changed = max(max(one.st_mtime_ns, one.st_ctime_ns) for one in found)
+    return sum(one.st_size for one in found), changed
 
 
 def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:

@@ -10,7 +10,7 @@ from typing import Any
 
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import path_of
-from rvmon.readers.messages.forms import DATABASES
+from rvmon.readers.messages.forms import DATABASES, databases_beside
 from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Outage
@@ -19,16 +19,38 @@ from rvmon.trace.time import ticks_of_seconds
 
 _Key = tuple[int, bool]
 _UNREAD = "there is a line that cannot be read"
-_NO_FRAMES = {
-    ".asc": re.compile(
-        r"\s*($|//|(date|base|internal|no|previous|begin|end)\b|"
-        r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe)[a-z]*[g-z]))",
-        re.IGNORECASE,
+_DROPPED = "what recorded it says that frames were lost"
+_NEVER, _ALWAYS = re.compile("(?!)"), re.compile("")
+_ERROR = r"\(\S+\)\s+\S+\s+[23]"
+"""Before the rest of the identifier of an error frame of SocketCAN, as candump writes it."""
+
+_TEXTS = {
+    ".asc": (
+        re.compile(
+            r"\s*($|//|(date|base|internal|no|previous|begin|end)\b|"
+            r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe)[a-z]*[g-z]))",
+            re.IGNORECASE,
+        ),
+        _NEVER,
+        _NEVER,
     ),
-    ".trc": re.compile(r"\s*($|;)|.*\b(Warng|Error|ST|EC|ER|EV|FFFFFFFF)\b"),
+    ".trc": (
+        re.compile(r"\s*($|;)|.*\b(Warng|Error|ST|EC|ER|EV|FFFFFFFF)\b"),
+        re.compile(r".*\b(FFFFFFFF|ST)\b.* 00 00 00 ([4-7C-F][\dA-F]|[\dA-F][2367ABEF])\b"),
+        _NEVER,
+    ),
+    ".log": (
+        _ALWAYS,
+        re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{6}}[4-7C-F]#[\dA-F]{{3}}[13579BDF]"),
+        re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{7}}#"),
+    ),
 }
-"""Lines of text that say something else than a frame; the library passes over what it cannot read,
-too."""
+"""What lines of text are like that say something else than a frame, as the library passes over what
+it cannot read, too; that say that frames were lost, as a buffer ran over (CAN_ERR_CRTL_RX_OVERFLOW;
+OVERRUN and QOVERRUN of PCAN); that it would take for frames, or cannot pass over."""
+
+_LOST = {125: True, 126: False}
+"""By the number of an object of BLF whether frames are lost from there on, or up to there."""
 
 _PDU_2 = 240
 """From this format on the second byte of an identifier of J1939 is no address."""
@@ -109,12 +131,12 @@ class FrameMessages:
             return
         held, last = None, None
         with open(self._path, **_opening(self._path)) as file, errors_as_damage("a log of CAN"):
-            lines = _Lines(file, _NO_FRAMES[ending]) if ending in _NO_FRAMES else None
-            for frame in _reader_of(self._path)(lines or file):
+            frames, losing = _reading(self._path, file)
+            for frame in frames:
                 t = ticks_of_seconds(frame.timestamp)
-                if lines is not None and lines.take_unread() and outages is not None:
+                if (why := losing.take()) and outages is not None:
                     # What was lost may have had the stamp of its neighbour.
-                    outages.append(Outage(t - 1 if last is None else min(last, t), t, _UNREAD))
+                    outages.append(Outage(t - 1 if last is None else min(last, t), t, why))
                 last = t
                 if frame.is_error_frame or frame.is_remote_frame:
                     continue
@@ -122,8 +144,8 @@ class FrameMessages:
                     yield held
                 key = (frame.arbitration_id, frame.is_extended_id)
                 held = t, key, frame.channel, bytes(frame.data)
-            if lines is not None and lines.is_unread and outages is not None and last is not None:
-                outages.append(Outage(last, last + 1, _UNREAD))
+            if losing.why and outages is not None and last is not None:
+                outages.append(Outage(last, last + 1, losing.why))
         if held is not None and not (self._is_cut and ending != ".blf"):
             yield held  # of a line that is cut off nobody knows what it held
 
@@ -148,33 +170,40 @@ class FrameMessages:
 
 
 class _Lines:
-    """The lines of a text, with whether some that should be frames were passed over.
+    """The lines of a text, with what was lost between those that are frames.
 
     Args:
         file: the open text.
-        others: what lines that are no frames are like.
+        patterns: what some of its lines are like; see `_TEXTS`.
+
+    Attributes:
+        why: something was lost since the last frame; empty: nothing.
     """
 
-    def __init__(self, file: Any, others: re.Pattern[str]) -> None:
+    def __init__(self, file: Any, patterns: tuple[re.Pattern[str], ...]) -> None:
         self._file = file
-        self._others = others
+        self._others, self._lost, self._hidden = patterns
         self._line = ""
-        self.is_unread = False
+        self.why = ""
 
     def __iter__(self) -> _Lines:
         return self
 
     def __next__(self) -> str:
-        if not self._others.match(self._line):
-            self.is_unread = True
-        self._line = next(self._file, "")
-        if not self._line:
-            raise StopIteration
-        return self._line
+        while True:
+            if self._lost.match(self._line):
+                self.why = _DROPPED
+            elif not self._others.match(self._line):
+                self.why = _UNREAD
+            self._line = next(self._file, "")
+            if not self._line:
+                raise StopIteration
+            if not self._hidden.match(self._line):
+                return self._line
 
-    def take_unread(self) -> bool:
-        """Whether some were, before the line that was read last, which is a frame."""
-        found, self.is_unread, self._line = self.is_unread, False, ""
+    def take(self) -> str:
+        """What was lost before the line that was read last, which is a frame."""
+        found, self.why, self._line = self.why, "", ""
         return found
 
     def close(self) -> None:
@@ -193,23 +222,50 @@ def _is_cut(path: Path) -> bool:
         return bool(ending != ".mf4" and file.read() not in (b"\n", b"\r", b""))
 
 
-def _reader_of(path: Path) -> Callable[[Any], Iterable[Any]]:
-    """What reads an open log.
+def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
+    """The frames of an open log, and what tells of losses between them, as `_Lines` does.
 
     Raises:
-        RvmonError: it is not installed.
+        RvmonError: what reads it is not installed.
     """
     try:
         from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
     except ImportError:
         raise not_installed("a log of CAN", "python-can") from None
-    readers: Mapping[str, Callable[[Any], Iterable[Any]]] = {
-        ".asc": ASCReader,
-        ".blf": BLFReader,
-        ".log": CanutilsLogReader,
-        ".trc": TRCReader,
-    }
-    return readers[path.suffix.lower()]
+
+    class Objects(BLFReader):
+        """Objects of BLF, of which the library passes over those that say that some were lost."""
+
+        why, is_losing = "", False
+
+        def _parse_data(self, data: bytes) -> Iterator[Any]:
+            lost = [
+                (found.start(), _LOST[kind])
+                for found in re.finditer(rb"LOBJ.{8}(....)", data, re.DOTALL)
+                if (kind := int.from_bytes(found[1], "little")) in _LOST
+            ]
+
+            def come_to(place: int) -> None:
+                while lost and lost[0][0] <= place:
+                    self.is_losing = lost.pop(0)[1]
+                    self.why = _DROPPED
+
+            for frame in super()._parse_data(data):
+                come_to(self._pos)
+                yield frame
+            come_to(self._pos - 1)
+
+        def take(self) -> str:
+            found, self.why = self.why, _DROPPED if self.is_losing else ""
+            return found
+
+    ending = path.suffix.lower()
+    if ending == ".blf":
+        objects = Objects(file)
+        return objects, objects
+    lines = _Lines(file, _TEXTS[ending])
+    readers = {".asc": ASCReader, ".log": CanutilsLogReader, ".trc": TRCReader}
+    return readers[ending](lines), lines
 
 
 def _opening(path: Path) -> dict[str, Any]:
@@ -225,14 +281,14 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
         raise not_installed("a database of CAN", "cantools") from None
     logging.getLogger("cantools").setLevel(logging.CRITICAL)
     texts = {name: text for name, text in definitions.items() if name.lower().endswith(DATABASES)}
-    beside = sorted(one for one in path.parent.iterdir() if one.suffix.lower() in DATABASES)
+    beside = databases_beside(path)
     if not texts and not beside:
         raise TraceError(
             "holds frames of CAN, and nobody says what is in them: put the database (.dbc) beside "
             'it, or name it in a binding, as `definitions = ["car.dbc"]`'
         )
     found: dict[_Key, Any] = {}
-    for name in texts or map(str, beside):
+    for name in texts or beside:
         try:
             if texts:
                 form = name.rpartition(".")[2].lower()

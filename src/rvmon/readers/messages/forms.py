@@ -35,6 +35,20 @@ FORMATS = {
 DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
 """Endings of files that say what frames of CAN hold."""
 
+
+def databases_beside(path: str | os.PathLike[str]) -> list[str]:
+    """The files beside a log of CAN that say what its frames hold; none beside another recording.
+
+    Raises:
+        OSError: their folder cannot be read.
+    """
+    folder, name = os.path.split(path)
+    if MESSAGE_FORMATS.get(os.path.splitext(name)[1].lower()) not in ("can", "mdf"):
+        return []
+    found = (one for one in os.listdir(folder or ".") if one.lower().endswith(DATABASES))
+    return [os.path.join(folder, one) for one in sorted(found)]
+
+
 ARRAYS = frozenset({"hdf5", "mat"})
 """The formats in which the stamps are an array among others."""
 

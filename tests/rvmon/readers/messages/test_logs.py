@@ -264,6 +264,44 @@ def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
     assert not any("cannot be read" in one.remark for one in report.health)
 
 
+CAN_ROWS = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("ending", "line", "verdict"),
+    [
+        ("log", "(1.0025) vcan0 20000004#0001000000000000", "I"),
+        ("log", "(1.0025) vcan0 20000006#0003000000000000", "I"),
+        ("log", "DROPCOUNT: dropped 2 CAN frames on 'vcan0' socket (total drops 2)", "I"),
+        ("log", "(1.0025) vcan0 20000004#0004000000000000", "P"),
+        ("log", "(1.0025) vcan0 20000064#0000000000000000", "P"),  # 64 is Drive, too
+        ("trc", "   4)  1002.5 Warng FFFFFFFF 4 00 00 00 02 OVERRUN", "I"),
+        ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 40", "I"),
+        ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 0C", "P"),
+    ],
+)
+def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
+    """Frames that found no room are lost; in an error frame nobody said anything."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / f"a.{ending}", CAN_ROWS)
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:-3], line, *lines[-3:]]) + "\n")
+    report = spec_of("Drive", "a.asc").evaluate(path)
+    assert report.verdicts["R1"] == verdict
+    lost = [one.remark for one in report.health if "frames were lost" in one.remark]
+    assert bool(lost) is (verdict == "I")
+
+
+@pytest.mark.parametrize("kinds", [{1: 125}, {2: 126}, {1: 125, 4: 126}, {6: 125}])
+def test_what_a_binary_log_of_can_lost_is_unknown(tmp_path, kinds):
+    """From the object that says so to the one that says that it is over."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.blf", CAN_ROWS, kinds)
+    report = spec_of("Drive", "a.blf").evaluate(path)
+    assert [one.remark for one in report.health if "frames were lost" in one.remark]
+    assert report.verdicts["R1"] == "I"
+
+
 def test_states_have_their_names_and_named_values_of_a_number_are_unknown(tmp_path):
     pytest.importorskip("can")
     path = write_can(tmp_path / "a.asc", [(1_000_000, 0.5, 1), (1_001_000, 0.25, 7)])
