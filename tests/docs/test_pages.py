@@ -88,3 +88,16 @@ def test_what_a_newcomer_is_led_to_is_there(page):
         for name in re.findall(r"\w+", names):
             assert name in (ROOT / path).read_text("utf-8"), path
     assert not any((ROOT / path).exists() for path in NEW)
+
+
+def test_each_way_to_lose_something_has_a_test():
+    """The last cell of each row of what is lost names tests that there are."""
+    files = [path.read_text("utf-8") for path in (ROOT / "tests" / "rvmon").rglob("test_*.py")]
+    there = {name for text in files for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)}
+    text = (ROOT / "docs" / "reference" / "what-is-lost.md").read_text("utf-8")
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
+    shown = {fault: re.findall(r"`(\w+)`", last) for fault, _, last in rows if fault != "fault"}
+    assert len(shown) > 30
+    for fault, tests in shown.items():
+        assert tests, fault
+        assert there.issuperset(tests), fault

@@ -96,6 +96,16 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, capsys
     assert "The former specification goes on. door.rv has changed: the new one holds" in said
 
 
+def test_a_watch_of_too_many_robots_is_no_success(door, capsys):
+    """Of some of them there is no verdict."""
+    lines = [json.dumps({"t": 0, "robot": n, "closed": True}) for n in range(1_001)]
+    (door / "a.jsonl").write_text("\n".join(lines) + "\n")
+    assert main(["watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json"]) == 1
+    told = capsys.readouterr()
+    assert len(told.out.splitlines()) == 1_000
+    assert "robot '1000' is one too many: at most 1000" in told.err
+
+
 def test_what_passes_can_be_left_out(door, capsys):
     """With `--failures`; the exit code is 0 where nothing failed."""
     lines = FAILS.replace('"t": 3', '"t": 1')

@@ -24,7 +24,8 @@ LINES = "".join(f'{{"t": {t / 100}, "width": {t % 7 / 2}}}\n' for t in range(ROW
 
 
 def zst(data: bytes) -> bytes:
-    return pytest.importorskip("backports.zstd").compress(data)
+    zstd = pytest.importorskip("backports.zstd")
+    return zstd.compress(data, options={zstd.CompressionParameter.checksum_flag: 1})
 
 
 PACKERS = {".gz": gzip.compress, ".zst": zst}
@@ -60,6 +61,16 @@ def test_a_packed_file_that_was_cut_off_is_told(tmp_path, capsys, ending):
     assert "bad.csv" + ending in told.err
     assert "was it cut off?" in told.err
     assert "good.csv" in told.out.replace("\n", "")
+
+
+@pytest.mark.parametrize("ending", PACKERS)
+def test_a_packed_file_that_is_not_what_its_checksum_says_is_told(tmp_path, spec, ending):
+    """That stands at its end, behind all that could be unpacked."""
+    data = bytearray(PACKERS[ending](CSV.encode()))
+    data[{".gz": -8, ".zst": -1}[ending]] ^= 1
+    (tmp_path / f"a.csv{ending}").write_bytes(data)
+    with pytest.raises(TraceError, match=r"a\.csv\.\w+: cannot be unpacked \(.*(CRC|checksum)"):
+        spec.evaluate(tmp_path / f"a.csv{ending}")
 
 
 @pytest.mark.parametrize("ending", PACKERS)

@@ -245,6 +245,16 @@ def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
         spec.evaluate(path)
 
 
+def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
+    """It has the number of messages, and the end of the recording."""
+    path = write_json_mcap(tmp_path / "a.mcap", SENT)
+    data = bytearray(path.read_bytes())
+    data[-60] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(rvmon.TraceError, match=r"a\.mcap: its summary is damaged"):
+        spec.evaluate(path)
+
+
 def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
     """A database of ROS 2 does not see that rows are gone; `metadata.yaml` has their number."""
     path, file = written(tmp_path, "sqlite3")

@@ -160,6 +160,31 @@ def test_what_the_logger_dropped_is_an_outage(tmp_path):
     assert spec.robustness(path).attempts
 
 
+@pytest.mark.parametrize("drops", [[], [(100, 30)]])
+def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, drops):
+    """Of the names that it has; what another one says stands."""
+    pytest.importorskip("pyulog")
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    files = [write_ulog(tmp_path / "a.ulg", rows, drops=drops), tmp_path / "b.csv"]
+    files[1].write_text("t,lamp\n1,true\n1.2,true\n")
+    spec = "signal drive.speed : real\nsignal lamp : bool\nrequirement {}\n  always {}"
+    found = [
+        rvmon.loads(spec.format(*one)).evaluate(files).verdicts[one[0]].value
+        for one in (("R1", "drive.speed < 1"), ("R2", "lamp"))
+    ]
+    assert found == (["I", "P"] if drops else ["P", "P"])
+
+
+@pytest.mark.parametrize("name", ["a.ulg", "a.mf4", "a.h5", "a.mat", "a.blf"])
+def test_a_log_whose_head_is_damaged_is_told(tmp_path, name):
+    """By its name; nothing is judged."""
+    path, topic = written(tmp_path / "a", name, rows_at_random(1))
+    data = path.read_bytes()
+    path.write_bytes(bytes(64) + data[64:])
+    with pytest.raises(TraceError, match=re.escape(name)):
+        spec_of(topic, name).evaluate(path)
+
+
 def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp_path):
     pytest.importorskip("pyulog")
     path = write_ulog(tmp_path / "a.ulg", [(1_000_000, 0.0, 0), (0, 9.0, 0), (1_001_000, 0.0, 0)])
