@@ -102,9 +102,6 @@ static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
             && (r->truth_log != NULL)) {
             note_knowledge(r, t, local, value);
         }
-        if (r->margins != NULL) {
-            margins_mark_changed(r, local);
-        }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
             r->spans[local] = NO_SPAN; /* mostly the next value means something else again */
@@ -276,6 +273,7 @@ void go_stale(run *r, int64_t t, int32_t perishable)
     if (r->at.lost_count > 0) {
         stay_unknown(r, local);
     }
+    margins_mark_changed(r, local);
     hold(r, t, local, &stale);
 }
 

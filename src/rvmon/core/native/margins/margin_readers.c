@@ -7,6 +7,7 @@
 typedef struct {
     const plan *plan;
     const part *of;
+    int32_t phase;
     int32_t *counts;           /* by what is read */
     int32_t *judges;           /* NULL: they are counted */
     const int32_t *first;
@@ -36,7 +37,7 @@ static void find_in_program(finding *f, int32_t place, int32_t judge_number)
     }
 }
 
-/* What a distance is read off: signals and events; whether all is born its node tells. */
+/* What a distance is read off: signals and events. */
 static void find_in_atom(finding *f, const atom_plan *a, int32_t judge_number)
 {
     const int32_t *events = LIST(f->plan, a->events);
@@ -61,25 +62,28 @@ static void find_readers(finding *f)
         const list own = f->plan->margins[p->judges.first + judge_number].measures;
         for (i = own.first; i < own.first + own.count; i++) {
             const measure_plan *m = &f->plan->measures[i];
+            bool by_truth = m->kind != MEASURE_CONSTANT;
             if (m->kind == MEASURE_DISTANCE) {
-                find_in_atom(f, &f->of->atoms[f->of->nodes[m->node].a], judge_number);
+                const atom_plan *a = &f->of->atoms[f->of->nodes[m->node].a];
+                find_in_atom(f, a, judge_number);
+                by_truth = (f->phase == 0) || (a->op == ATOM_PAYLOAD); /* until all is born */
             }
-            if (m->kind != MEASURE_CONSTANT) {
+            if (by_truth) {
                 found_reader(f, p->signals.count + p->events.count + m->node, judge_number);
             }
         }
     }
 }
 
-/* Work out who measures what a part reads; false if memory is short. */
-static bool prepare_readers(rv_monitor *m, part *of)
+/* Work out who measures what a part reads in a phase; false if memory is short. */
+static bool prepare_readers(rv_monitor *m, part *of, int32_t phase)
 {
     const part_plan *p = of->plan;
     const int32_t count = p->signals.count + p->events.count + p->nodes.count;
     const size_t size = (size_t)(count + 1) * sizeof(int32_t);
     int32_t *counts = arena_take(&m->memory, size);
     int32_t *first = arena_take(&m->memory, size);
-    finding f = {&m->plan, of, counts, NULL, first};
+    finding f = {&m->plan, of, phase, counts, NULL, first};
     int32_t i;
     if ((counts == NULL) || (first == NULL)) {
         return false;
@@ -94,8 +98,8 @@ static bool prepare_readers(rv_monitor *m, part *of)
         return false;
     }
     find_readers(&f);
-    of->readers.first = first;
-    of->readers.judges = f.judges;
+    of->readers[phase].first = first;
+    of->readers[phase].judges = f.judges;
     arena_give(&m->memory, counts, size);
     return true;
 }
@@ -115,7 +119,7 @@ bool margins_prepare(rv_monitor *m)
         }
     }
     for (i = 0; (m->shapes != NULL) && (i < m->plan.part_count); i++) {
-        if (!prepare_readers(m, &m->parts[i])) {
+        if (!prepare_readers(m, &m->parts[i], 0) || !prepare_readers(m, &m->parts[i], 1)) {
             return false;
         }
     }

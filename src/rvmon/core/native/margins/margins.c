@@ -47,7 +47,7 @@ void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t
  * truth of a node, behind them. */
 void margins_mark_changed(run *r, int32_t what)
 {
-    const margin_readers *readers = &r->part->readers;
+    const margin_readers *readers = &r->part->readers[r->at.phase];
     int32_t i;
     if (r->margins == NULL) {
         return;

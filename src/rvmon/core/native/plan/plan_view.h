@@ -93,7 +93,7 @@ typedef struct {
     int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
     int32_t logged;            /* so many these are */
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
-    margin_readers readers;
+    margin_readers readers[2]; /* by phase */
     bool restarts;             /* whether some failure may be followed by another attempt */
     bool is_traced;            /* whether it is counted where some attempts go */
     bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
