@@ -25,6 +25,9 @@ typedef struct guarded_head {
 /* Bytes that were taken and not given back. */
 size_t guarded_in_use;
 
+/* Whether a block was refused. */
+bool guarded_refused;
+
 /* So many blocks more are given, then none; negative: all are. */
 long guarded_left = -1;
 
@@ -46,11 +49,13 @@ void *arena_take(arena *a, size_t size)
     guarded_head *h;
     guarded_head *next = (guarded_head *)(void *)a->chunks;
     if ((guarded_left == 0) || (size > GUARDED_MOST) || (guarded_in_use + size > GUARDED_MOST)) {
+        guarded_refused = true;
         return NULL;
     }
     guarded_left -= (guarded_left > 0) ? 1 : 0;
     h = calloc(1, sizeof *h + size);
     if (h == NULL) {
+        guarded_refused = true;
         return NULL;
     }
     guarded_in_use += size;

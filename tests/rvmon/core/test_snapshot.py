@@ -17,6 +17,7 @@ from tests.tools.special_specs import random_chain
 
 from rvmon.monitor import compile_spec
 from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
@@ -41,6 +42,10 @@ requirement R5
   whenever mean(x, 5 ns) >= 1 or count(g, 6 ns) >= 3
   then within 4 ns (sum(x, 5 ns) > 2 or integral(x) >= 9 ns)
 """
+
+
+ALL: frozenset[str] = frozenset()
+"""All names have a source."""
 
 
 def case(number: int, time: TimeModel, *, outages: bool) -> Case:
@@ -69,6 +74,29 @@ def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
         twins.take_up()
     twins.tell(9)
     twins.finish(12)
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 4 ns", "sampled every 127 ns"])
+@pytest.mark.parametrize("begin", [1 - (1 << 62), 0, (1 << 62) - 200])
+def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
+    """Two windows of 150 years lead there, whatever the first stamp; so do ticks before the first."""
+    far = "always[900000 h, 1000000 h] (eventually[600000 h, 700000 h] q)"
+    twins = Twins(planned(f"requirement R\n  upon rise(q)\n  then p until ({far})\n", time), ALL)
+    for t in range(begin, begin + 190, 5):
+        twins.tell(Sample(t, {"q": t % 2 == 0, "p": True, "x": 1.0}))
+    twins.finish(None)
+
+
+def test_why_a_value_is_unknown_is_part_of_it():
+    """A sample that waits for its tick, and what is kept for those that look back, say NaN."""
+    text = "requirement R\n  upon end\n  then once x > value\n  let value = x\n"
+    plan = planned(text, "sampled every 4 ns")
+    twins = Twins(plan, ALL)
+    twins.tell(Sample(0, {"x": 1.0}))
+    twins.tell(Sample(5, {"x": float("nan")}))
+    twins.finish(30)
+    (found,) = report_of_run(plan, twins.other, 0, None).attempts
+    assert "NaN at 5 ns" in str(found.reason)
 
 
 @pytest.mark.law

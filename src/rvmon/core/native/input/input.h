@@ -25,6 +25,8 @@ void come_to_birth(run *r, int32_t local, bool known);
 void be_born(run *r, int32_t local);
 void set_stale(run *r, int32_t local, int64_t t);
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
+/* What an update says of a signal; of one that is not known, why. */
+rv_number number_said(const rv_update *u);
 void apply_update(run *r, int64_t t, const incoming *in);
 
 /* Whether a signal can take a value and nothing else is to be done. */

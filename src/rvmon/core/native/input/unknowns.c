@@ -196,7 +196,7 @@ void begin_blank(run *r, int64_t t)
     remember_unknown(r, t);
     blank_out(r, t);
     if (r->part->is_watched) {
-        touch_all(r, 0);
+        call_watches(r);
         watch(r, t);
     }
     for (i = 0; i < r->part->plan->judges.count; i++) {

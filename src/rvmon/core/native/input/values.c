@@ -231,6 +231,14 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
     (void)recheck_list(r, e->on_occurrence[r->at.phase]);
 }
 
+rv_number number_said(const rv_update *u)
+{
+    const bool given = u->value.kind != RV_UNKNOWN;
+    rv_number unknown = UNKNOWN_NUMBER;
+    unknown.as.whole = (!given && (u->value.as.whole == RV_IS_NAN)) ? RV_IS_NAN : RV_IS_NONE;
+    return (given && (u->says == RV_SAYS_YES)) ? u->value : unknown;
+}
+
 void apply_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -238,10 +246,8 @@ void apply_update(run *r, int64_t t, const incoming *in)
         return;
     }
     if (!in->event) {
-        const bool is_nan = (u->value.kind == RV_UNKNOWN) && (u->value.as.whole == RV_IS_NAN);
-        rv_number unknown = UNKNOWN_NUMBER;
-        unknown.as.whole = is_nan ? RV_IS_NAN : RV_IS_NONE;
-        take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &unknown);
+        const rv_number said = number_said(u);
+        take_signal(r, t, in->local, &said);
     } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
         const int32_t says = concerning(r, u);
         if (says >= 0) {

@@ -107,7 +107,7 @@ void tidy(const form *f, network *w, int64_t position)
     int32_t i;
     int32_t j;
     for (i = 0; i < f->form->operators.count; i++) {
-        w->nodes[i].wanted = NEVER;
+        w->nodes[i].wanted = LIMIT;
     }
     want(&w->nodes[f->form->operators.count - 1], position);
     for (i = f->form->operators.count - 1; i >= 0; i--) {
@@ -170,7 +170,7 @@ void put_networks(situation *s, run *r, int32_t index)
             const operator_state *o = &w->nodes[i];
             const bool since = f.nodes[i].kind == OP_SINCE;
             const int64_t asked = since ? least(o->wanted, o->base - 1) : o->wanted;
-            put_word(s, (o->base == NEVER) ? NEVER : (o->base - ref));
+            put_word(s, o->base - ref);
             for (value = 0; value < 2; value++) {
                 const ranges *known = &o->known[value];
                 for (k = known->first; k < known->end; k++) {

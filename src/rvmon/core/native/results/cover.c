@@ -77,6 +77,14 @@ void call_watch(run *r, int32_t number)
     }
 }
 
+void call_watches(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->watches.count; i++) {
+        call_watch(r, i);
+    }
+}
+
 static uint8_t truth_of(const run *r, int32_t number)
 {
     return r->truth[r->part->watches[number].node];

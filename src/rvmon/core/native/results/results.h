@@ -20,6 +20,7 @@ void end_watch(run *r, int64_t end, int64_t reached);
 /* ---- cover.c: what runs hit of coverpoints and crosses */
 bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
+void call_watches(run *r);
 void cover(run *r, int64_t t);
 
 /* ---- watch.c: where attempts go in automata */

@@ -41,9 +41,7 @@ int32_t followed(const run *r, int32_t index)
 void touch_all(run *r, uint8_t what)
 {
     int32_t i;
-    for (i = 0; i < r->part->plan->watches.count; i++) {
-        call_watch(r, i);
-    }
+    call_watches(r);
     for (i = 0; i < r->part->plan->judges.count; i++) {
         touch(r, i, what);
     }

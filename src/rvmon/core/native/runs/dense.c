@@ -118,7 +118,6 @@ void run_pass_dense(run *r, int64_t limit)
         }
         for (i = 0; !second && (i < judges); i++) {
             if (!is_networked(r, i)) {
-                r->judges[i].touched &= (uint8_t)~TOUCHED_LETTER;
                 pass_ticks(r, i, next);
             } else if (is_slow(r, i)) {
                 touch(r, i, TOUCHED_LETTER);

@@ -134,18 +134,24 @@ void carry_instant_or(carrier *c, int64_t *x, int64_t none)
     }
 }
 
+/* Behind the kinds of numbers stands why one is unknown. */
 void carry_number(carrier *c, rv_number *x)
 {
-    uint8_t kind = (uint8_t)x->kind;
+    const bool says_why = (x->kind == RV_UNKNOWN) && (x->as.whole > 0) && (x->as.whole <= IS_STALE);
+    uint8_t kind = (uint8_t)(says_why ? RV_REAL + x->as.whole : x->kind);
     uint64_t digits = 0;
-    carry_byte(c, &kind, RV_REAL);
-    if (kind != RV_UNKNOWN) {
+    carry_byte(c, &kind, RV_REAL + IS_STALE);
+    if ((kind != RV_UNKNOWN) && (kind <= RV_REAL)) {
         (void)memcpy(&digits, &x->as, sizeof digits);
         carry_word(c, &digits);
     }
     if (c->reading && !c->refused) {
         (void)memset(x, 0, sizeof *x);
         x->kind = kind;
+        if (kind > RV_REAL) {
+            digits = (uint64_t)(kind - RV_REAL);
+            x->kind = RV_UNKNOWN;
+        }
         (void)memcpy(&x->as, &digits, sizeof digits);
         demand(c, (kind != RV_REAL) || (x->as.real == x->as.real));
     }

@@ -17,7 +17,7 @@ static void carry_kept(carrier *c, home *h, past_update *one)
     carry_int(c, &one->local, -1, one->event ? p->events.count : p->signals.count);
     carry_int(c, &one->says, RV_SAYS_NO, SAYS_SPARSE + 1);
     carry_flag(c, &one->last);
-    if (!one->event && (one->says == RV_SAYS_YES)) {
+    if (!one->event) {
         carry_number(c, &one->value);
     }
     carry_flag(c, &given);

@@ -17,10 +17,10 @@ static void carry_clocks(carrier *c, const run *r, int32_t index, int32_t locati
 {
     const bool by_automaton = automaton_of(r, index) != NULL;
     const int32_t width = by_automaton ? r->part->machines[index].widths[location] : 1;
-    const int64_t most = by_automaton ? LIMIT : positions_within(step_of(r));
+    const int64_t step = by_automaton ? 1 : step_of(r);
     int32_t i;
     for (i = 0; i < width; i++) {
-        carry_long(c, &clocks[i], 1 - most, most - 1);
+        carry_long(c, &clocks[i], floored(1 - LIMIT, step), floored(LIMIT - 1, step));
     }
 }
 
@@ -291,13 +291,14 @@ static void carry_samples(carrier *c, ranges *x)
 static void carry_network(carrier *c, const form *f, network *w)
 {
     const bool sparse = f->gap == 0;
-    const int64_t most = positions_within(f->step) - 1;
+    const int64_t low = sparse ? 0 : floored(1 - LIMIT, f->step);
+    const int64_t high = floored(LIMIT - 1, f->step);
     int32_t i;
     int32_t value;
     carry_instant(c, &w->now);
-    carry_long(c, &w->first, sparse ? 0 : -most, sparse ? 0 : most);
-    carry_long(c, &w->last, sparse ? 0 : -most, most);
-    carry_long(c, &w->oldest, sparse ? 0 : -most, most);
+    carry_long(c, &w->first, low, sparse ? 0 : high);
+    carry_long(c, &w->last, w->first - 1, high);
+    carry_long(c, &w->oldest, low, high);
     carry_samples(c, &w->samples);
     if (sparse) {
         demand(c, (int64_t)w->samples.end - w->samples.first == w->last - w->oldest + 1);
@@ -305,8 +306,8 @@ static void carry_network(carrier *c, const form *f, network *w)
     }
     for (i = 0; (i < f->form->operators.count) && !is_lost(c); i++) {
         operator_state *o = &w->nodes[i];
-        carry_long(c, &o->base, sparse ? w->oldest : -LIMIT, sparse ? w->last + 1 : most);
-        carry_long(c, &o->swept, sparse ? 0 : -LIMIT, sparse ? w->last + 1 : most);
+        carry_long(c, &o->base, sparse ? w->oldest : -LIMIT, LIMIT);
+        carry_long(c, &o->swept, sparse ? 0 : -LIMIT, LIMIT);
         for (value = 0; value < 2; value++) {
             carry_ranges(c, &o->known[value], sparse ? w->last : LIMIT);
         }
