@@ -164,7 +164,7 @@ def _shows_a_difference(way: str, case: Case) -> bool:
 
 
 def judge_snapshots(seed: int, profile: Profile, traces: TraceProfile, numbers: range) -> Found:
-    """Whether a run that is put away at each call, and taken up by another monitor, goes on alike."""
+    """Whether a run that is put away at each call, and taken up again, goes on alike."""
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
         own = replace(traces, outages=100 * (number % 2))

@@ -89,10 +89,12 @@ class _Values:
 
     def __init__(self, requirement: Requirement, start: Start) -> None:
         self.truths = Truths(start.word, start.captured)
+        parts = [*subformulas(requirement.trigger), *subformulas(requirement.consequent)]
+        # A `known` that is asked for is shown, not that of a number beside it with the same text.
+        parts.sort(key=lambda part: isinstance(part, ProbeAtom))
         self.atoms: dict[str, Formula] = {
             _shown(part): part
-            for formula in (requirement.trigger, requirement.consequent)
-            for part in subformulas(formula)
+            for part in parts
             if isinstance(part, SignalAtom | EventAtom | ProbeAtom | Compare | BoundAtom)
             and not (isinstance(part, Compare) and _reads_nothing(part))
         }

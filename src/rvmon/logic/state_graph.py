@@ -121,7 +121,8 @@ def leaf_texts(
     """The leaves that are read off the input, with their text.
 
     Of those with one text, which differ in what they are before birth, it is one that goes on
-    mattering: the core leaves the others as they were then.
+    mattering: the core leaves the others as they were then. Where a number is compared with itself
+    beside a `known` that the requirement asks for, that comes behind it: it is what is shown.
 
     Args:
         roots: the state formulas that are made of them.
@@ -129,13 +130,14 @@ def leaf_texts(
     """
     graph = graph_of(roots)
     last = lasting(graph, roots, determined)
-    found: dict[str, State] = {}
+    found: dict[str, dict[bool, State]] = {}
     for place, state in enumerate(graph.nodes):
         if isinstance(state.leaf, Shown) and not _is_captured(state.leaf):
-            text = _text_of(state.leaf)
-            if text not in found or place in last:
-                found[text] = state
-    return tuple((state, text) for text, state in found.items())
+            own = found.setdefault(_text_of(state.leaf), {})
+            asked = isinstance(state.leaf, ProbeAtom)
+            if asked not in own or place in last:
+                own[asked] = state
+    return tuple((own[asked], text) for text, own in found.items() for asked in sorted(own))
 
 
 def _is_captured(leaf: Shown) -> bool:

@@ -158,7 +158,7 @@ def longer(required: Core, triggered: int, end: int | None) -> str:
 
 
 def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
-    """Truth values by the text of what has them; `None` is unknown."""
+    """Truth values by the text of what has them, the last one of several; `None` is unknown."""
     pairs = zip(texts, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 

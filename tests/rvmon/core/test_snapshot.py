@@ -79,7 +79,7 @@ def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 4 ns", "sampled every 127 ns"])
 @pytest.mark.parametrize("begin", [1 - (1 << 62), 0, (1 << 62) - 200])
 def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
-    """Two windows of 150 years lead there, whatever the first stamp; so do ticks before the first."""
+    """Two windows of a century lead there; a clock's first position lies before its first stamp."""
     far = "always[900000 h, 1000000 h] (eventually[600000 h, 700000 h] q)"
     twins = Twins(planned(f"requirement R\n  upon rise(q)\n  then p until ({far})\n", time), ALL)
     for t in range(begin, begin + 190, 5):

@@ -123,6 +123,18 @@ def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(requ
     assert {(False, True)} <= {*found} <= {(False, True), (True, None)}
 
 
+@pytest.mark.parametrize("told", ["{} and {}", "{1} and {0}"])
+def test_a_known_that_is_asked_for_is_shown(told):
+    """Not what a sum compares with itself to see whether its limit is born, under the same text."""
+    told = told.format("count(go, 4 s) >= level", "known(level)")
+    text = f"{HEAD}signal level : int\nrequirement R\n  upon go\n  then {told}\n"
+    monitor = rvmon.loads(text).monitor()
+    monitor.step(0, {"distance": 1.0})
+    (failed,) = monitor.step(1, {"go": True})
+    assert failed.at_trigger["known(level)"] is False
+    assert failed.at_decision["known(level)"] is False
+
+
 def test_propositions_are_shown_at_trigger_and_decision():
     """A record carries the values of what the requirement reads, unknown ones as None."""
     _, [failed] = run("upon go\nthen within 1 s (released and near)", [(0, {"go": True})], 5)
