@@ -158,7 +158,7 @@ class _Values:
         told: dict[str, dict[int, Mapping[str, str]]] = {}
         for attempt, names in self._reads:
             requirement = self._spec.requirements[attempt.requirement]
-            tracks = tracks_of(self._spec.checked, requirement, self._changes, report.health)
+            tracks = tracks_of(self._spec.checked, requirement, self._changes, report.absent)
             told.setdefault(attempt.requirement, {})[attempt.number] = signals_told(
                 [one for one in tracks if one.name in names], attempt.decided or 0
             )

@@ -23,7 +23,6 @@ from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacke
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
-from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 
@@ -334,10 +333,10 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
 
 
 def _show_doubts(judged: Sequence[Judged]) -> None:
-    """Warn of doubtful stamps, as the text for people does."""
+    """Warn of what may not be what it seems, as the text for people does."""
     for one in judged:
         for health in () if one.report is None else one.report.health:
-            if health.kind in (HealthKind.UNIT, HealthKind.CLOCK):
+            if health.is_doubt:
                 warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 

@@ -114,5 +114,6 @@ def _record_coverage(
                     number=number,
                     seconds=one.seconds,
                     expected=known.expected(one.report),
+                    origin=one.report.origin,
                 )
                 database.record(test, one.hits)

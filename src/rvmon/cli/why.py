@@ -90,7 +90,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
 
     requirement = spec.requirements[name]
     changes = changes_of(spec.checked, samples)
-    tracks = tracks_of(spec.checked, requirement, changes, report.health)
+    tracks = tracks_of(spec.checked, requirement, changes, report.absent)
     values = values_told(tracks, attempt, report.end)
     if arguments.format == "json":
         import msgspec

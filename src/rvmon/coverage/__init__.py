@@ -303,6 +303,7 @@ class TestRecord:
         seconds: that it took.
         when: it was recorded, ns since 1970 in UTC; `None`: when it is written.
         expected: requirements that were known to fail, each with the reason.
+        origin: the first instant of its run, ticks, from which instants are told.
     """
 
     __test__: ClassVar[bool] = False  # to pytest, which goes by names
@@ -320,6 +321,7 @@ class TestRecord:
     seconds: float = 0.0
     when: int | None = None
     expected: Mapping[str, str] = field(default_factory=dict)
+    origin: int = 0
 
     @property
     def failed(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from rvmon.errors import CoverageError
 APPLICATION = 0x72766376
 """In the header of the file, so that it is known by what it is: "rvcv"."""
 
-VERSION = 3
+VERSION = 4
 """Of the tables; raised with each change of them."""
 
 TABLES = (
@@ -32,7 +32,8 @@ TABLES = (
     "campaign TEXT NOT NULL, name TEXT NOT NULL, strategy TEXT NOT NULL, "
     "recording TEXT NOT NULL, seed TEXT, system TEXT NOT NULL, verdicts TEXT NOT NULL, "
     "ending TEXT NOT NULL, error TEXT NOT NULL, number INTEGER NOT NULL, seconds REAL NOT NULL, "
-    "recorded INTEGER NOT NULL, expected TEXT NOT NULL, hits BLOB NOT NULL)",
+    "recorded INTEGER NOT NULL, expected TEXT NOT NULL, origin INTEGER NOT NULL, "
+    "hits BLOB NOT NULL)",
 )
 """What the file holds, and nothing else: a view or a trigger of others would run with our words."""
 

@@ -25,7 +25,7 @@ _BYTES = 20
 
 _COLUMNS = (
     "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "
-    "number, seconds, recorded, expected, hits"
+    "number, seconds, recorded, expected, origin, hits"
 )
 _WRITE = (
     f"INSERT INTO tests ({_COLUMNS}) VALUES ({', '.join('?' * len(_COLUMNS.split(',')))}) "  # noqa: S608 - our words
@@ -95,6 +95,7 @@ def write_entries(
                 float(record.seconds),
                 record.when,
                 _json(record.expected),
+                record.origin,
                 _packed(entry.row, ids),
             )
             for entry in entries
@@ -205,7 +206,7 @@ def _packed(row: Row, ids: NDArray[np.int64]) -> bytes:
 
 def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.intp]) -> Entry:
     digest, campaign, name, strategy, recording, seed, system, verdicts, *rest = columns
-    ending, error, number, seconds, recorded, expected, hits = rest
+    ending, error, number, seconds, recorded, expected, origin, hits = rest
     record = TestRecord(
         str(name),
         str(campaign),
@@ -220,6 +221,7 @@ def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.i
         float(seconds),
         int(recorded),
         msgspec.json.decode(expected, type=dict[str, str]),
+        int(origin),
     )
     return Entry(str(digest), record, _unpacked(hits, ids, order))
 

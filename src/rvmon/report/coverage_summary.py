@@ -17,7 +17,7 @@ from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.rules.properties import MOST_COMBINATIONS
 from rvmon.texts import counted
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 
 LISTED = 5
@@ -209,9 +209,9 @@ class Summary(Answers):
         first = int(self.totals.first[place])
         if first < 0:
             return ""
-        name = self.record(first).name
-        instant = int(self.totals.instants[place])
-        return name if instant == UNKNOWN else f"{name} at {format_ticks(instant)}"
+        test, instant = self.record(first), int(self.totals.instants[place])
+        when = "" if instant == UNKNOWN else f" at {format_stamped(instant, test.origin)}"
+        return f"{test.name}{when}"
 
     def tests_text(self) -> str:
         """How many tests there are, of how many campaigns, and how they ended."""

@@ -11,6 +11,7 @@ from rvmon.coverage import UNKNOWN, Group, combination
 from rvmon.coverage.questions import Comparison
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
 from rvmon.report.terminal import wrapped
+from rvmon.report.wording import first_of
 from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdict import Verdict
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 
+_FEW = 3
 SHOWN = 10
 """Of a list, where not all of it was asked for."""
 
@@ -49,7 +51,7 @@ def print_overview(summary: Summary, console: Console) -> None:
         _print_list(console, heading, hits, style="bold red")
     faults = [
         f"{fault}  {counted(len(places), 'test')}: "
-        + _first_of([summary.record(place).name for place in places])
+        + first_of([summary.record(place).name for place in places], _FEW)
         for fault, places in summary.faults.items()
     ]
     _print_list(console, "not fine:", faults, style="bold red")
@@ -118,12 +120,12 @@ def print_tests(summary: Summary, console: Console) -> None:
             *((ended,) if wide else ()),
             f"{len(only):,}" if only else "",
             share_text(step.share) if step.added else "",
-            _first_of([summary.item_name(place) for place in step.added]),
+            first_of([summary.item_name(place) for place in step.added], _FEW),
         )
     console.print(table)
     console.print("alone: items that no other test covers", style="dim")
     names = [summary.record(step.entry).name for step in summary.ranking]
-    console.print(f"{summary.ranking_text()}: {_first_of(names, SHOWN)}")
+    console.print(f"{summary.ranking_text()}: {first_of(names, SHOWN)}")
 
 
 def _groups(summary: Summary, console: Console) -> Table:
@@ -269,11 +271,6 @@ def _print_list(console: Console, heading: str, lines: Sequence[str], *, style: 
         console.print(wrapped(line, console.width))
     if len(lines) > SHOWN:
         console.print(f"  … and {len(lines) - SHOWN:,} more: --format json has all", style="dim")
-
-
-def _first_of(every: Sequence[str], most: int = 3) -> str:
-    more = f", … and {len(every) - most:,} more" if len(every) > most else ""
-    return ", ".join(every[:most]) + more
 
 
 def _letter(verdict: Verdict | None) -> str:

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.report.pages import e, render
-from rvmon.report.wording import duration_text
+from rvmon.report.wording import duration_text, first_of
 from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile, Stretch
 from rvmon.trace.sample import Outage
@@ -35,8 +35,7 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
     start = format_stamp(profile.start)
     yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
     for one in profile.outages:
-        since = format_stamped(one.since, profile.start)
-        yield Text(f"lost: {lost_names(one)} from {since} on: {one.why}", "yellow")
+        yield Text(f"lost: {_lost(one, profile.start)}", "yellow")
     for title, columns in grouped(profile, requirements):
         table = Table(title=title, title_justify="left", title_style="bold", box=None)
         table.show_header = False
@@ -51,17 +50,13 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
         yield table
     for why in dict.fromkeys(profile.left_out.values()):
         names = [name for name, reason in profile.left_out.items() if reason == why]
-        more = f" and {len(names) - _FEW:,} more" if len(names) > _FEW else ""
-        yield Text(f"left out: {', '.join(names[:_FEW])}{more}: {why}", "bright_black")
+        yield Text(f"left out: {first_of(names, _FEW)}: {why}", "bright_black")
 
 
-def lost_names(outage: Outage) -> str:
-    """The names that were lost, the first of them if they are many."""
-    if outage.names is None:
-        return "everything"
-    names = sorted(outage.names)
-    more = f" and {len(names) - _FEW:,} more" if len(names) > _FEW else ""
-    return f"{', '.join(names[:_FEW])}{more}"
+def _lost(outage: Outage, start: int) -> str:
+    """What was lost, from when on, and why."""
+    names = "everything" if outage.names is None else first_of(sorted(outage.names), _FEW)
+    return f"{names} from {format_stamped(outage.since, start)} on: {outage.why}"
 
 
 def grouped(
@@ -187,11 +182,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         profile=profile,
         told=f"{profile.samples:,} samples in {duration_text(span)}, "
         f"{len(profile.columns):,} names.",
-        lost=[
-            f"Lost: {lost_names(one)}, "
-            f"from {format_stamped(one.since, profile.start)} on: {one.why}."
-            for one in profile.outages
-        ],
+        lost=[f"Lost: {_lost(one, profile.start)}." for one in profile.outages],
         marks=[duration_text(span * part // 4) for part in range(5)],
         groups=groups,
         left_out=left_out,

@@ -19,7 +19,7 @@ from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Track, TrackKind, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import HealthKind, Sample
+from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -267,7 +267,7 @@ class _Panels:
         spec = self._content.spec
         if id(run) not in self._changes:
             self._changes[id(run)] = changes_of(spec, run.samples)
-        return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.health)
+        return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
 
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each part over a view, as far as the run reaches."""
@@ -296,9 +296,7 @@ class _Panels:
 
 def _sources(content: RunPage) -> frozenset[str]:
     """The signals and events that the run has."""
-    health = content.run.report.health
-    absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
-    return frozenset({*content.spec.signals, *content.spec.events} - absent)
+    return frozenset({*content.spec.signals, *content.spec.events} - content.run.report.absent)
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

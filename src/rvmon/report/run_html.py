@@ -22,7 +22,7 @@ from rvmon.report.scene import Outline, Scene
 from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
-from rvmon.report.wording import forecast_sentence, instants_of, value_text
+from rvmon.report.wording import forecast_sentence, health_facts, instants_of, value_text
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict
@@ -138,6 +138,7 @@ def run_page(content: RunPage) -> str:
         distinct=dict.fromkeys,
         instants_of=instants_of,
         stamped=format_stamped,
+        health_facts=health_facts,
         forecast_sentence=forecast_sentence,
         has_unknown=has_unknown,
         headline=headline,

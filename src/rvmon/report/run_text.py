@@ -8,10 +8,17 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.report.terminal import wrapped
-from rvmon.report.wording import forecast_sentence, full_reason, instants_of, without_attempts
+from rvmon.report.wording import (
+    SHOWN,
+    first_of,
+    forecast_sentence,
+    full_reason,
+    health_facts,
+    instants_of,
+    without_attempts,
+)
 from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import counted
-from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, LazyAttempts
@@ -24,9 +31,6 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
-
-SHOWN = 12
-"""Bins or combinations of a kind that are named; the rest is counted."""
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
@@ -56,9 +60,9 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
         holes = [one for one in wanted if one.is_hole]
         hit = [f"{_name(one)} {one.hits:,}" for one in group.bins if one.hits]
         covered = f"{group.name}: {len(wanted) - len(holes):,} of {len(wanted):,} covered"
-        yield f"{covered}; hit: {_listed(hit)}" if hit else covered
+        yield f"{covered}; hit: {first_of(hit, SHOWN)}" if hit else covered
         if holes:
-            yield f"{group.name}: not covered: {_listed([_missing(one) for one in holes])}"
+            yield f"{group.name}: not covered: {first_of([*map(_missing, holes)], SHOWN)}"
 
 
 def _name(one: CoveredBin) -> str:
@@ -67,11 +71,6 @@ def _name(one: CoveredBin) -> str:
 
 def _missing(one: CoveredBin) -> str:
     return one.name if one.goal == 1 else f"{one.name} ({one.hits:,} of {one.goal:,})"
-
-
-def _listed(names: Sequence[str]) -> str:
-    rest = len(names) - SHOWN
-    return ", ".join(names[:SHOWN]) + (f", … and {rest:,} more" if rest > 0 else "")
 
 
 SHOWN_PER_REQUIREMENT = 3
@@ -122,8 +121,10 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     _print_coverage(report.coverage, console)
     for one in report.illegal:
         console.print(one.told(report.origin), style="bold red", markup=False)
-    for line in health_lines(report.health, report.origin):
-        console.print(line)
+    if report.health:
+        console.print("input health:")
+    for names, fact in health_facts(report.health, report.origin):
+        console.print(f"  {names}  {fact}")
 
 
 def _print_coverage(groups: Sequence[CoveredGroup], console: Console) -> None:
@@ -231,29 +232,3 @@ def _runs_table(reports: Sequence[Report]) -> Table:
         seen = [report.verdicts[name] for report in reports]
         table.add_row(name, *(str(seen.count(verdict)) for verdict in Verdict))
     return table
-
-
-def health_lines(found: Sequence[Health], origin: int) -> Iterator[str]:
-    """What was not known of the input, or noticed while reading it, a line each.
-
-    Args:
-        found: of the run.
-        origin: its first instant, ticks.
-    """
-    if found:
-        yield "input health:"
-    ignored: dict[str, list[str]] = {}
-    for health in found:
-        if health.kind is HealthKind.IGNORED:
-            ignored.setdefault(health.remark, []).append(health.name)
-            continue
-        if health.kind in (HealthKind.UNIT, HealthKind.CLOCK, HealthKind.CUT):
-            yield f"  {health.name}  warning: {health.remark}"
-            continue
-        first = "" if health.first is None else f", first at {format_stamped(health.first, origin)}"
-        times = "once" if health.count == 1 else f"{health.count} times"
-        readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
-        remark = f": {health.remark}" if health.remark else ""
-        yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
-    for remark, names in ignored.items():
-        yield f"  ignored{f', {remark}' if remark else ''}: {_listed(names)}"

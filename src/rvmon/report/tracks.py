@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
@@ -16,7 +16,7 @@ from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
-from rvmon.trace.sample import Health, HealthKind, Scalar
+from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Blame
 
@@ -246,7 +246,7 @@ def tracks_of(
     spec: CheckedSpec,
     requirement: Requirement,
     found: Mapping[str, Changes],
-    health: Sequence[Health] = (),
+    absent: Collection[str] = (),
 ) -> tuple[Track, ...]:
     """The tracks of the signals and events that a requirement reads, in its order.
 
@@ -254,9 +254,8 @@ def tracks_of(
         spec: its specification.
         requirement: whose names are shown.
         found: from `changes_of`.
-        health: of the run.
+        absent: names without a source.
     """
-    absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(
         _signal_track(spec.signals[name], requirement, found[name])
         if name in spec.signals

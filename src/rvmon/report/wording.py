@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from rvmon.spec.print import format_duration
-from rvmon.trace.sample import Scalar
+from rvmon.trace.sample import Health, HealthKind, Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, format_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
@@ -78,6 +78,49 @@ def with_lateness(attempt: Attempt, came: int | None, values: Mapping[str, str] 
     span = duration_text(came - attempt.blame.window[1])
     when = format_instant(came, attempt.origin)
     return f"{reason}; it came at {when}, {span} after the deadline"
+
+
+def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, str]]:
+    """What was not known of the input, or noticed while it was read: of which names, and what.
+
+    Args:
+        found: of the run.
+        origin: its first instant, ticks.
+
+    >>> speed = Health(HealthKind.NAN, "speed", 3, 2 * TICKS_PER_SECOND, ("R1",))
+    >>> for fact in health_facts([speed, Health(HealthKind.IGNORED, "x", remark="unknown")], 0):
+    ...     print(*fact)
+    speed nan 3 times, first at 2 s  (R1)
+    x ignored: unknown
+    """
+    ignored: dict[str, list[str]] = {}
+    for one in found:
+        if one.kind is HealthKind.IGNORED:
+            ignored.setdefault(one.remark, []).append(one.name)
+        elif one.is_doubt:
+            yield one.name, f"warning: {one.remark}"
+        else:
+            first = "" if one.first is None else f", first at {format_stamped(one.first, origin)}"
+            times = "once" if one.count == 1 else f"{one.count} times"
+            remark = f": {one.remark}" if one.remark else ""
+            readers = f"  ({', '.join(one.requirements)})" if one.requirements else ""
+            yield one.name, f"{one.kind.value} {times}{first}{remark}{readers}"
+    for remark, names in ignored.items():
+        yield first_of(names, SHOWN), f"ignored{f': {remark}' if remark else ''}"
+
+
+SHOWN = 12
+"""Names of a kind that are listed; the rest is counted."""
+
+
+def first_of(names: Sequence[str], most: int) -> str:
+    """The first of some names, and how many more there are.
+
+    >>> first_of(["a", "b", "c"], 2)
+    'a, b, … and 1 more'
+    """
+    more = f", … and {len(names) - most:,} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
 
 
 def value_text(value: Scalar) -> str:

@@ -30,6 +30,9 @@ class HealthKind(StrEnum):
     CUT = "cut off"
 
 
+_DOUBTS = (HealthKind.UNIT, HealthKind.CLOCK, HealthKind.CUT)
+
+
 @dataclass(frozen=True, slots=True)
 class Health:
     """One kind of trouble with one input on one run.
@@ -49,6 +52,11 @@ class Health:
     first: int | None = None
     requirements: tuple[str, ...] = ()
     remark: str = ""
+
+    @property
+    def is_doubt(self) -> bool:
+        """Whether it is a warning: the recording may not be what it seems."""
+        return self.kind in _DOUBTS
 
 
 Scalar = bool | int | float | str | None

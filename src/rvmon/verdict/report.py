@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from rvmon.trace.sample import Health
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import LAW, Verdict, fold
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredGroup, IllegalHit
@@ -73,6 +73,11 @@ class Report:
 
     _repr_html_: ClassVar[Callable[[Report], str]]
     """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
+
+    @property
+    def absent(self) -> frozenset[str]:
+        """The signals and events that had no source."""
+        return frozenset(one.name for one in self.health if one.kind is HealthKind.ABSENT)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.

@@ -118,6 +118,16 @@ def test_the_database(files, jobs):
     assert coverage.entries[0].record.verdicts == {"A1": "P"}
 
 
+def test_a_first_hit_is_told_in_seconds_of_its_run(files, capsys):
+    """As all instants are, with the stamp beside it where the log has another clock."""
+    (files / "calm.csv").write_text("t,near,state\n1700000000,false,idle\n1700000000.5,true,\n")
+    assert main(["run", "arm.rv", "calm.csv", "--coverage", "c.db"]) == 0
+    capsys.readouterr()
+    assert main(["cover", "c.db", "--bins"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "calm.csv at 0.5 s (stamp 1700000000.5 s, 2023-11-14 22:13:20 UTC)" in told
+
+
 def test_a_place_that_cannot_be_written(files, capsys):
     """It is told before anything is judged."""
     assert main(["run", "arm.rv", "calm.csv", "--coverage", "none/c.db"]) == 2

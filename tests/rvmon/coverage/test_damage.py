@@ -48,13 +48,13 @@ def test_what_is_no_database_is_named(path):
     foreign = path.with_name("f.db")
     rewritten(foreign, "CREATE TABLE t (a)")
     assert "a database of something else" in refused(foreign)
-    rewritten(path, "PRAGMA user_version = 4")
+    rewritten(path, "PRAGMA user_version = 5")
     told = refused(path)
-    assert "written by a newer rvmon (version 4 of its tables, this one reads 3)" in told
+    assert "written by a newer rvmon (version 5 of its tables, this one reads 4)" in told
     assert "install that one, or record again" in told
     rewritten(path, "PRAGMA user_version = 1")
     told = refused(path)
-    assert "written by an older rvmon (version 1 of its tables, this one reads 3)" in told
+    assert "written by an older rvmon (version 1 of its tables, this one reads 4)" in told
     assert "record again, or install that one" in told
 
 

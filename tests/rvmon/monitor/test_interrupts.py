@@ -10,7 +10,7 @@ import pytest
 import rvmon
 from rvmon.monitor.monitor import Monitor
 from rvmon.report.junit import junit_xml
-from rvmon.report.run_text import health_lines
+from rvmon.report.wording import health_facts
 from rvmon.trace.sample import HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -216,9 +216,8 @@ def test_a_torn_run_is_told_in_every_output() -> None:
         with pytest.raises(KeyboardInterrupt):
             _struck(monitor, _Strike(place))
         report = monitor.finish_ns(4 * _S)
-        found = [
-            line for line in health_lines(report.health, report.origin) if "interrupted" in line
-        ]
+        facts = health_facts(report.health, report.origin)
+        found = [f"{names}  {fact}" for names, fact in facts if "interrupted" in fact]
         assert bool(found) is ("was not evaluated in full" in junit_xml([report], spec.checked))
         lines |= {line.partition(":")[0] for line in found}
-    assert "  monitor  interrupted once, first at 1 s (stamp 2 s)" in lines
+    assert "monitor  interrupted once, first at 1 s (stamp 2 s)" in lines

@@ -163,6 +163,9 @@ def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
     shown = capsys.readouterr()
     assert "warning" not in shown.out + shown.err
     assert "to 0.98 s" in shown.out
+    (tmp_path / "a.csv").write_text("t,x\n0,1\n1,1")
+    assert main(["run", "s.rv", "a.csv", "--format", "json"]) == 0
+    assert "warning: a.csv: `the last line`: it has no end of line" in capsys.readouterr().err
 
 
 def of_clocks(report):

@@ -13,7 +13,9 @@ import rvmon
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import write_run_pages
+from rvmon.report.run_text import print_reports
 from rvmon.report.scene import Outline, Scene
+from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import TICKS_PER_SECOND
 
 SPEC = """
@@ -133,6 +135,25 @@ def test_without_failure_it_opens_on_what_is_open():
     assert opened(run_page(content(judged("t", samples)))) == "D2-1"
     samples.append((19.0, {"knock": True}))
     assert opened(run_page(content(judged("t", samples)))) == "D1-1"
+
+
+def test_page_and_text_say_the_same_of_the_input(capsys):
+    """What was unknown, ignored or doubtful; of which names, how often, since when."""
+    spec, run = door()
+    found = (
+        Health(HealthKind.NAN, "gap", 3, 2 * TICKS_PER_SECOND, ("D2",)),
+        Health(HealthKind.CUT, "the last line", remark="it has no end"),
+        Health(HealthKind.DROPPED, "knock", remark="the pipe broke"),
+        *(Health(HealthKind.IGNORED, f"x{n}", remark="not declared") for n in range(14)),
+    )
+    run = replace(run, report=replace(run.report, health=found))
+    print_reports([run.report], spec.checked)
+    text = capsys.readouterr().out.partition("input health:")[2]
+    page = run_page(content((spec, run)))
+    listed = re.search("<h2>Input health</h2><ul>(.*?)</ul>", page, re.DOTALL)[1]
+    assert "".join(text.split()) == "".join(re.sub("<.*?>", "", listed).split())
+    assert "  gap  nan 3 times, first at 2 s  (D2)\n" in text
+    assert "x11, … and 2 more  ignored: not" in text
 
 
 def test_a_run_in_which_nothing_happened_has_a_page():

@@ -26,7 +26,7 @@ from rvmon.report.tracks import (
     thresholds,
     tracks_of,
 )
-from rvmon.trace.sample import Health, HealthKind, Sample
+from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Blame
 from rvmon.verdict.report import report_of
@@ -50,9 +50,9 @@ SPEC = rvmon.loads(SPEC_TEXT).checked
 R1, R2 = SPEC.requirements.values()
 
 
-def track(name, samples, requirement=R1, health=()):
+def track(name, samples, requirement=R1, absent=()):
     """The track of one name."""
-    tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples), health)
+    tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples), absent)
     return next(one for one in tracks if one.name == name)
 
 
@@ -99,9 +99,8 @@ def test_events_and_labels():
 
 def test_an_event_without_source_is_absent():
     """What has no source is not drawn as if it never happened."""
-    health = [Health(HealthKind.ABSENT, "go")]
-    assert track("go", [], health=health).absent
-    assert not track("pick", [], health=health).absent
+    assert track("go", [], absent={"go"}).absent
+    assert not track("pick", [], absent={"go"}).absent
 
 
 def test_blame_names_only_what_failed():
