@@ -240,7 +240,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         source = Source(
             recording,
             end,
-            is_cut=True,
+            is_cut=options.until is not None,  # what a recording says of its end may be wrong
             read=iter if beside.is_idle else beside.reading,
             shown=lambda found: remembered.passing(show(found)),
         )

@@ -132,18 +132,26 @@ def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
 
 
 def _refuse_unclosed(path: Path) -> None:
-    """Refuse files of SQLite of which a part is in another file, which no reader of bags looks at.
+    """Refuse a bag of ROS 2 of which a part is in a file that no reader of bags looks at.
 
     Raises:
         TraceError: there is such a part, as where a recorder was killed.
     """
-    for inner in sorted(path.glob("*.db3")) if path.is_dir() else [path]:
+    inner = [path]
+    if path.is_dir():
+        listed = (path / "metadata.yaml").read_text("utf-8", "replace")
+        inner = sorted(one for one in path.iterdir() if one.suffix in (".db3", ".mcap"))
+        if more := [one.name for one in inner if one.name not in listed]:
+            raise TraceError(
+                f"it was not closed: metadata.yaml does not list {more[0]}: `ros2 bag reindex` does"
+            )
+    for one in inner:
         for ending in ("-wal", "-journal"):
-            rest = inner.with_name(inner.name + ending)
+            rest = one.with_name(one.name + ending)
             if rest.exists() and rest.stat().st_size:
                 raise TraceError(
                     f"it was not closed: a part of it is in {rest.name}, and would not be read: "
-                    f"`sqlite3 {inner.name} 'PRAGMA journal_mode = DELETE'` puts it in"
+                    f"`sqlite3 {one.name} 'PRAGMA journal_mode = DELETE'` puts it in"
                 )
 
 

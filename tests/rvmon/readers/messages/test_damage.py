@@ -245,6 +245,23 @@ def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
         spec.evaluate(path)
 
 
+def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_path, capsys):
+    """As of a recorder that was killed in its second file, or ended as one that was."""
+    fast = ("/speed", START + 9 * 10**9, {"data": 9.0})
+    path, file = written(tmp_path, "sqlite3")
+    other = write_ros2(tmp_path / "other", [*SENT, fast], "sqlite3")
+    (tmp_path / "base.rv").write_text(SPEC)
+    command = ["run", str(tmp_path / "base.rv"), str(path)]
+    assert main(command) == 0
+    file.write_bytes((other / "other.db3").read_bytes())
+    capsys.readouterr()
+    assert main(command) == 1
+    assert "`speed < 3` became false at 9 s" in capsys.readouterr().out
+    (path / "sqlite3_1.db3").write_bytes(file.read_bytes())
+    assert main(command) == 2
+    assert "metadata.yaml does not list sqlite3_1.db3" in capsys.readouterr().err
+
+
 def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
     """It has the number of messages, and the end of the recording."""
     path = write_json_mcap(tmp_path / "a.mcap", SENT)
