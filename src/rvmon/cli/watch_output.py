@@ -15,6 +15,8 @@ import msgspec
 from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
 from rvmon.report.style import MARKS
+from rvmon.report.wording import health_facts
+from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict, fold
 
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
 
+_LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
 _TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
@@ -333,7 +336,12 @@ def watch_kept(
         raise RvmonError(f"--state {arguments.state}: {error.strerror}") from None
     except KeyboardInterrupt:
         warn("ended; the run goes on with --state")
-    return int(Verdict.FAIL in monitor.monitor.verdicts.values())
+    # Also what earlier processes of the run lost; what it goes on to is not known yet.
+    at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
+    lost = [one for one in at_end.health if one.kind in _LOSSES and one.requirements]
+    for names, fact in health_facts(lost, at_end.origin):
+        warn(f"{names}: {fact}")
+    return int(bool(lost) or Verdict.FAIL in monitor.monitor.verdicts.values())
 
 
 def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skipped: int) -> None:

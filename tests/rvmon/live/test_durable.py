@@ -112,6 +112,22 @@ def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
         DurableMonitor(SPEC, path, print)
 
 
+@pytest.mark.parametrize(
+    ("line", "told"), [('{"t": 9, "x": ', "dropped once"), ('{"t": 1, "x": 9}', "late once")]
+)
+def test_a_watch_that_lost_a_line_is_no_success(tmp_path, capsys, line, told):
+    """Also where the process that lost it has ended, and another one goes on."""
+    spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
+    spec.write_text("signal x : real\nrequirement R\n  always x < 3")
+    command = ["watch", str(spec), str(lines), "--state", str(tmp_path / "run")]
+    text = '{"t": 0, "x": 1}\n{"t": 8, "x": 1}\n'
+    for more, code in (("", 0), (line + "\n", 1), ('{"t": 12, "x": 1}\n', 1)):
+        text += more
+        lines.write_text(text)
+        assert main(command) == code
+        assert (told in capsys.readouterr().err) is (code == 1)
+
+
 @pytest.mark.process
 def test_a_watch_that_is_killed_goes_on(tmp_path):
     """Real processes, killed where they happen to be."""
