@@ -1,4 +1,4 @@
-"""The native core as it was built with the package, from the C in `rvmon/core`.
+"""The extensions, each built with the package from C sources of its own; the core at once.
 
 Raises:
     CoreError: the core is not built, or was built from other sources than those that lie here.
@@ -6,20 +6,43 @@ Raises:
 
 from __future__ import annotations
 
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
 from rvmon.errors import CoreError
 from rvmon.native.sources import FOLDER, source_hash
 
 _MEND = "run `pip install -e .` (or `make core`) in the clone of rvmon"
 
-try:
-    import rvmon.native._core as _core
-except ModuleNotFoundError as error:
-    if error.name != "rvmon.native._core":
-        raise
-    raise CoreError(f"the native core is not built ({FOLDER} has none): {_MEND}") from None
 
-if _core.source_hash != (source_hash() or _core.source_hash):
-    raise CoreError(f"the native core is older than its sources in {FOLDER}: {_MEND}")
+def extension(name: str, folder: str, called: str) -> ModuleType:
+    """Import an extension.
+
+    Args:
+        name: of its module in `rvmon.native`.
+        folder: of its sources.
+        called: what a message calls it.
+
+    Raises:
+        CoreError: it is not built, or was built from other sources than those that lie there.
+    """
+    module = f"rvmon.native.{name}"
+    try:
+        found = import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+        raise CoreError(f"{called} is not built ({folder}): {_MEND}") from None
+    if found.source_hash != (source_hash(folder) or found.source_hash):
+        raise CoreError(f"{called} is older than its sources in {folder}: {_MEND}")
+    return found
+
+
+if TYPE_CHECKING:
+    import rvmon.native._core as _core
+else:
+    _core = extension("_core", FOLDER, "the native core")
 
 Monitor = _core.Monitor
 Record = _core.Record

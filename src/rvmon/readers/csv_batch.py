@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from rvmon.errors import TraceError
-from rvmon.native.csv import read
+from rvmon.native import extension
+from rvmon.native.sources import CSV_FOLDER
 from rvmon.readers import places
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.readers.cells import batch_of, cells_of_labels, kept
@@ -26,6 +27,10 @@ from rvmon.trace.stamps import ticks_of_cell
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from rvmon.native._csv import read
+else:
+    read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
 
 _MARK = b"\xef\xbb\xbf"
 """That some editors begin a text with."""

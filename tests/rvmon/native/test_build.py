@@ -100,7 +100,7 @@ def reloading():
 def test_stale_core_is_refused(monkeypatch, reloading):
     """Sources that are not those of the extension make an import error, which says what to run."""
     with monkeypatch.context() as patched:
-        patched.setattr(rvmon.native.sources, "source_hash", lambda: "0123abcd")
+        patched.setattr(rvmon.native.sources, "source_hash", lambda _: "0123abcd")
         with pytest.raises(
             CoreError, match=r"older than its sources .*pip install -e \."
         ) as caught:
@@ -119,7 +119,7 @@ def test_missing_core_is_told(monkeypatch, reloading):
 def test_no_sources_no_check(monkeypatch, reloading):
     """Where no sources lie beside the extension there is nothing to compare it with."""
     with monkeypatch.context() as patched:
-        patched.setattr(rvmon.native.sources, "source_hash", lambda: "")
+        patched.setattr(rvmon.native.sources, "source_hash", lambda _: "")
         assert reloading()._core is rvmon.native._core
 
 

@@ -7,8 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf
+from typing import TYPE_CHECKING
 
-from rvmon.native.zones import search
+from rvmon.native import extension
+from rvmon.native.sources import ZONES_FOLDER
 from rvmon.timed.model.guards import together
 from rvmon.timed.model.network import Guard, Network
 from rvmon.timed.model.rules import model_error
@@ -21,6 +23,11 @@ from rvmon.timed.search.loops import time_passes
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.sought import Seek, Sought
+
+if TYPE_CHECKING:
+    from rvmon.native._zones import search
+else:
+    search = extension("_zones", ZONES_FOLDER, "the search of models").search
 
 _UNBOUNDED = (1 << 63) - 1
 _NOWHERE = -(1 << 63)

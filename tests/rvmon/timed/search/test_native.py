@@ -12,7 +12,6 @@ import pytest
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_plans import search_plans
 
-from rvmon.native.zones import search
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.model.expressions import (
     BinaryOperation,
@@ -23,6 +22,7 @@ from rvmon.timed.model.expressions import (
 )
 from rvmon.timed.model.network import LeadsToFormula
 from rvmon.timed.model.refine import finer
+from rvmon.timed.search.native import search
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
