@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from struct import iter_unpack
@@ -16,8 +16,7 @@ from rvmon.coverage import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore, kept_of, planned_as
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.records import RECORD
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
@@ -207,7 +206,7 @@ class WatchedRequirements:
     def __init__(self, spec: CheckedSpec) -> None:
         plain = replace(spec, properties={}, covers={})
         self._goals = goals_as_requirements(spec).requirements
-        self._own = CompiledSpec(plain)
+        self._own = CompiledSpec(plain, is_kept=True)
         self._watched = {
             name: WatchedRequirement(one) for name, one in self._own.requirements.items()
         }
@@ -221,7 +220,9 @@ class WatchedRequirements:
             for variants in self._variants.values()
             for key, variant in variants.items()
         }
-        self._others = CompiledSpec(replace(plain, requirements={**others, **self._goals}))
+        self._others = CompiledSpec(
+            replace(plain, requirements={**others, **self._goals}), is_kept=True
+        )
         self.groups = [group for one in self._watched.values() for group in one.groups]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
@@ -229,15 +230,15 @@ class WatchedRequirements:
     def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
         """What the core judges by: the requirements, and beside them what else is judged."""
         traced = {name for name, one in self._watched.items() if one.graph is not None}
-        specs = [one for one in (self._own, self._others) if one.requirements]
-        return {one: _planned(one, traced if one is self._own else ()) for one in specs}
+        specs = [one for one in (self._own, self._others) if one.checked.requirements]
+        return {one: planned_core(one, traced=traced) for one in specs}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
         """What was hit, by group."""
         attempts: dict[str, list[Judged]] = {}
         passages: dict[str, Passages] = {}
         for compiled, run in zip(self.planned, runs, strict=True):
-            ids = tuple(compiled.requirements)
+            ids = tuple(compiled.checked.requirements)
             attempts |= attempts_of(ids, run)
             passages |= passages_of(ids, run)
         for name, watched in self._watched.items():
@@ -251,13 +252,6 @@ class WatchedRequirements:
         for name in self._goals:
             shown = [one for one in attempts[name] if one.verdict is Verdict.PASS]
             yield name, dict(_hit(SHOWN, map(_instant, shown)))
-
-
-def _planned(compiled: CompiledSpec, traced: Collection[str]) -> PlannedCore:
-    chosen = tuple(compiled.requirements.values())
-    plan = plan_alone(compiled, traced=traced)
-    ids = tuple(compiled.requirements)
-    return planned_as(compiled.checked, ids, kept_of(plan, chosen), compiled)
 
 
 def _instant(attempt: Judged) -> int:

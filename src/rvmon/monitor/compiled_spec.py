@@ -99,16 +99,14 @@ class Place:
 
     Args:
         spec: the specification.
-        ids: of the requirements.
-        measured: whether attempts are measured as well.
+        how: which of its requirements are planned, and how.
     """
 
-    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...], *, measured: bool) -> None:
+    def __init__(self, spec: CheckedSpec, *how: object) -> None:
         folder = cache_folder()
         if folder is None:
             self._path = None
             return
-        how = (ids, measured)
         content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"

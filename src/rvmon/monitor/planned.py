@@ -238,13 +238,18 @@ class PlannedCore:
 
 
 def planned_core(
-    compiled: CompiledSpec, only: Collection[str] | None = None, *, measured: bool = False
+    compiled: CompiledSpec,
+    only: Collection[str] | None = None,
+    *,
+    traced: Collection[str] = (),
+    measured: bool = False,
 ) -> PlannedCore:
     """The packed plan of some requirements; made once for a specification.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        traced: ids of those of which somebody asks where attempts go in their automata.
         measured: whether attempts are to be measured as well.
 
     Raises:
@@ -252,13 +257,14 @@ def planned_core(
     """
     spec = compiled.checked
     ids = tuple(one for one in spec.requirements if only is None or one in only)
-    key = "core", ids, measured
+    how = ids, tuple(one for one in ids if one in traced), measured
+    key = "core", *how
     found = compiled.forms.get(key)
     if not isinstance(found, PlannedCore):
-        place = Place(spec, ids, measured=measured) if compiled.is_kept else None
+        place = Place(spec, *how) if compiled.is_kept else None
         found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
-            made = _made(compiled, ids, measured=measured)
+            made = _made(compiled, *how)
             found = planned_as(spec, ids, made, compiled)
             if place is not None:
                 place.write(made)
@@ -278,11 +284,14 @@ def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
     return Kept(pack(plan).data, single, readers)
 
 
-def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Kept:
+def _made(
+    compiled: CompiledSpec, ids: tuple[str, ...], traced: tuple[str, ...], measured: bool
+) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.monitor.plans import plan_alone
 
-    return kept_of(plan_alone(compiled, ids, measured=measured), compiled.chosen(ids))
+    plan = plan_alone(compiled, ids, traced=traced, measured=measured)
+    return kept_of(plan, compiled.chosen(ids))
 
 
 def _checked(

@@ -78,6 +78,18 @@ def test_the_second_time_it_is_read(folder, packs_nothing):
     assert len(kept_in(folder)) == 1
 
 
+def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
+    """The requirements once more, with what attempts do in automata, and their variants."""
+    first = rvmon.loads(TEXT).coverage(SAMPLES)
+    rvmon.loads(TEXT).evaluate(SAMPLES)
+    assert len(kept_in(folder)) == 3
+    planned = []
+    monkeypatch.setattr("rvmon.monitor.plans.plan_alone", lambda *_, **__: planned.append(1))
+    assert rvmon.loads(TEXT).coverage(SAMPLES) == first
+    assert {"R", "S", "`R` edges"} <= first.keys()
+    assert not planned
+
+
 def test_other_plans_are_told_apart(folder):
     """Other requirements, constants or texts are other plans."""
     judged()
