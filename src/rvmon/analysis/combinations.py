@@ -120,7 +120,8 @@ class Letters:
 
     def _shown(self, source: Source, leaves: tuple[State, ...]) -> tuple[Truths, ...]:
         """The truths that some leaves of a source can have."""
-        if not isinstance(source, str):
+        alone = leaves[0].leaf if len(leaves) == 1 else None
+        if not isinstance(source, str) or isinstance(alone, SignalAtom | EventAtom):
             return ((False,), (True,))
         if (source, leaves) not in self._seen:
             own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
