@@ -28,7 +28,9 @@ from rvmon.trace.stamps import ticks_of_cell
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.native._csv import read
+    from rvmon.native import _csv
+
+    read = _csv.read
 else:
     read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
 

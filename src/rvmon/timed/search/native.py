@@ -25,7 +25,9 @@ from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.sought import Seek, Sought
 
 if TYPE_CHECKING:
-    from rvmon.native._zones import search
+    from rvmon.native import _zones
+
+    search = _zones.search
 else:
     search = extension("_zones", ZONES_FOLDER, "the search of models").search
 
