@@ -12,6 +12,10 @@ from rvmon.readers.places import JOINT, endings_of, is_address, matching_address
 
 _MAGIC = frozenset("*?[")
 
+_UNREAD = (".xz", ".bz2", ".lz4", ".zip", ".7z", ".zstd", ".active")
+"""Endings behind that of a recording which is packed otherwise, or was not closed, as its recorder
+was ended: nothing here reads it, but who reads it says so."""
+
 
 def found_recordings(paths: Iterable[str]) -> Iterator[str]:
     """The recordings at paths, in their order.
@@ -70,12 +74,18 @@ def _some(found: list[str], path: str) -> list[str]:
     return found
 
 
-def _recordings_at(path: str) -> Iterator[str]:
-    """A recording, or those in a folder."""
+def _recordings_at(path: str, above: frozenset[str] = frozenset()) -> Iterator[str]:
+    """A recording, or those in a folder; none anew in one that links to a folder above it."""
     if form_of_folder(path):
         yield path
     elif os.path.isdir(path):
-        for name in os.listdir(path):
-            yield from _recordings_at(str(Path(path, name)))
-    elif endings_of(path)[0] in FORMATS:
+        if (real := os.path.realpath(path)) not in above:
+            for name in os.listdir(path):
+                yield from _recordings_at(str(Path(path, name)), above | {real})
+    elif endings_of(path.removesuffix(_unread(path)))[0] in FORMATS:
         yield path
+
+
+def _unread(path: str) -> str:
+    ending = os.path.splitext(path)[1]
+    return ending if ending.lower() in _UNREAD else ""

@@ -263,8 +263,8 @@ class FileRecording:
             return []
         with open(self.path, "rb") as file:
             size = file.seek(0, os.SEEK_END)
-            file.seek(max(0, size - 1))
-            if file.read() in (b"\n", b"\r", b""):
+            file.seek(max(0, size - 2))
+            if file.read().rstrip(b"\0")[-1:] in (b"\n", b"\r", b""):  # UTF-16 has a zero
                 return []
         remark = "it has no end of line: if it was cut off, its last value is another"
         return [Health(HealthKind.CUT, "the last line", remark=remark)]

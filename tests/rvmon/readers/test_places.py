@@ -3,6 +3,7 @@
 import gzip
 import http.server
 from functools import partial
+from pathlib import Path
 from threading import Thread
 
 import pytest
@@ -105,6 +106,28 @@ def test_a_folder_stands_for_the_recordings_in_it(tmp_path):
     assert list(found_recordings([str(tmp_path)])) == found
     assert list(found_recordings([f"{tmp_path}/**"])) == found
     assert list(found_recordings([f"{tmp_path}/[ab]*", "-", "x.csv"])) == [*found[:2], "-", "x.csv"]
+
+
+def test_a_folder_leaves_out_no_recording_in_silence(tmp_path, spec):
+    """One that is packed otherwise, or was not closed, is found, and refused when it is read."""
+    for name in ("a.csv.xz", "b.bag.active", "c.csv"):
+        (tmp_path / name).write_text("t,x\n0,1\n")
+    found = list(found_recordings([str(tmp_path)]))
+    assert [Path(one).name for one in found] == ["a.csv.xz", "b.bag.active", "c.csv"]
+    for path in found[:2]:
+        with pytest.raises(TraceError, match="use one of"):
+            spec.evaluate(path)
+
+
+def test_a_folder_that_links_to_one_above_is_looked_through_once(tmp_path):
+    """Each recording counts once; a link to another folder is followed."""
+    for name in ("runs/a.csv", "more/b.csv"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    (tmp_path / "runs/again").symlink_to("..")
+    (tmp_path / "runs/more").symlink_to("../more")
+    found = list(found_recordings([str(tmp_path / "runs")]))
+    assert [Path(one).name for one in found] == ["a.csv", "b.csv", "b.csv"]
 
 
 @pytest.mark.parametrize("pattern", ["", "/*.csv"])
