@@ -1,1 +1,1 @@
-"""Recordings on disk to samples: CSV and JSON lines."""
+"""Recordings to samples: tables, JSON lines, bags and logs of messages, memory."""

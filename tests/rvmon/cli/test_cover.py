@@ -291,6 +291,7 @@ def test_a_conflict_leaves_what_is_there(door, tmp_path, capsys):
     assert len(read([other]).entries) == 0
 
 
+@pytest.mark.slow
 def test_names_steer_no_terminal(tmp_path, capsys):
     """Whatever groups, items and tests are called."""
     path = str(tmp_path / "a.cov")

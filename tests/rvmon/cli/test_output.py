@@ -74,7 +74,7 @@ def test_health_names_columns_as_they_are_shown(tmp_path, capsys):
     trace = tmp_path / "t.csv"
     trace.write_text(f"t,b,{ESCAPE}\n0,1,2\n", encoding="utf-8")
     main(["run", str(spec), str(trace)])
-    assert f": {SHOWN}\n" in capsys.readouterr().out
+    assert f"  {SHOWN}  ignored" in capsys.readouterr().out
     main(["run", str(spec), str(trace), "--format", "json"])
     text = capsys.readouterr().out
     assert json.loads(text)["health"][0]["name"] == ESCAPE

@@ -144,6 +144,7 @@ def test_from_standard_input(files, monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits of files")
+@pytest.mark.process
 @pytest.mark.parametrize("kilobytes", [0, 8])
 def test_a_full_disk_is_told_and_takes_nothing_away(tmp_path, kilobytes):
     """Whether there was room for none, or some of the tables; `cover` tells what is left of it."""

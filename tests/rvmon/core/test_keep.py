@@ -19,6 +19,7 @@ def told(attempt):
     return tuple(str(getattr(attempt, one.name)) for one in fields(Attempt))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", TimeModel)
 def test_what_is_kept_is_told_as_if_all_was(time):
     """Verdicts, counts, next instants and what calls return do not change; few records are left."""

@@ -76,6 +76,7 @@ def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
     twins.finish(12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 4 ns", "sampled every 127 ns"])
 @pytest.mark.parametrize("begin", [1 - (1 << 62), 0, (1 << 62) - 200])
 def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
