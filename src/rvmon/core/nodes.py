@@ -189,7 +189,7 @@ class Nodes:
 
     def stateful(self) -> list[int]:
         """The nodes to be worked out at each sample, if only these are positions."""
-        lasting = (NodeOp.DOUBT, NodeOp.EVER)
+        lasting = (NodeOp.DOUBT, NodeOp.EVER, NodeOp.ELAPSED)  # the last one has a timer
         return [place for place in self.graph.stateful if self.all[place].op not in lasting]
 
     def _births(self, signals: Iterable[tuple[str, bool]]) -> list[int]:

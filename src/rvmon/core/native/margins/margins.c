@@ -7,20 +7,20 @@
 #include <string.h>
 
 /* Whether each position of a sample is asked for. */
-static bool is_streamed(const run *r, int32_t index)
+bool is_streamed(const run *r, int32_t index)
 {
     return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
            && (index < r->part->plan->requirements);
 }
 
 /* Whether what is measured has to be followed though nothing is asked for. */
-static bool is_kept_up(const run *r, int32_t index)
+bool is_kept_up(const run *r, int32_t index)
 {
     return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
 }
 
 /* Whether its attempts begin at the end: the last position may be asked for when all is over. */
-static bool awaits_the_end(const run *r, int32_t index)
+bool awaits_the_end(const run *r, int32_t index)
 {
     return r->part->judges[index].trigger < 0;
 }
@@ -74,7 +74,7 @@ static void mark_all_changed(run *r)
 }
 
 /* Give the letters up to a position to the gauges. */
-static void give_letters(gauging *w, int64_t last)
+void give_letters(gauging *w, int64_t last)
 {
     measuring *q = w->q;
     int32_t given = 0;
@@ -172,7 +172,7 @@ static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 }
 
 /* What is at most is another from the first letter on in which something is unknown. */
-static void part_margins(run *r, int32_t index)
+void part_margins(run *r, int32_t index)
 {
     measuring *q = &r->margins[index];
     q->parted = gauge_copy(r->home->monitor, shape_of(r, index), &q->readings[1], &q->readings[0]);
@@ -205,7 +205,7 @@ static void read_measures(run *r, int32_t index, int64_t position)
 }
 
 /* Come to a position: up to the one before it, the leaves are known. */
-static void enter_position(run *r, int32_t index, int64_t t)
+void enter_position(run *r, int32_t index, int64_t t)
 {
     const margin_shape *s = shape_of(r, index);
     measuring *q = &r->margins[index];
@@ -234,7 +234,7 @@ static void enter_position(run *r, int32_t index, int64_t t)
 }
 
 /* Ask for a position of which the letter is not given yet. */
-static void ask_for(run *r, int32_t index, int64_t position, int32_t record)
+void ask_for(run *r, int32_t index, int64_t position, int32_t record)
 {
     measuring *q = &r->margins[index];
     rv_monitor *m = r->home->monitor;

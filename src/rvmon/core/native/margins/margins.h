@@ -149,6 +149,13 @@ margin_range measured_leaf(const run *r, const measure_plan *m);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
 /* ---- margins.c, of a run */
+bool is_streamed(const run *r, int32_t index);
+bool is_kept_up(const run *r, int32_t index);
+bool awaits_the_end(const run *r, int32_t index);
+void give_letters(gauging *w, int64_t last);
+void part_margins(run *r, int32_t index);
+void enter_position(run *r, int32_t index, int64_t t);
+void ask_for(run *r, int32_t index, int64_t position, int32_t record);
 void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached);
 void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept);
 

@@ -79,6 +79,9 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
 {
     int32_t i;
     bool done = true;
+    if (m->shapes != NULL) {
+        return RV_OK; /* figures are told without reasons */
+    }
     m->let_go = let_piece_go;
     m->let_go_user = user;
     for (i = 0; !m->keeps_notes && done && (i < m->plan.part_count); i++) {

@@ -171,6 +171,22 @@ static bool is_ageless(const batch *s, const column_watch *w)
     return found;
 }
 
+/* The rows of which the number is none. */
+static uint64_t rows_unknown(const rv_column *c, int64_t first, int32_t count)
+{
+    const double *v = &((const double *)c->values)[first];
+    uint64_t found = 0;
+    int32_t unknown = 0;
+    int32_t i;
+    for (i = 0; (c->kind == RV_COLUMN_REAL) && (i < count); i++) {
+        unknown |= (int32_t)(v[i] != v[i]);
+    }
+    for (i = 0; (unknown != 0) && (i < count); i++) {
+        found |= (uint64_t)(v[i] != v[i]) << i;
+    }
+    return found;
+}
+
 /* Look through the rows of a column; those at which something may change. */
 static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, int32_t count)
 {
@@ -187,6 +203,10 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         }
         w->told = (w->how == EACH_UPDATE) ? w->said : w->told;
         return w->told;
+    }
+    w->is_idle = is_idle_now(s, w);
+    if (w->is_idle) {
+        return rows_unknown(c, first, count);
     }
     w->last = root_of(s, w, 0)->value[w->readers[0].local];
     if (w->how == BY_CONSTANTS) {
@@ -242,7 +262,7 @@ static bool is_calm(const rv_monitor *m)
             return false;
         }
     }
-    return !m->finished && !m->spoilt && (m->heard == RV_NO_TIME) && (m->dense_until == RV_NO_TIME);
+    return may_pass_measured(m) && !m->finished && !m->spoilt && (m->heard == RV_NO_TIME) && (m->dense_until == RV_NO_TIME);
 }
 
 static bool is_settled(const rv_monitor *m)

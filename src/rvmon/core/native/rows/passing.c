@@ -71,7 +71,7 @@ static void turn_from(batch *s, int64_t row)
         for (i = 0; i < s->columns; i++) {
             const column_watch *w = &s->watches[i];
             const int64_t last = last_said(s, w, s->first, row);
-            if ((last >= 0) && (w->how == BY_CONSTANTS) && !w->perishable) {
+            if ((last >= 0) && (w->how == BY_CONSTANTS) && !w->perishable && (s->m->shapes == NULL)) {
                 hold_in_all(s, w, last);
             }
         }
@@ -132,7 +132,11 @@ int64_t pass_over(batch *s, int64_t row)
         next = (ahead != 0U) ? s->first + lowest_bit(ahead) : s->first + s->together;
         due = (next > at) ? first_due(s, at, next) : next;
         if (due > at) {
+            if (s->m->shapes != NULL) {
+                measure_rows(s, at, due);
+            }
             pass_to_row(s, due - 1);
+            settle_rows(s, due - at);
             at = due;
         }
         if (due < next) {
@@ -162,8 +166,13 @@ void make_ready(batch *s, int64_t row, int64_t end)
 void note_judged(batch *s, int64_t end)
 {
     bool stale = false;
+    bool others = false;
     int32_t i;
     s->fresh = end;
+    for (i = 0; (s->m->shapes != NULL) && (i < s->columns); i++) {
+        const column_watch *w = &s->watches[i];
+        others = others || (w->is_idle != is_idle_now(s, w)); /* attempts may have begun */
+    }
     for (i = 0; s->perishes && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
         stale = stale || (w->perishable
@@ -171,7 +180,7 @@ void note_judged(batch *s, int64_t end)
     }
     if (s->together == 0) {
         s->first = end;
-    } else if (stale) {
+    } else if (stale || others) {
         turn_from(s, end); /* what stands there is no longer what the rows before it said */
     } else {
         /* What is known of the rows behind is still so. */
@@ -204,13 +213,14 @@ bool begin_rows(batch *s, const rv_column *columns)
     for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
         begin_column(s, &s->watches[i], &columns[i]);
     }
-    return s->watches != NULL;
+    return (s->watches != NULL) && begin_measured(s);
 }
 
 void end_rows(batch *s, int64_t row)
 {
     if (s->watches != NULL) {
         turn_from(s, row);
+        end_measured(s);
         arena_give(&s->m->memory, s->watches, (size_t)(s->columns + 1) * sizeof *s->watches);
     }
 }
@@ -311,6 +321,7 @@ void learn_how(const batch *s, column_watch *w)
     if (w->reader_count == 0) {
         w->how = NO_UPDATES;
     }
+    w->is_plain = is_plain_column(s, w);
 }
 
 /* What is on another side of a real constant compares otherwise than the last value. */

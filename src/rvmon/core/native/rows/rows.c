@@ -4,9 +4,6 @@
 
 #include <string.h>
 
-/* So many rows are taken until it is asked which figures they have settled. */
-#define ROWS_TOGETHER 64
-
 /* What a column says in a row. */
 static int32_t said_in(const rv_column *c, int64_t row)
 {
@@ -147,7 +144,7 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
 {
     laid *made = &s->laid;
     const int64_t k = row - s->first;
-    const bool known = (k < s->together) && (end == row + 1);
+    const bool known = (k < s->together) && (end == row + 1) && (s->m->shapes == NULL);
     int32_t i;
     made->count = 0;
     made->field_count = 0;
@@ -168,23 +165,12 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
     return rv_step(s->m, s->times[row], made->updates, made->count);
 }
 
-/* Find the figures that rows have settled which were taken together. */
-static void settle_now(rv_monitor *m)
-{
-    if (m->hurries && !m->spoilt && (m->reached != RV_NO_TIME)) {
-        m->hurries = false;
-        settle_margins(m, m->reached);
-        m->hurries = true;
-    }
-}
-
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column *columns,
             int32_t columns_count, int64_t *done)
 {
     batch s;
     int status = RV_OK;
     int64_t row = 0;
-    int64_t judged = 0;
     (void)memset(&s, 0, sizeof s);
     s.m = m;
     s.times = times;
@@ -196,24 +182,20 @@ int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column 
     }
     m->hurries = m->shapes != NULL;
     while ((status == RV_OK) && (row < count)) {
-        row = m->hurries ? row : pass_over(&s, row); /* each value counts where it is measured */
+        row = pass_over(&s, row);
         if (row < count) {
             const int64_t end = end_of_instant(&s, row);
             make_ready(&s, row, end);
             status = judge_instant(&s, row, end);
             if (status == RV_OK) {
                 note_judged(&s, end);
+                settle_rows(&s, end - row);
                 row = end;
-                judged++;
-            }
-            if (m->hurries && (judged % ROWS_TOGETHER == 0)) {
-                settle_now(m);
             }
         }
     }
-    settle_now(m);
-    m->hurries = false;
     end_rows(&s, row);
+    m->hurries = false;
     give_room(m, &s.laid, columns_count);
     *done = row;
     return status;

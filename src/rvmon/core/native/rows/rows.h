@@ -29,6 +29,8 @@ typedef struct {
     bool is_event;
     bool ignores_nan;
     bool perishable;           /* an update keeps it from going stale, whatever it says */
+    bool is_plain;             /* nobody but attempts hears what it compares as */
+    bool is_idle;              /* and there are none */
     rv_number last;            /* what it said before, while rows are looked through */
     double low;                /* what lies between these, or is the same, compares as that does */
     double high;
@@ -60,6 +62,9 @@ typedef struct {
     uint64_t moved;            /* at which something may change */
     bool known;                /* whether it is known for good which updates can change something */
     bool perishes;             /* whether a column is of a signal that goes stale */
+    double *leaves[2];         /* room for what is measured of rows: at least, and at most */
+    int32_t leaves_room;       /* of one row */
+    int64_t unsettled;         /* rows of which it was not asked which figures they have settled */
 } batch;
 
 static inline home *home_of(const batch *s, const column_watch *w, int32_t reader)
@@ -90,6 +95,15 @@ rv_number number_in(const rv_column *c, int64_t row);
 void learn_how(const batch *s, column_watch *w);
 void learn_between(const batch *s, column_watch *w);
 bool compares_alike(const column_watch *w, const rv_number *value);
+
+/* ---- measured.c: rows that are measured, and are not judged */
+bool begin_measured(batch *s);
+void end_measured(batch *s);
+bool may_pass_measured(const rv_monitor *m);
+bool is_plain_column(const batch *s, const column_watch *w);
+bool is_idle_now(const batch *s, const column_watch *w);
+void measure_rows(batch *s, int64_t row, int64_t end);
+void settle_rows(batch *s, int64_t rows);
 
 /* ---- ahead.c: at which rows something may change */
 void look_ahead(batch *s, int64_t row);

@@ -1,0 +1,279 @@
+/* Rows that change no verdict where values are measured: what the leaves are in many of them is laid out
+ * together, and given to the gauges. */
+#include "attempts/attempts.h"
+#include "input/input.h"
+#include "margins/margins.h"
+#include "rows/rows.h"
+
+#include <math.h>
+
+/* Make room for what the leaves of a judge are in rows that are looked at together. */
+bool begin_measured(batch *s)
+{
+    rv_monitor *m = s->m;
+    int64_t i;
+    for (i = 0; (m->shapes != NULL) && (i < m->plan.counts[SEC_MARGINS]); i++) {
+        const int32_t count = m->shapes[i].plan->measures.count;
+        s->leaves_room = (count > s->leaves_room) ? count : s->leaves_room;
+    }
+    for (i = 0; (m->shapes != NULL) && (i < 2); i++) {
+        s->leaves[i] = arena_take(&m->memory, (size_t)(s->leaves_room + 1) * TOGETHER * sizeof(double));
+        if (s->leaves[i] == NULL) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void end_measured(batch *s)
+{
+    int32_t i;
+    for (i = 0; i < 2; i++) {
+        if (s->leaves[i] != NULL) {
+            arena_give(&s->m->memory, s->leaves[i],
+                       (size_t)(s->leaves_room + 1) * TOGETHER * sizeof(double));
+        }
+    }
+    settle_rows(s, TOGETHER);
+}
+
+/* Find the figures that rows have settled which were taken together, when they are many. */
+void settle_rows(batch *s, int64_t rows)
+{
+    rv_monitor *m = s->m;
+    s->unsettled += rows;
+    if (m->hurries && (s->unsettled >= TOGETHER) && !m->spoilt && (m->reached != RV_NO_TIME)) {
+        s->unsettled = 0;
+        m->hurries = false;
+        settle_margins(m, m->reached);
+        m->hurries = true;
+    }
+}
+
+/* Whether rows can be measured that are passed over, if any are measured: all is known of what is born,
+ * and there is one run. */
+bool may_pass_measured(const rv_monitor *m)
+{
+    const run *r = m->homes[0].root;
+    return (m->shapes == NULL)
+           || (m->is_alone && (GAP(r) <= 1) && (r->at.phase == 1) && (r->at.presence == ARE_THERE)
+               && !r->at.dense && (r->at.lost_count == 0) && (r->cut == NEVER)
+               && (r->measured_at != -LIMIT) && (r->truth_log == NULL) && !r->part->is_watched);
+}
+
+/* Whether somebody looks at the truth of a node but for what attempts owe. */
+static bool is_looked_at(const run *r, int32_t place)
+{
+    const plan *p = PLAN(r);
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        const judge_plan *j = &r->part->judges[i];
+        const list own = p->margins[r->part->plan->judges.first + i].measures;
+        if ((place == j->again) || (place == j->unborn) || (place == j->blurs)) {
+            return true;
+        }
+        for (k = own.first; k < own.first + own.count; k++) {
+            const measure_plan *m = &p->measures[k];
+            if ((m->node == place) && ((m->kind == MEASURE_TRUTH) || (m->kind == MEASURE_DENIED))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* Whether a node is a leaf that tells judges alone, and what they owe. */
+static bool tells_letters(const run *r, int32_t place)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const link_plan *l = &PLAN(r)->links[n->links.first];
+    int32_t i;
+    for (i = 0; i < n->links.count; i++) {
+        if (l[i].kind != LINK_LETTER) {
+            return false;
+        }
+    }
+    return (n->op == NODE_LEAF) && (n->parents[r->at.phase].count == 0) && !is_looked_at(r, place);
+}
+
+/* The nodes that the comparisons of a signal are shown by, one after the other; -1 behind the last. */
+static int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at)
+{
+    const list atoms = r->part->signals[local].on_change[r->at.phase];
+    for (; *atom < atoms.count; (*atom)++, *at = 0) {
+        const list nodes = r->part->atoms[LIST(PLAN(r), atoms)[*atom]].nodes[r->at.phase];
+        if (*at < nodes.count) {
+            (*at)++;
+            return LIST(PLAN(r), nodes)[*at - 1];
+        }
+    }
+    return -1;
+}
+
+/* Whether nobody but attempts hears what a signal compares as, now that all is born. */
+bool is_plain_column(const batch *s, const column_watch *w)
+{
+    const bool whole = (w->column->says == NULL) && (w->column->values != NULL) && !w->is_event;
+    const run *r;
+    list atoms;
+    int32_t atom = 0;
+    int32_t at = 0;
+    int32_t place;
+    int32_t i;
+    if ((s->m->shapes == NULL) || !s->m->is_alone || !whole || w->ignores_nan || w->perishable
+        || (w->reader_count != 1) || ((w->how != EACH_VALUE) && (w->how != BY_CONSTANTS))) {
+        return false;
+    }
+    r = root_of(s, w, 0);
+    atoms = r->part->signals[w->readers[0].local].on_change[r->at.phase];
+    for (i = 0; i < atoms.count; i++) {
+        const int32_t own = LIST(PLAN(r), atoms)[i];
+        if ((r->part->atoms[own].tells != 0) || (r->momentary[own] != 0U)) {
+            return false;
+        }
+    }
+    for (place = next_shown(r, w->readers[0].local, &atom, &at); place >= 0;
+         place = next_shown(r, w->readers[0].local, &atom, &at)) {
+        if (!tells_letters(r, place)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether nobody at all hears it. */
+bool is_idle_now(const batch *s, const column_watch *w)
+{
+    const run *r;
+    int32_t atom = 0;
+    int32_t at = 0;
+    int32_t place;
+    int32_t i;
+    if (!w->is_plain) {
+        return false;
+    }
+    r = root_of(s, w, 0);
+    for (place = next_shown(r, w->readers[0].local, &atom, &at); place >= 0;
+         place = next_shown(r, w->readers[0].local, &atom, &at)) {
+        const node_plan *n = &r->part->nodes[place];
+        const link_plan *l = &PLAN(r)->links[n->links.first];
+        for (i = 0; i < n->links.count; i++) {
+            if (has_attempts(&r->judges[l[i].judge]) || watches(r, l[i].judge)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Have a run hold what a row says. */
+static void hold_row(const batch *s, int64_t row)
+{
+    int32_t i;
+    for (i = 0; i < s->columns; i++) {
+        const column_watch *w = &s->watches[i];
+        if (!w->is_event && (w->how != NO_UPDATES) && bit_at(w->said, row - s->first)) {
+            root_of(s, w, 0)->value[w->readers[0].local] = number_in(w->column, row);
+        }
+    }
+}
+
+/* What a leaf is in some rows, each in its place of a row of all of them. */
+static bool lay_leaf(const batch *s, const run *r, const measure_plan *m, int64_t row, int64_t end,
+                     double *low, double *high, int32_t each)
+{
+    const atom_plan *a = (m->kind == MEASURE_DISTANCE) ? &r->part->atoms[r->part->nodes[m->node].a] : NULL;
+    const bool varies = (a != NULL) && (a->op != ATOM_PAYLOAD);
+    margin_range now = {0.0, 0.0};
+    bool differs = false;
+    int64_t i;
+    for (i = row; i < end; i++) {
+        if (varies) {
+            hold_row(s, i);
+        }
+        if (varies || (i == row)) {
+            now = measured_leaf(r, m);
+            differs = differs || (now.low != now.high);
+        }
+        low[(i - row) * each] = now.low;
+        high[(i - row) * each] = now.high;
+    }
+    return differs;
+}
+
+/* Give what a judge measures in some rows to its gauges. */
+static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_t end)
+{
+    const margin_shape *shape = shape_of(r, index);
+    measuring *q = &r->margins[index];
+    const int32_t each = shape->plan->measures.count;
+    gauging w;
+    bool differs = false;
+    int64_t i;
+    int32_t k;
+    begin_gauging(&w, r, index, s->times[end - 1], s->times[end - 1]);
+    give_letters(&w, s->times[row] - 1);
+    q->letter_count = 0;
+    for (k = 0; k < each; k++) {
+        differs = lay_leaf(s, r, &shape->measures[k], row, end, &s->leaves[0][k], &s->leaves[1][k], each)
+                  || differs;
+    }
+    if (differs && !q->parted) {
+        part_margins(r, index);
+    }
+    for (i = row; i < end; i++) {
+        w.g = &q->readings[0];
+        gauge_take(&w, s->times[i], &s->leaves[0][(i - row) * each]);
+        if (q->parted) {
+            w.g = &q->readings[1];
+            gauge_take(&w, s->times[i], &s->leaves[1][(i - row) * each]);
+        }
+    }
+}
+
+/* Measure rows for a judge: the last one is that at which it stands. */
+static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int64_t end)
+{
+    measuring *q = &r->margins[index];
+    int64_t i = row;
+    if (q->blind || !(q->active || is_kept_up(r, index) || awaits_the_end(r, index))) {
+        return;
+    }
+    if (!q->active && (end - row > 1)) {
+        hold_row(s, row);
+        enter_position(r, index, s->times[row]);
+        i++;
+    }
+    if ((i < end - 1) && ((q->asks_first < q->asks_end) || is_kept_up(r, index))) {
+        give_rows(s, r, index, i, end - 1);
+    }
+    for (i = row; is_streamed(r, index) && (i < end - 1); i++) {
+        ask_for(r, index, s->times[i], 0); /* before anything is found out about these */
+    }
+    hold_row(s, end - 1);
+    enter_position(r, index, s->times[end - 1]);
+    if (is_streamed(r, index)) {
+        ask_for(r, index, s->times[end - 1], 0);
+    }
+}
+
+/* Measure some rows that are passed over, and hold what the last one says. */
+void measure_rows(batch *s, int64_t row, int64_t end)
+{
+    run *r = s->m->homes[0].root;
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        measure_for(s, r, i, row, end);
+    }
+    hold_row(s, end - 1);
+    r->measured_at = s->times[end - 1];
+    for (i = 0; i < s->columns; i++) {
+        const column_watch *w = &s->watches[i];
+        if (w->is_idle) {
+            const int32_t local = w->readers[0].local;
+            r->spans[local] = NO_SPAN;
+            (void)recheck_list(r, r->part->signals[local].on_change[r->at.phase]);
+        }
+    }
+}
