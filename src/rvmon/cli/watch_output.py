@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 import logging
 import sys
+import zlib
 from collections import Counter, deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -327,7 +327,9 @@ def watch_kept(
         if monitor.taken:
             warn(f"{arguments.state}: the run goes on behind {monitor.taken:,} lines")
         try:
-            _feed(monitor, spec, lines, skipped=monitor.taken if is_file else 0)
+            if is_file:
+                lines = _behind_taken(monitor, lines, arguments)
+            _feed(monitor, spec, lines)
         finally:
             monitor.save()
     except BrokenPipeError:
@@ -344,13 +346,42 @@ def watch_kept(
     return int(bool(lost) or Verdict.FAIL in monitor.monitor.verdicts.values())
 
 
-def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skipped: int) -> None:
+def _behind_taken(
+    monitor: DurableMonitor, lines: Iterable[bytes], arguments: argparse.Namespace
+) -> Iterator[bytes]:
+    """The lines of a file, blank in place of those that were taken.
+
+    Those before the last one are marked, which may be one that is being written.
+
+    Raises:
+        RvmonError: those that were taken are not in the file.
+    """
+    taken, (count, known) = monitor.taken, monitor.mark
+    other = RvmonError(
+        f"{arguments.source} is another file than that of which {taken:,} lines were taken: "
+        f"name another --state, or delete {arguments.state} to start again"
+    )
+    number = check = 0
+    for line in lines:
+        if line.strip():
+            if number == count and check != known:
+                raise other
+            if number >= taken:
+                monitor.mark = number, check
+            number, check = number + 1, zlib.crc32(line, check)
+        yield line if number > taken else b""
+    if number < taken:
+        raise other
+
+
+def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
     from rvmon.adapters.json_objects import decoded_object
     from rvmon.readers.jsonl_rows import read_object
 
     ignored: Counter[str] = Counter()
-    filled = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
-    for number, line in itertools.islice(filled, skipped, None):
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
         try:
             t, values = read_object(decoded_object(line), spec.schema, ignored)
         except TraceError as error:

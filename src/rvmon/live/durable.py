@@ -42,6 +42,8 @@ class DurableMonitor:
         monitor: judges; to be asked only.
         taken: so many samples were kept since the run began, refused and lost ones as well: where
             the source can be read again, it goes on behind them.
+        mark: a count and a checksum that the caller sets, and finds again as they were with the
+            last snapshot: by them it knows whether the source is the same.
 
     Raises:
         SnapshotError: what is in the file is none, or of another specification or version.
@@ -70,6 +72,7 @@ class DurableMonitor:
         self._every = every
         self._number = 0
         self.taken = 0
+        self.mark = (0, 0)
         found = self._found()
         self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
         self.monitor.on_decided(self._hear)
@@ -92,6 +95,8 @@ class DurableMonitor:
             head = json.loads(found[0])
             self._number, data = int(head["told"]), str(head["snapshot"]).encode()
             self.taken = int(head["taken"])
+            count, check = head.get("mark", self.mark)
+            self.mark = int(count), int(check)
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
                 f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
@@ -145,6 +150,7 @@ class DurableMonitor:
         head = {
             "told": self._number,
             "taken": self.taken,
+            "mark": self.mark,
             "snapshot": self.monitor.snapshot().decode(),
         }
         begin(self._path, [json.dumps(head).encode()])

@@ -128,6 +128,23 @@ def test_a_watch_that_lost_a_line_is_no_success(tmp_path, capsys, line, told):
         assert (told in capsys.readouterr().err) is (code == 1)
 
 
+@pytest.mark.parametrize(("rows", "is_same"), [(7, False), (20, False), (0, True)])
+def test_a_watch_goes_on_in_no_other_file(tmp_path, capsys, rows, is_same):
+    """As of a log that was put away: lines of the new one would pass for those that were taken."""
+    spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
+    spec.write_text("signal x : real\nrequirement R\n  always x < 3")
+    command = ["watch", str(spec), str(lines), "--state", str(tmp_path / "run")]
+    text = "".join(f'{{"t": {t}, "x": 1}}\n' for t in range(10))
+    lines.write_text(f'{text}{{"t": 10, "x"')  # is being written
+    assert main(command) == 1
+    other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
+    lines.write_text(other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n')
+    capsys.readouterr()
+    assert main(command) == (1 if is_same else 2)
+    told = capsys.readouterr().err
+    assert ("is another file than that of which 11 lines were taken" in told) is not is_same
+
+
 @pytest.mark.process
 def test_a_watch_that_is_killed_goes_on(tmp_path):
     """Real processes, killed where they happen to be."""
