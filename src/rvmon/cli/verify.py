@@ -109,28 +109,28 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
     in_words = arguments.format == "text"
     failed = False
     with _shown() as watch:
-        for query in chosen_queries(network, arguments.query):
+        for asked, query in chosen_queries(network, arguments.query):
             match query.formula:
                 case Chance() | Mean():
                     going = Meter(budget, watch).goes_on
-                    one = sample(network, query, seed=arguments.seed, watch=going)
+                    one = sample(asked, query, seed=arguments.seed, watch=going)
                     failed |= bool(one.margin) and not one.holds
                     data["simulated"].append(sampled_data(one))
                     if in_words:
                         _print_sampled(one)
                 case Extremes():
-                    found = list(extremes(network, query, budget=budget, watch=watch))
+                    found = list(extremes(asked, query, budget=budget, watch=watch))
                     failed |= not all(one.exact for one in found)
-                    data["extremes"] += [extreme_data(network, one) for one in found]
+                    data["extremes"] += [extreme_data(asked, one) for one in found]
                     if in_words:
-                        _print_extremes(network, found)
+                        _print_extremes(asked, found)
                 case _:
                     policy = Policy(arguments.trace)
-                    outcome = verify(network, query, budget=budget, watch=watch, policy=policy)
+                    outcome = verify(asked, query, budget=budget, watch=watch, policy=policy)
                     failed |= not outcome.holds
-                    data["queries"].append(outcome_data(network, outcome))
+                    data["queries"].append(outcome_data(asked, outcome))
                     if in_words:
-                        _print_outcome(network, outcome)
+                        _print_outcome(asked, outcome)
     if not in_words:
         always = {"queries": data.pop("queries")}
         say_json(json.dumps(always | {key: some for key, some in data.items() if some}, indent=2))

@@ -153,6 +153,34 @@ def query_on(network: Network, text: str) -> Query:
     return queries[0]
 
 
+def asked_on(network: Network, text: str) -> tuple[Network, Query]:
+    """Read a query that may compare differences of clocks: its network keeps them up.
+
+    Raises:
+        ModelError: the text is no query, names what the network does not have, or compares clocks
+            that cannot be kept up.
+
+    >>> from rvmon.timed.language.load import loads_network
+    >>> plain = loads_network("clock x, y automaton a { location l start l edge l -> l do x = 0 }")
+    >>> network, query = asked_on(plain, "E<> y - x > 3")
+    >>> network.variables[-1].name
+    'y - x <= 3'
+    """
+    findings, diagonals = Findings(), Diagonals(network.clocks, [*network.variables])
+    queries = _queries([parse_query(text)], network.names, findings, diagonals)
+    findings.raise_errors()
+    if diagonals.places:
+        with findings.collect():
+            network = replace(
+                network,
+                variables=tuple(diagonals.variables),
+                automata=tuple(diagonals.kept_up(network.automata)),
+                has_split_edges=True,
+            )
+        findings.raise_errors()
+    return network, queries[0]
+
+
 def _queries(
     written: Iterable[automaton_syntax.QueryText],
     names: Names,
@@ -289,8 +317,8 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
         findings.add(finding("TA010", message, span, fix, severity=Severity.WARNING))
 
 
-def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]:
-    """The model's own queries, or those asked for by id or by text.
+def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[tuple[Network, Query]]:
+    """The model's own queries, or those asked for by id or by text, each with its network.
 
     Raises:
         ModelError: there is none, or a text is neither an id nor a query.
@@ -299,7 +327,7 @@ def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]
         if not network.queries:
             fix = "give one with --query, or write `query: …` into the model"
             raise model_error("TA020", "the model has no query", None, fix)
-        return list(network.queries)
+        return [(network, query) for query in network.queries]
     by_id = {query.id: query for query in network.queries if query.id}
     for text in asked:
         parts = [part.strip() for part in text.split(",")]
@@ -309,4 +337,4 @@ def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]
         if len(parts) > 1 and all(part in by_id for part in parts):
             several = " ".join(f"--query {part}" for part in parts)
             raise model_error("TA020", f"`{text}` is no query", None, f"write {several}")
-    return [by_id.get(text) or query_on(network, text) for text in asked]
+    return [(network, by_id[text]) if text in by_id else asked_on(network, text) for text in asked]

@@ -326,10 +326,8 @@ class Resolver:
                 return compare_clock(clock, MIRRORED[op], Constant(-number), span)
             case [(-1, second), (1, first)] if first != second:
                 if self.diagonals is None:
-                    fix = (
-                        "write it as a query into the model, where edges can be made to keep it up"
-                    )
-                    message = "two clocks are compared in a query on a model that is already read"
+                    fix = "ask for it with --query, for which edges are made to keep it up"
+                    message = "two clocks are compared where edges cannot keep their difference up"
                     raise model_error("TA008", message, span, fix)
                 return self.diagonals.compare(first, second, op, number, span)
             case _:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.model.expressions import (
     FALSE,
     TRUE,
@@ -73,7 +73,7 @@ def verify(
         ModelError: the query is none that can be decided, or the network cannot start, or a run
             of it leaves a variable's range.
     """
-    asked = query_on(network, query) if isinstance(query, str) else query
+    network, asked = asked_on(network, query) if isinstance(query, str) else (network, query)
     check_start(network)
     check_clocks(network, (one.clock for one in compares_in(asked.formula)))
     question = _Question(network, Meter(budget, watch), policy)
