@@ -96,10 +96,16 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.describe import extreme_data, outcome_data, sampled_data
+    from rvmon.timed.describe import (
+        extreme_data,
+        outcome_data,
+        sampled_data,
+        simulation_data,
+        trajectory_lines,
+    )
     from rvmon.timed.language.elaborate import chosen_queries
-    from rvmon.timed.model.network import Chance, Extremes, Mean
-    from rvmon.timed.runs.statistics import sample
+    from rvmon.timed.model.network import Chance, Extremes, Mean, Simulation
+    from rvmon.timed.runs.statistics import sample, trajectories
     from rvmon.timed.search.extremes import extremes
     from rvmon.timed.search.meter import Meter
     from rvmon.timed.search.outcome import Policy
@@ -118,6 +124,17 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
                     data["simulated"].append(sampled_data(one))
                     if in_words:
                         _print_sampled(one)
+                case Simulation():
+                    going = Meter(budget, watch).goes_on
+                    drawn = trajectories(asked, query, seed=arguments.seed, watch=going)
+                    data["simulated"].append(simulation_data(query, drawn))
+                    if in_words:
+                        _print_query(query, "simulated")
+                        for number, run in enumerate(drawn, start=1):
+                            say(f"    run {number}:")
+                            for line in trajectory_lines(asked, query, run):
+                                say(f"      {line}")
+                        say(flush=True)
                 case Extremes():
                     found = list(extremes(asked, query, budget=budget, watch=watch))
                     failed |= not all(one.exact for one in found)

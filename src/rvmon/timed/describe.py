@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from fractions import Fraction
 from typing import Any
 
 from rvmon.timed.model.expressions import Variable
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.network import Network, Query, Simulation
 from rvmon.timed.observation.observe import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
-from rvmon.timed.runs.statistics import ERROR, Sampled
+from rvmon.timed.runs.statistics import ERROR, Sampled, Trajectory
 from rvmon.timed.search.extremes import Extreme
 from rvmon.timed.search.outcome import Outcome
 from rvmon.timed.search.suite import Suite, item_text
@@ -162,6 +162,36 @@ def sampled_data(one: Sampled) -> dict[str, Any]:
     if one.margin is not None:
         return {**data, "holds": one.holds, "error": ERROR, "margin": one.margin}
     return {**data, "low": one.low, "high": one.high, "confidence": 1 - ERROR}
+
+
+def trajectory_lines(network: Network, query: Query, one: Trajectory) -> Iterator[str]:
+    """A simulated run as lines: instants, and the values that are others than before."""
+    assert isinstance(query.formula, Simulation), "runs are of such queries"
+    before: tuple[Fraction | None, ...] = (None,) * len(query.formula.terms)
+    for now, row in zip(one.times, one.values, strict=True):
+        changed = [
+            f"{term.text} = {float(value):g}"
+            for term, value, old in zip(query.formula.terms, row, before, strict=True)
+            if value != old
+        ]
+        if changed or now == one.times[-1]:
+            yield f"{time_text(network, now):>9}  {', '.join(changed)}".rstrip()
+        before = row
+
+
+def simulation_data(query: Query, found: Sequence[Trajectory]) -> dict[str, Any]:
+    """Simulated runs as plain data, times in units of the model."""
+    assert isinstance(query.formula, Simulation), "runs are of such queries"
+    terms = [term.text for term in query.formula.terms]
+    runs = [
+        {"times": [float(t) for t in one.times]}
+        | {
+            term: [float(value) for value in values]
+            for term, values in zip(terms, zip(*one.values, strict=True), strict=True)
+        }
+        for one in found
+    ]
+    return {"query": query.text, "id": query.id, "runs": runs}
 
 
 def extreme_text(extreme: Extreme) -> str:

@@ -32,6 +32,7 @@ from rvmon.timed.model.network import (
     Query,
     QueryFormula,
     Signal,
+    Simulation,
     Term,
 )
 from rvmon.timed.model.rules import finding, left_out, model_error
@@ -243,6 +244,10 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> Quer
             horizon = resolver.limit(within, top) or 0
             number = _number(value, resolver, top)
             return Mean(largest, number, horizon, _runs(runs, resolver, top))
+        case syntax.Simulation(terms, within, runs):
+            horizon = resolver.limit(within, top) or 0
+            shown = tuple(_term(term, resolver, top) for term in terms)
+            return Simulation(shown, horizon, _runs(runs, resolver, top, least=1) or 1)
         case syntax.Extremes(ends, where, terms):
             condition = TRUE if where is None else _condition(where, resolver, top)
             if not is_plain(condition):
@@ -268,12 +273,14 @@ def _term(written: syntax.Expression, resolver: Resolver, top: Scope) -> Term:
     return Term(text, _number(written, resolver, top))
 
 
-def _runs(written: syntax.Expression | None, resolver: Resolver, top: Scope) -> int | None:
+def _runs(
+    written: syntax.Expression | None, resolver: Resolver, top: Scope, least: int = 2
+) -> int | None:
     if written is None:
         return None
     runs = resolver.constant(written, top)
-    if not 1 < runs <= MOST_RUNS:
-        fix = f"simulate from 2 to {MOST_RUNS:,} runs"
+    if not least <= runs <= MOST_RUNS:
+        fix = f"simulate from {least} to {MOST_RUNS:,} runs"
         raise model_error("TA007", f"{runs} runs", written.span, fix)
     return runs
 

@@ -82,6 +82,13 @@ class QueryBuilder(StatementBuilder):
             raise model_error("TA001", "this is no expected value", span, fix)
         return syntax.Mean(which == "max", value, within, runs, span)
 
+    def simulation(self, meta: Meta, items: Sequence[Any]) -> syntax.Simulation:
+        _, *number, (within, runs) = items[: 2 + isinstance(items[1], str)]
+        span = self._span(meta)
+        if number:
+            runs = syntax.Number(int(number[0]), span)
+        return syntax.Simulation(tuple(items[2 + len(number) :]), within, runs, span)
+
     def where(self, meta: Meta, items: Sequence[Any]) -> Tree[Any]:
         return Tree("where", list(items))
 

@@ -136,7 +136,13 @@ class Resolver:
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)
-            case syntax.Assuming() | syntax.Chance() | syntax.Mean() | syntax.Extremes():
+            case (
+                syntax.Assuming()
+                | syntax.Chance()
+                | syntax.Mean()
+                | syntax.Simulation()
+                | syntax.Extremes()
+            ):
                 raise model_error("TA020", "this can only stand outermost", written.span)
             case _:
                 assert_never(written)

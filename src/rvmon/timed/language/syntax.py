@@ -159,6 +159,16 @@ class Mean:
 
 
 @dataclass(frozen=True, slots=True)
+class Simulation:
+    """`simulate [<=T; n] {e, …}`."""
+
+    terms: tuple[Expression, ...]
+    within: Expression
+    runs: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Extremes:
     """`sup{where}: e, …`, `inf` or `bounds`; `ends` says which: the largest value, the least."""
 
@@ -184,6 +194,7 @@ Expression = (
     | Assuming
     | Chance
     | Mean
+    | Simulation
     | Extremes
 )
 

@@ -186,6 +186,15 @@ class Term:
 
 
 @dataclass(frozen=True, slots=True)
+class Simulation:
+    """Random runs as they go on: the values of some terms, up to a horizon."""
+
+    terms: tuple[Term, ...]
+    horizon: int
+    runs: int
+
+
+@dataclass(frozen=True, slots=True)
 class Extremes:
     """The largest, or least, values of some terms over all reachable states.
 
@@ -199,7 +208,7 @@ class Extremes:
     terms: tuple[Term, ...]
 
 
-QueryFormula = Expression | LeadsToFormula | Chance | Mean | Extremes
+QueryFormula = Expression | LeadsToFormula | Chance | Mean | Simulation | Extremes
 
 
 @dataclass(frozen=True, slots=True)

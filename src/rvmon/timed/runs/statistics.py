@@ -10,8 +10,9 @@ Probabilistic Model Checking, 2006 (the indifference region).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from math import fsum, log, log1p, sqrt
 from random import Random
 from statistics import NormalDist
@@ -20,11 +21,11 @@ from typing import TypeVar
 from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.guards import is_plain, normal_form
-from rvmon.timed.model.network import Chance, Mean, Network, Query
+from rvmon.timed.model.network import Chance, Mean, Network, Query, Simulation
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.simulate import GRID, CutShortError, stretches, trial_of
-from rvmon.timed.runs.space import Space, check_start
+from rvmon.timed.runs.space import Space, State, check_start
 
 RUNS = 1_000
 """Runs of an estimate that does not say how many."""
@@ -68,6 +69,74 @@ class Sampled:
     margin: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """One random run: instants in units of time, and at each the values of all terms."""
+
+    times: tuple[Fraction, ...]
+    values: tuple[tuple[Fraction, ...], ...]
+
+
+def trajectories(
+    network: Network, query: Query, *, seed: int = 1, watch: Callable[[int], bool] | None = None
+) -> list[Trajectory]:
+    """Answer `simulate`: the values at the start and the end of each stretch between two moves.
+
+    Args:
+        network: what to simulate.
+        query: `simulate [<=T; n] {e, …}`.
+        seed: of all choices.
+        watch: asked now and then, with the number of runs, whether to go on.
+
+    Raises:
+        ModelError: the query asks for something else, or the network cannot start.
+    """
+    random, runs = _random(network, query, seed), _Runs(watch)
+    formula = query.formula
+    if not isinstance(formula, Simulation):
+        raise model_error("TA020", "this asks for no runs", query.span)
+    space = Space(network)
+    read = [None if term.clock is not None else evaluator(term.value) for term in formula.terms]
+
+    def values(state: State, clocks: Sequence[int]) -> tuple[Fraction, ...]:
+        return tuple(
+            Fraction(clocks[(term.clock or 0) + 1], GRID)
+            if value is None
+            else Fraction(value(state.locations, state.values))
+            for term, value in zip(formula.terms, read, strict=True)
+        )
+
+    def one() -> Trajectory:
+        now, points = 0, dict[tuple[int, tuple[Fraction, ...]], None]()
+        horizon, wait = formula.horizon * GRID, MEAN_WAIT * GRID
+        for state, clocks, rates, stay in stretches(space, horizon, random, wait, runs.goes_on):
+            points[now, values(state, clocks)] = None
+            now += stay
+            later = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
+            points[now, values(state, later)] = None
+        return Trajectory(
+            tuple(Fraction(t, GRID) for t, _ in points), tuple(row for _, row in points)
+        )
+
+    return list(runs.drawn(one, formula.runs))
+
+
+def _random(network: Network, query: Query, seed: int) -> Random:
+    """The source of all choices.
+
+    Raises:
+        ModelError: the network cannot start, or its odds are not known.
+    """
+    check_start(network)
+    if network.has_split_edges:
+        fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
+        message = (
+            "the odds are not known where clocks under `or`, or their differences, split edges"
+        )
+        raise model_error("TA020", message, query.span, fix)
+    return Random(seed)  # noqa: S311 - repeatable, not secret
+
+
 def sample(
     network: Network, query: Query, *, seed: int = 1, watch: Callable[[int], bool] | None = None
 ) -> Sampled:
@@ -82,14 +151,7 @@ def sample(
     Raises:
         ModelError: the query cannot be judged on one run, or the network cannot start.
     """
-    check_start(network)
-    if network.has_split_edges:
-        fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
-        message = (
-            "the odds are not known where clocks under `or`, or their differences, split edges"
-        )
-        raise model_error("TA020", message, query.span, fix)
-    random = Random(seed)  # noqa: S311 - repeatable, not secret
+    random = _random(network, query, seed)
     runs = _Runs(watch)
     match query.formula:
         case Chance() as chance:

@@ -31,6 +31,7 @@ from rvmon.timed.model.network import (
     Network,
     Query,
     QueryFormula,
+    Simulation,
 )
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
@@ -94,7 +95,7 @@ def compares_in(formula: QueryFormula) -> Iterator[ClockCompare]:
         case LeadsToFormula(left, right):
             yield from compares_of(left)
             yield from compares_of(right)
-        case Chance() | Mean() | Extremes():
+        case Chance() | Mean() | Simulation() | Extremes():
             pass
         case _:
             yield from compares_of(formula)
@@ -141,7 +142,7 @@ def _search(question: _Question, query: Query) -> _Found:
             check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
         case LeadsToFormula():
             pass
-        case Chance() | Mean():
+        case Chance() | Mean() | Simulation():
             fix = "simulate it: `rvmon verify` does, as does `sample`"
             raise model_error("TA020", "statistics are no decision", query.span, fix)
         case Extremes():

@@ -51,7 +51,7 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
     ("formula", "message"),
     [
         ("Pr[<=10](<> T.A) >= Pr[<=9](<> T.A)", "statistical query"),
-        ("simulate [<=10] { T.A }", "statistical query"),
+        ("simulate [#<=10] { T.A }", "statistical query"),
         ("control: A<> T.A", "games"),
         ("E<> T.A under s", "games"),
         ("A<> T.A U T.A", "takes brackets"),

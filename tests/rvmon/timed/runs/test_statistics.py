@@ -9,7 +9,7 @@ from rvmon.errors import ModelError
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.statistics import MARGIN, sample
+from rvmon.timed.runs.statistics import MARGIN, sample, trajectories
 from rvmon.timed.search.extremes import extremes
 from rvmon.timed.search.verify import verify
 
@@ -132,6 +132,49 @@ def test_the_command_says_figures(tmp_path, capsys):
     (one,) = json.loads(capsys.readouterr().out)["simulated"]
     assert one["holds"] is False
     assert one["error"] == 0.05
+
+
+TICKING = """
+clock x, cost
+int[0, 9] n
+automaton A {
+  location a invariant x <= 2 and cost' == 3
+  start a
+  edge a -> a when x >= 2 do x = 0, n = n + 1
+}
+query: simulate [<=5; 2] {n, x, cost, n > 1}
+"""
+
+
+def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
+    """At each move the values before and behind it; clocks run at their rates up to the horizon."""
+    network = loads_network(TICKING)
+    found = trajectories(network, network.queries[0])
+    assert len(found) == 2
+    times = (0, 2, 2, 4, 4, 5)
+    rows = (0, 0, 0, 0), (0, 2, 6, 0), (1, 0, 6, 0), (1, 2, 12, 0), (2, 0, 12, 1), (2, 1, 15, 1)
+    assert [(one.times, one.values) for one in found] == [(times, rows)] * 2
+    model = tmp_path / "ticking.ta"
+    model.write_text(TICKING, "utf-8")
+    assert main(["verify", str(model)]) == 0
+    told = capsys.readouterr().out
+    assert "simulated: simulate [<=5; 2]" in told
+    assert "        4  x = 2, cost = 12\n" in told
+    assert main(["verify", str(model), "--format", "json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert one["runs"][1]["cost"] == [0, 6, 6, 12, 12, 15]
+
+
+@pytest.mark.parametrize("text", ["simulate 3 [<=2] {n}", "simulate [<=2; 3] {n}"])
+def test_both_ways_to_write_how_many_runs(text):
+    """Before the brackets, as UPPAAL had it once, and in them; one if nothing is said."""
+    network = loads_network(COIN)
+    assert len(trajectories(network, query_on(network, text))) == 3
+    assert len(trajectories(network, query_on(network, "simulate[<=2]{n}"))) == 1
+    with pytest.raises(ModelError, match="no decision"):
+        verify(network, text)
+    with pytest.raises(ModelError, match="asks for no runs"):
+        trajectories(network, query_on(network, "E<> n > 0"))
 
 
 STOPPED = """
