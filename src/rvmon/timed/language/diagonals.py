@@ -168,6 +168,21 @@ class Diagonals:
         return replace(edge, updates=(*edge.updates, note))
 
 
+def difference(
+    diagonals: Diagonals | None, first: int, second: int, op: BinaryOp, number: int, span: Span
+) -> Expression:
+    """`first − second` compared with a number.
+
+    Raises:
+        ModelError: no edges keep it up.
+    """
+    if diagonals is None:
+        fix = "ask for it with --query, for which edges are made to keep it up"
+        message = "two clocks are compared where edges cannot keep their difference up"
+        raise model_error("TA008", message, span, fix)
+    return diagonals.compare(first, second, op, number, span)
+
+
 def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, syntax.Expression]]:
     """What an expression adds up, each part with its sign."""
     match written:

@@ -10,7 +10,7 @@ from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.texts import did_you_mean
 from rvmon.timed.language import syntax
-from rvmon.timed.language.diagonals import Diagonals, terms_of
+from rvmon.timed.language.diagonals import Diagonals, difference, terms_of
 from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
 from rvmon.timed.language.layout import MAX_VALUES, Calls, values_of
 from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
@@ -331,11 +331,7 @@ class Resolver:
             case [(-1, clock)]:
                 return compare_clock(clock, MIRRORED[op], Constant(-number), span)
             case [(-1, second), (1, first)] if first != second:
-                if self.diagonals is None:
-                    fix = "ask for it with --query, for which edges are made to keep it up"
-                    message = "two clocks are compared where edges cannot keep their difference up"
-                    raise model_error("TA008", message, span, fix)
-                return self.diagonals.compare(first, second, op, number, span)
+                return difference(self.diagonals, first, second, op, number, span)
             case _:
                 fix = "compare one clock, or the difference of two, with a number"
                 raise model_error("TA008", "a sum of clocks is compared", span, fix)
