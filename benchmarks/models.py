@@ -32,8 +32,8 @@ from handover.model import handover_network
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import load_network
-from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query
-from rvmon.timed.runs.statistics import sample
+from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.timed.runs.statistics import sample, trajectories
 from rvmon.timed.search.extremes import extremes
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.outcome import Budget
@@ -139,6 +139,9 @@ def _end(network: Network, query: Query, budget: Budget) -> str:
         match query.formula:
             case Chance() | Mean():
                 sample(network, query, watch=Meter(budget, None).goes_on)
+                return "simulated"
+            case Simulation():
+                trajectories(network, query, watch=Meter(budget, None).goes_on)
                 return "simulated"
             case Extremes():
                 exact = all(one.exact for one in extremes(network, query, budget=budget))

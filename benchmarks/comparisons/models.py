@@ -24,7 +24,7 @@ from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import UnaryOperation
 from rvmon.timed.model.guards import compares_of, is_linear
-from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
+from rvmon.timed.model.network import Asked, LeadsToFormula, Network
 from rvmon.timed.model.operators import UnaryOp
 from rvmon.timed.runs.concrete import replay
 from rvmon.timed.runs.run import Ending
@@ -97,7 +97,7 @@ def judge_logics(seed: int, numbers: range) -> Found:
 def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
     query = query_on(network, text)
     formula, outcome = query.formula, verify(network, query)
-    if isinstance(formula, LeadsToFormula | Chance | Mean) or not is_linear(formula):
+    if isinstance(formula, LeadsToFormula | Asked) or not is_linear(formula):
         counts[f"CTL: {str(outcome.holds).lower()}"] += 1
         return outcome.holds == holds_at_start(network, query, 300)
     denied = UnaryOperation(UnaryOp.NOT, formula)

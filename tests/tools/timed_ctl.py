@@ -28,7 +28,7 @@ from rvmon.timed.model.guards import (
     speaks_of_deadlock,
     with_deadlock,
 )
-from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.network import Asked, LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from tests.tools.timed_regions import Region, RegionGraph, Steps, satisfies
 
@@ -44,7 +44,7 @@ def holds_at_start(
         TooManyRegionsError: there are more regions than the limit.
     """
     formula = query.formula
-    assert not isinstance(formula, Chance | Mean | Extremes)
+    assert not isinstance(formula, Asked)
     if isinstance(formula, LeadsToFormula):
         answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
         implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)

@@ -16,7 +16,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
 )
 from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network
+from rvmon.timed.model.network import Asked, LeadsToFormula, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.outcome import Policy
@@ -69,5 +69,5 @@ def _watched(network: Network) -> Network:
 
 def _formula(network: Network, text: str) -> Expression:
     formula = query_on(network, text).formula
-    assert not isinstance(formula, LeadsToFormula | Chance | Mean | Extremes)
+    assert not isinstance(formula, LeadsToFormula | Asked)
     return formula

@@ -208,7 +208,10 @@ class Extremes:
     terms: tuple[Term, ...]
 
 
-QueryFormula = Expression | LeadsToFormula | Chance | Mean | Simulation | Extremes
+Asked = Chance | Mean | Simulation | Extremes
+"""What is answered by figures or values, and not by yes or no."""
+
+QueryFormula = Expression | LeadsToFormula | Asked
 
 
 @dataclass(frozen=True, slots=True)
