@@ -59,7 +59,7 @@ def random_formula(rng, time, depth):
     return Binary(op, one, random_formula(rng, time, rng.randrange(depth)), window)
 
 
-def random_case(rng, time):
+def random_case(rng, time, rows=(1, 25), events=0.3, unknown=0.0):
     """A specification, the stamps of a trace and its columns."""
     bounds = [BoundAtom(bound) for bound in Bound]
     trigger = rng.choice((*bounds, random_formula(rng, time, 0)))
@@ -74,9 +74,12 @@ def random_case(rng, time):
         requirements={"R": Requirement("R", mode, trigger, required)},
     )
     gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
-    times = np.cumsum(rng.choices(gaps, k=rng.randint(1, 25)))
-    columns = {name: [float(rng.randint(-4, 4)) for _ in times] for name in "xy"}
-    columns["e"] = [rng.random() < 0.3 for _ in times]
+    times = np.cumsum(rng.choices(gaps, k=rng.randint(*rows)))
+    columns = {
+        name: [np.nan if rng.random() < unknown else float(rng.randint(-4, 4)) for _ in times]
+        for name in "xy"
+    }
+    columns["e"] = [rng.random() < events for _ in times]
     return spec, times.tolist(), columns
 
 
@@ -108,6 +111,20 @@ def test_columns_are_measured_as_their_samples_are(time):
         found = Spec(spec).robustness(arrays_of(times, columns), until=until)
         expected = Spec(spec).robustness(rows_of(times, columns), until=until)
         case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
+        assert figures_of(found) == figures_of(expected), case
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
+@pytest.mark.parametrize("unknown", [0.0, 0.01])
+def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time, unknown):
+    """What is laid out by column gives the figures that it gives row by row."""
+    for number in range(PAIRS // 4):
+        rng = random.Random(f"long {time} {number}")
+        spec, times, columns = random_case(rng, time, (70, 300), 0.01, unknown)
+        found = Spec(spec).robustness(arrays_of(times, columns))
+        expected = Spec(spec).robustness(rows_of(times, columns))
+        case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}"
         assert figures_of(found) == figures_of(expected), case
 
 

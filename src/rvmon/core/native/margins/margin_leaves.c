@@ -125,6 +125,19 @@ static margin_range of_occurrences(const run *r, const atom_plan *a, double fact
     return found;
 }
 
+static double real_apart(const atom_plan *a, const measure_plan *m, double value)
+{
+    const double distance = (value == a->constant) ? 0.0 : value - a->constant; /* of infinite ones, too */
+    return signed_by(a->compare, distance * m->factor);
+}
+
+/* What a leaf is that shows how a number compares with a constant. */
+double measured_real(const atom_plan *a, const measure_plan *m, double value)
+{
+    const double found = real_apart(a, m, value);
+    return (m->turned != 0) ? 0.0 - found : found;
+}
+
 /* The distance of the comparison that a leaf shows. */
 static margin_range distance_of(const run *r, const measure_plan *m)
 {
@@ -133,8 +146,7 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     if (a->op == ATOM_REAL) {
         const rv_number *x = &r->value[a->input];
         if (x->kind == RV_REAL) {
-            const double distance = (x->as.real == a->constant) ? 0.0 : x->as.real - a->constant;
-            return exactly(signed_by(a->compare, distance * m->factor));
+            return exactly(real_apart(a, m, x->as.real));
         }
     } else if (a->op == ATOM_COMPARE) {
         found = of_programs(r, a, m->factor, NULL);

@@ -146,6 +146,7 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s);
 
 /* ---- margin_leaves.c */
 margin_range measured_leaf(const run *r, const measure_plan *m);
+double measured_real(const atom_plan *a, const measure_plan *m, double value);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
 /* ---- margins.c, of a run */

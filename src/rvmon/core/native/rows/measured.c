@@ -179,6 +179,19 @@ static void hold_row(const batch *s, int64_t row)
     }
 }
 
+/* The column of numbers that a comparison with a constant reads; NULL: there is none. */
+static const double *reals_of(const batch *s, const atom_plan *a)
+{
+    int32_t i;
+    for (i = 0; (a->op == ATOM_REAL) && (i < s->columns); i++) {
+        const column_watch *w = &s->watches[i];
+        if (w->is_idle && (w->column->kind == RV_COLUMN_REAL) && (w->readers[0].local == a->input)) {
+            return w->column->values;
+        }
+    }
+    return NULL;
+}
+
 /* What a leaf is in some rows, each in its place of a row of all of them. */
 static bool lay_leaf(const batch *s, const run *r, const measure_plan *m, int64_t row, int64_t end,
                      double *low, double *high, int32_t each)
@@ -187,8 +200,14 @@ static bool lay_leaf(const batch *s, const run *r, const measure_plan *m, int64_
     const bool varies = (a != NULL) && (a->op != ATOM_PAYLOAD);
     margin_range now = {0.0, 0.0};
     bool differs = false;
+    const double *reals = varies ? reals_of(s, a) : NULL;
     int64_t i;
-    for (i = row; i < end; i++) {
+    for (i = row; (reals != NULL) && (i < end); i++) {
+        const double value = measured_real(a, m, reals[i]);
+        low[(i - row) * each] = value;
+        high[(i - row) * each] = value;
+    }
+    for (i = (reals != NULL) ? end : row; i < end; i++) {
         if (varies) {
             hold_row(s, i);
         }
