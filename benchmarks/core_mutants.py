@@ -27,6 +27,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from tests.tools.differential import cases_of, disagreements
+from tests.tools.drive import Found, Lost, told
 from tests.tools.forms import Compiler, Maker
 
 from rvmon.cdv.mutation.python_mutants import Mutant
@@ -49,8 +50,8 @@ _NO, _UNKNOWN, _YES = 0, 1, 2
 _NO_TIME = -(1 << 63)
 _NOTHING = (0, 0)
 
-PROFILE = Profile(crowded=5, many=8, wide=20)
-TRACES = TraceProfile(sparse=12, long=8)
+PROFILE = Profile(crowded=5, many=8, wide=20, amounts=20)
+TRACES = TraceProfile(sparse=12, long=8, outages=25)
 TRACES_EACH = 4
 
 
@@ -71,11 +72,11 @@ def written(cases: Iterable[Case]) -> bytes:
     compiler = Compiler()
     make = Maker("c", compiler)
     last: CompiledSpec | None = None
-    for case in cases:
+    for number, case in enumerate(cases):
         if make(case) is None or disagreements(case, make):
             continue
         compiled = compiler(case.spec)
-        planned = planned_core(compiled)
+        planned = planned_core(compiled, measured=number // TRACES_EACH % 3 == 0)
         words = [*_case(planned, case)]
         plan = planned.packed.data if compiled is not last else b""
         last = compiled
@@ -89,13 +90,18 @@ def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
         for name, number in planned.numbers.items()
         if case.names is not None and name not in case.names
     ]
-    yield from (len(absent), *absent, _NO_TIME if case.end is None else case.end, len(case.actions))
-    for action in case.actions:
-        if isinstance(action, Sample):
-            updates = [*_updates(planned, action.values)]
-            yield from (0, action.t, len(updates), *(word for one in updates for word in one))
-        else:
-            yield from (1, action)
+    actions = [*told(case)]
+    yield from (len(absent), *absent, _NO_TIME if case.end is None else case.end, len(actions))
+    for action in actions:
+        match action:
+            case Sample(t, values):
+                updates = [*_updates(planned, values)]
+                yield from (0, t, len(updates), *(word for one in updates for word in one))
+            case Lost(names, t) | Found(names, t):
+                lost = [planned.numbers[name] for name in sorted(names)]
+                yield from (2 + isinstance(action, Found), t, len(lost), *lost)
+            case _:
+                yield from (1, action)
 
 
 def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequence[int]]:

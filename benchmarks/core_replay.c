@@ -3,16 +3,13 @@
  *
  * A case is judged step by step, asked now and then what is open and due; the same after a reset,
  * without asking; by rows, where it can be; and in blocks of memory, most of them too small. The line
- * is a sum of all records in the order in which they came, one of what was open, then letters for
- * what should never be: a, o, m: asked or reset, by rows, in a block it says something else; d: time
- * alone decided what was not due; f, t: a sample was taken after the end, or twice; g: it was short of
- * memory, and green; r, s: rows, or a step, were refused. */
-#include "core.h"
-#include "plan/plan.h"
+ * is a sum of all records in the order in which they came, one of what was open, noted and measured,
+ * then letters for what should never be: a, o, m: asked or reset, by rows, in a block it says something
+ * else; d: time alone decided what was not due; f, t: a sample was taken after the end, or twice; g: it
+ * was short of memory, and green; r, s: rows, or a step, were refused. */
+#include "../fuzz/told.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "plan/plan.h"
 
 #define UPDATES_MOST 64
 #define FIELDS_MOST 8
@@ -28,7 +25,8 @@ typedef struct {
     rv_number fields[UPDATES_MOST][FIELDS_MOST];
 } sample;
 
-enum { A_SAMPLE, AN_ADVANCE };
+/* Of a loss, and of what is found again, the updates have no more than names. */
+enum { A_SAMPLE, AN_ADVANCE, A_LOSS, A_FINDING };
 
 typedef struct {
     int64_t kind;
@@ -63,7 +61,7 @@ static void blame(told *x, char letter)
 
 static void add(told *x, int64_t what)
 {
-    x->sum = (x->sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
+    x->sum = mixed(x->sum, what);
 }
 
 static rv_number number_at(const int64_t *words)
@@ -114,6 +112,7 @@ static const int64_t *read_sample(const int64_t *at, sample *s)
 static const int64_t *read_story(const int64_t *at, story *x)
 {
     int64_t i;
+    int32_t k;
     const int64_t size = *at++;
     if (size > 0) { /* else the plan of the case before */
         x->plan = at;
@@ -135,6 +134,10 @@ static const int64_t *read_story(const int64_t *at, story *x)
             at = read_sample(at, &a->s);
         } else {
             a->s.t = *at++;
+            a->s.count = (a->kind == AN_ADVANCE) ? 0 : (int32_t)*at++;
+            for (k = 0; k < a->s.count; k++) {
+                a->s.updates[k].name = (int32_t)*at++;
+            }
         }
     }
     return at;
@@ -150,7 +153,23 @@ static void note_number(told *x, const rv_number *n)
     add(x, bits);
 }
 
-/* Take the records of a call. `due`: before, time alone decides nothing. */
+/* Tell a monitor of an action. */
+static int tell(rv_monitor *m, const action *a)
+{
+    int32_t names[UPDATES_MOST];
+    int32_t i;
+    for (i = 0; i < a->s.count; i++) {
+        names[i] = a->s.updates[i].name;
+    }
+    switch (a->kind) {
+    case A_SAMPLE: return rv_step(m, a->s.t, a->s.updates, a->s.count);
+    case AN_ADVANCE: return rv_advance(m, a->s.t);
+    case A_LOSS: return rv_lose(m, a->s.t, names, a->s.count);
+    default: return rv_found(m, a->s.t, names, a->s.count);
+    }
+}
+
+/* Take the records of a call, with notes and figures. `due`: before, time alone decides nothing. */
 static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
 {
     const rv_record *records;
@@ -168,10 +187,12 @@ static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
         for (k = 0; (captured != NULL) && (k < most); k++) {
             note_number(x, &captured[k]);
         }
+        x->open = mixed(x->open, (int64_t)read_note(m, one));
         if ((t < due) && (one->decision == RV_BY_PREFIX) && (one->decided < t)) {
             blame(x, 'd');
         }
     }
+    x->open = noted_margins(m, x->open);
     rv_forget_records(m);
 }
 
@@ -219,15 +240,11 @@ static told by_steps(rv_monitor *m, const story *s, bool asks)
     int64_t i;
     for (i = 0; i < s->count; i++) {
         const action *a = &s->actions[i];
-        if (a->kind == A_SAMPLE) {
-            demand(&x, m, rv_step(m, a->s.t, a->s.updates, a->s.count));
-            if (rv_step(m, a->s.t, a->s.updates, a->s.count) == RV_OK) {
-                blame(&x, 't');
-            }
-        } else {
-            demand(&x, m, rv_advance(m, a->s.t));
+        demand(&x, m, tell(m, a));
+        if ((a->kind == A_SAMPLE) && (tell(m, a) == RV_OK)) {
+            blame(&x, 't');
         }
-        note_records(&x, m, due, a->s.t);
+        note_records(&x, m, (a->kind > AN_ADVANCE) ? RV_NO_TIME : due, a->s.t);
         due = (asks && (i % 3 != 0)) ? rv_next_due(m) : RV_NO_TIME;
         if (asks && (i % 2 == 0)) {
             int32_t k;
@@ -338,11 +355,7 @@ static told by_rows(rv_monitor *m, const story *s)
             continue;
         }
         judge_table(&x, m, &made);
-        if (a->kind == A_SAMPLE) {
-            demand(&x, m, rv_step(m, a->s.t, a->s.updates, a->s.count));
-        } else {
-            demand(&x, m, rv_advance(m, a->s.t));
-        }
+        demand(&x, m, tell(m, a));
     }
     judge_table(&x, m, &made);
     note_end(&x, m, s);
@@ -381,6 +394,7 @@ static void judge(const story *s)
     if (m == NULL) {
         exit(3); /* the plan is of another version */
     }
+    (void)rv_keep_notes(m, NULL, NULL);
     mark_absent(m, s);
     whole = by_steps(m, s, true);
     (void)rv_reset(m);

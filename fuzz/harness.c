@@ -6,7 +6,8 @@
  * another monitor that goes on from a snapshot of it now and then; then with memory that ends somewhere,
  * and must not be green. With -DSNAPSHOTS the first byte names a plan, too, and the others are what
  * stands behind the head of a snapshot, which is put right: what is accepted judges some samples. */
-#include "core.h"
+#include "told.h"
+
 #include "plan/plan.h"
 
 #include <stdio.h>
@@ -90,39 +91,6 @@ static int64_t step_of(script *s)
     return (code < 240) ? 8 + (int64_t)byte_of(s) : (int64_t)1 << (code % 13);
 }
 
-/* FNV of all that is told. */
-static uint64_t mixed(uint64_t sum, int64_t what)
-{
-    return (sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
-}
-
-/* Read all that is noted with a record. */
-static uint64_t read_note(const rv_monitor *m, const rv_record *record)
-{
-    rv_note note;
-    uint64_t sum = 0;
-    if (rv_note_of(m, record, &note)) {
-        const rv_piece *piece = note.first;
-        int64_t i;
-        for (i = 0; i < note.count; i++) {
-            sum = mixed(sum, note.words[i]);
-        }
-        for (i = 0; i < note.state_count; i++) {
-            sum = mixed(sum, note.state[i]);
-        }
-        while (piece != NULL) {
-            int32_t count;
-            const int64_t *words = rv_piece_words(piece, &count);
-            count = (piece == note.last) ? note.last_count : count;
-            for (i = 0; i < count; i++) {
-                sum = mixed(sum, words[i]);
-            }
-            piece = (piece == note.last) ? NULL : rv_piece_next(piece);
-        }
-    }
-    return sum;
-}
-
 /* Read the notes of open attempts; what they say has no say in anything. */
 static bool read_open(void *user, const rv_record *record, const rv_number *captured)
 {
@@ -163,38 +131,6 @@ static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
     }
     rv_forget_records(m);
     return sum;
-}
-
-static int64_t bits_of(double x)
-{
-    int64_t bits;
-    (void)memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-static bool note_margin(void *user, const rv_margin *one)
-{
-    uint64_t *sum = user;
-    if (!(one->low <= one->high)) {
-        (void)fprintf(stderr, "a margin whose least is above its greatest\n");
-        abort();
-    }
-    *sum = mixed(mixed(mixed(*sum, one->t), one->number), one->requirement);
-    *sum = mixed(mixed(mixed(*sum, bits_of(one->low)), bits_of(one->high)), bits_of(one->kept));
-    return true;
-}
-
-static uint64_t noted_margins(rv_monitor *m, uint64_t sum)
-{
-    const rv_margin *margins;
-    const int64_t count = rv_margins(m, &margins);
-    uint64_t found = sum;
-    int64_t i;
-    for (i = 0; i < count; i++) {
-        (void)note_margin(&found, &margins[i]);
-    }
-    rv_forget_margins(m);
-    return found;
 }
 
 static int one_step(rv_monitor *m, script *s, int64_t t, bool in_rows)
