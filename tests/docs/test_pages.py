@@ -96,8 +96,7 @@ def test_each_way_to_lose_something_has_a_test():
     there = {name for text in files for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)}
     text = (ROOT / "docs" / "reference" / "what-is-lost.md").read_text("utf-8")
     rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
-    shown = {fault: re.findall(r"`(\w+)`", last) for fault, _, last in rows if fault != "fault"}
+    shown = {fault: last.split("; ") for fault, _, last in rows if fault != "fault"}
     assert len(shown) > 30
     for fault, tests in shown.items():
-        assert tests, fault
-        assert there.issuperset(tests), fault
+        assert there.issuperset(f"test_{one.replace(' ', '_')}" for one in tests), fault
