@@ -119,6 +119,13 @@ class Automaton:
     initial: int
     span: Span | None = field(default=None, compare=False)
 
+    def leaving(self) -> list[list[int]]:
+        """For each location the numbers of the edges that leave it."""
+        numbers: list[list[int]] = [[] for _ in self.locations]
+        for number, edge in enumerate(self.edges):
+            numbers[edge.source].append(number)
+        return numbers
+
 
 @dataclass(frozen=True, slots=True)
 class Priorities:

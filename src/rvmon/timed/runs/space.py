@@ -124,8 +124,8 @@ class Space:
             for index, automaton in enumerate(network.automata)
         ]
         self._leaving = [
-            [[e for e in edges if e.edge.source == place] for place in range(len(a.locations))]
-            for a, edges in zip(network.automata, self._edges, strict=True)
+            [[edges[number] for number in leaving] for leaving in automaton.leaving()]
+            for automaton, edges in zip(network.automata, self._edges, strict=True)
         ]
         self._invariants = [
             [(_data(p.invariant), atoms_of(p.invariant.clocks, p.span)) for p in a.locations]

@@ -128,12 +128,12 @@ class Plan:
         for index, automaton in enumerate(self._network.automata):
             automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
             bounds = location_bounds(self._network, automaton, self._asked.get(index))
-            for number, place in enumerate(automaton.locations):
+            pairs = zip(automaton.locations, automaton.leaving(), strict=True)
+            for number, (place, leaving) in enumerate(pairs):
                 first, limit = len(self.edges), len(self._limits) // 3
-                for k, edge in enumerate(automaton.edges):
-                    if edge.source == number:
-                        edges += self._edge(index, edge)
-                        self.edges.append((index, k))
+                for k in leaving:
+                    edges += self._edge(index, automaton.edges[k])
+                    self.edges.append((index, k))
                 self._limits += _limit_rows(bounds[number])
                 data = self._data(place.invariant.data)
                 locations += [_KINDS[place.kind], data, *self._compares(place.invariant.clocks)]
