@@ -170,13 +170,15 @@ def _following(
     for place in chain:
         watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(place.latest))])
     numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
+    named: dict[tuple[str, ...], Expression] = {(): _named(watcher, labels, ())}
     for number, place in enumerate(chain):
-        watcher.add_edge(number, number, _named(watcher, labels, ()))
+        watcher.add_edge(number, number, named[()])
         since = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, place.earliest)))
         for names, left in _firsts(place.left, most) if place.left else ():
             target = numbers.get((place.t, left)) if left else place.next
             if target is not None and target < len(chain):
-                watcher.add_edge(number, target, _named(watcher, labels, names), [since])
+                when = named.setdefault(names, _named(watcher, labels, names))
+                watcher.add_edge(number, target, when, [since])
     return watcher
 
 

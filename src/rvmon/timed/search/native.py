@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -145,13 +146,19 @@ class _Paths:
     def __init__(self, network: Network, plan: Plan, sought: Sought) -> None:
         self._network = network
         self._plan = plan
-        self._space = Space(network)
-        start = self._space.initial()
-        assert start is not None, "the network can start"
-        self._start = start
         self.dim = 1 + len(network.clocks) + sought.has_timer
         late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)
         self._timers = [self.dim - 1] if late else []
+
+    @cached_property
+    def _space(self) -> Space:
+        return Space(self._network)
+
+    @property
+    def _start(self) -> State:
+        start = self._space.initial()
+        assert start is not None, "the network can start"
+        return start
 
     def run(self, path: bytes, parts: bytes, end: _End, loop: int) -> Run:
         """The run along a path, to the first of some parts that it can reach."""

@@ -76,6 +76,8 @@ class Programs:
         self.table: list[int] = []
         self._slots = slots
         self._starts: dict[int, int] = {}
+        self._added: dict[int, tuple[object, int]] = {}
+        """Where what was added begins, by its identity, for as long as it is held."""
         self._ends: list[int] = []
 
     def add(self, expression: Expression) -> int:
@@ -84,8 +86,11 @@ class Programs:
         Raises:
             ModelError: it is nested too deeply.
         """
-        self._add_called([expression])
-        return self._finished(len(self.code), self._emit(expression))
+        if id(expression) not in self._added:
+            self._add_called([expression])
+            start = self._finished(len(self.code), self._emit(expression))
+            self._added[id(expression)] = expression, start
+        return self._added[id(expression)][1]
 
     def add_updates(self, updates: Sequence[Statement]) -> int:
         """Add a program that makes all updates of an edge; where it begins.
@@ -93,11 +98,13 @@ class Programs:
         Raises:
             ModelError: an expression is nested too deeply, or calls are.
         """
-        self._add_called(e for s in statements_in(updates) for e in expressions_of(s))
-        start = len(self.code)
-        depth, _ = self._statements(updates)
-        self.code += [CONST, 0]
-        return self._finished(start, max(depth, 1))
+        if id(updates) not in self._added:
+            self._add_called(e for s in statements_in(updates) for e in expressions_of(s))
+            start = len(self.code)
+            depth, _ = self._statements(updates)
+            self.code += [CONST, 0]
+            self._added[id(updates)] = updates, self._finished(start, max(depth, 1))
+        return self._added[id(updates)][1]
 
     def add_index(self, slot: Slot) -> int:
         """Add a program that gives the number of a slot."""

@@ -60,6 +60,7 @@ class Watcher:
         self.clock = len(network.clocks)
         first = len(network.variables)
         self._slots = {name: Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
+        self._unnoted: tuple[Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
         self._locations: list[Location] = []
         self._edges: list[Edge] = []
 
@@ -87,12 +88,11 @@ class Watcher:
         """Add an edge that goes along with moves, or one that the watcher takes by itself."""
         if when == FALSE:
             return
-        updates: list[Statement] = [_set(slot, 0) for slot in self._slots.values() if watches]
-        updates += [Reset(clock, Constant(0)) for clock in resets]
+        set_now = tuple(Reset(clock, Constant(0)) for clock in resets)
+        unnoted = self._unnoted if watches else ()
+        updates = (*unnoted, *set_now) if set_now else unnoted
         guard = Guard(when, tuple(bounds))
-        self._edges.append(
-            Edge(source, target, guard, None, tuple(updates), 1.0, "", "", watches=watches)
-        )
+        self._edges.append(Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches))
 
     def is_in(self, location: int) -> Expression:
         """Whether it is in a location."""
