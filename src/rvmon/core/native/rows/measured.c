@@ -83,18 +83,33 @@ static bool is_looked_at(const run *r, int32_t place)
     return false;
 }
 
-/* Whether a node is a leaf that tells judges alone, and what they owe. */
-static bool tells_letters(const run *r, int32_t place)
+/* Formulas of more levels are looked at row by row. */
+#define LEVELS_MOST 4
+
+/* Whether a node, and all that is made of it, remembers nothing and tells nobody but judges what they
+ * owe; if `now`, none of them has attempts. */
+static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
 {
     const node_plan *n = &r->part->nodes[place];
     const link_plan *l = &PLAN(r)->links[n->links.first];
+    const list parents = n->parents[r->at.phase];
+    const bool joins = (n->op == NODE_NOT) || (n->op == NODE_AND) || (n->op == NODE_OR) || (n->op == NODE_SURE);
     int32_t i;
+    if ((level == LEVELS_MOST) || ((n->op != NODE_LEAF) && !joins) || (!now && is_looked_at(r, place))) {
+        return false;
+    }
     for (i = 0; i < n->links.count; i++) {
-        if (l[i].kind != LINK_LETTER) {
+        if ((l[i].kind != LINK_LETTER)
+            || (now && (has_attempts(&r->judges[l[i].judge]) || watches(r, l[i].judge)))) {
             return false;
         }
     }
-    return (n->op == NODE_LEAF) && (n->parents[r->at.phase].count == 0) && !is_looked_at(r, place);
+    for (i = 0; i < parents.count; i++) {
+        if (!is_unheard(r, LIST(PLAN(r), parents)[i], now, level + 1)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* The nodes that the comparisons of a signal are shown by, one after the other; -1 behind the last. */
@@ -135,7 +150,7 @@ bool is_plain_column(const batch *s, const column_watch *w)
     }
     for (place = next_shown(r, w->readers[0].local, &atom, &at); place >= 0;
          place = next_shown(r, w->readers[0].local, &atom, &at)) {
-        if (!tells_letters(r, place)) {
+        if (!is_unheard(r, place, false, 0)) {
             return false;
         }
     }
@@ -149,19 +164,14 @@ bool is_idle_now(const batch *s, const column_watch *w)
     int32_t atom = 0;
     int32_t at = 0;
     int32_t place;
-    int32_t i;
     if (!w->is_plain) {
         return false;
     }
     r = root_of(s, w, 0);
     for (place = next_shown(r, w->readers[0].local, &atom, &at); place >= 0;
          place = next_shown(r, w->readers[0].local, &atom, &at)) {
-        const node_plan *n = &r->part->nodes[place];
-        const link_plan *l = &PLAN(r)->links[n->links.first];
-        for (i = 0; i < n->links.count; i++) {
-            if (has_attempts(&r->judges[l[i].judge]) || watches(r, l[i].judge)) {
-                return false;
-            }
+        if (!is_unheard(r, place, true, 0)) {
+            return false;
         }
     }
     return true;
