@@ -254,18 +254,26 @@ def test_amounts_are_those_of_the_oracle(time):
     assert [found.counts[f"judged by {form}"] for form in makers] == [240, 240]
 
 
-@pytest.mark.parametrize("amount", ["duration(false, 2 ns) >= 1 ns", "count(false, 2 ns) >= 1"])
-def test_what_is_never_true_is_unknown_where_a_sample_may_have_been(amount):
-    """In an outage of sampled time every formula is unknown, constants too."""
-    spec = rvmon.loads(f"time sampled\nevent e\nrequirement R\n  upon e then {amount}\n").checked
+NEVER = {
+    "duration(false, 2 ns) >= 1 ns": "I",
+    "count(false, 2 ns) >= 1": "I",
+    "sum(if e.k > 1 and false then e.k else 0, 2 ns) > 0": "F",
+}
+
+
+@pytest.mark.parametrize(("amount", "verdict"), NEVER.items())
+def test_what_is_never_true_where_a_sample_may_have_been(amount, verdict):
+    """Every formula is unknown there, constants too; but it makes no number a member."""
+    text = f"time sampled\nevent e(k: int)\nrequirement R\n  upon e then {amount}\n"
+    spec = rvmon.loads(text).checked
     lost = Outage(frozenset(), 1, 1)
-    case = Case(spec, (Sample(2, {"e": True}),), None, outages=(lost,))
+    case = Case(spec, (Sample(2, {"e": {"k": 2}}),), None, outages=(lost,))
     assert disagreements(case, Maker("c")) == []
     monitor = rvmon.Spec(spec).monitor()
     monitor.lose_ns([], 1)
     monitor.found_ns([], 1)
-    monitor.step_ns(2, {"e": True})
-    assert monitor.finish().verdicts["R"] == "I"
+    monitor.step_ns(2, {"e": {"k": 2}})
+    assert monitor.finish().verdicts["R"] == verdict
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from rvmon.spec.checked.formula import (
     itself,
 )
 from rvmon.testing.law.numbers import compare_at, events_of, is_born, number
+from rvmon.testing.law.syntax import constant_value
 from rvmon.testing.law.word import Letter, Truth, conjunction, truth_of
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -111,9 +112,13 @@ class Past:
         return found[::-1]
 
     def at(self, formula: Amount, k: int) -> Iterator[tuple[int | float | None, bool]]:
-        """The numbers of the members at a position, and whether they are some."""
+        """The numbers of the members at a position, and whether they are some.
+
+        What is false whatever is read makes none with a number, though there may be a position.
+        """
         there = self.state(formula.operand, k)
-        if there in (Truth.FALSE, Truth.UNBORN):
+        never = formula.value is not None and constant_value(formula.operand) is Truth.FALSE
+        if never or there in (Truth.FALSE, Truth.UNBORN):
             return
         if formula.value is None and formula.counted is not None:
             counted = self.state(formula.counted, k)
