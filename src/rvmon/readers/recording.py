@@ -256,12 +256,11 @@ class FileRecording:
     def _cut_off(self) -> list[Health]:
         """That the last cell may be half of one: in CSV the end of a line alone says that it ends.
 
-        Of a file as it is; what is packed, or piped, says itself where it ends.
+        Of a file as it is, or as it lies at an address; nobody looks into what is packed or piped.
         """
-        is_file = self._format == "csv" and can_be_read_again(self.path)
-        if not is_file or not self.path.endswith(".csv") or is_address(self.path):
+        if endings_of(self.path) != (".csv", "") or not can_be_read_again(self.path):
             return []
-        with open(self.path, "rb") as file:
+        with open(local_path(self.path), "rb") as file:
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - 2))
             if file.read().rstrip(b"\0")[-1:] in (b"\n", b"\r", b""):  # UTF-16 has a zero

@@ -85,7 +85,7 @@ def test_a_last_line_without_its_end_is_told(tmp_path, end, told):
     assert samples[-1] == (10**9, {"n": 12})
     found = [(one.kind, one.name) for one in recording.health()]
     assert found == ([(HealthKind.CUT, "the last line")] if told else [])
-    wide, same = read(tmp_path, "b.csv", f"t,n\n0,1\n1,12{end}".encode("utf-16"))
+    wide, same = read(tmp_path, "b.CSV", f"t,n\n0,1\n1,12{end}".encode("utf-16"))
     assert same == samples
     assert [(one.kind, one.name) for one in wide.health()] == found
 

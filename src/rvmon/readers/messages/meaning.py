@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache, reduce
 from importlib import resources
@@ -61,12 +61,14 @@ class Meaning:
         units: in one of which it is measured; empty if it is not, or nobody knows.
         is_scaled: whether it is in another scale of the unit.
         words: that people use for it.
+        is_prose: whether a comment says it, which may mean something else.
     """
 
     sort: Sort
     units: tuple[Unit, ...] = ()
     is_scaled: bool = False
     words: tuple[str, ...] = ()
+    is_prose: bool = False
 
 
 UNKNOWN = Meaning(Sort.OPEN)
@@ -125,7 +127,8 @@ def _told(path: str, topic: Topic) -> Meaning:
         unit = "1" if unit == "1" else spoken_unit(unit)
     elif path in topic.told and (is_number or is_vector(topic.messages.get(path, ""))):
         unit = unit_in_comment(topic.told[path])
-    return _read(unit) if unit else UNKNOWN
+    is_prose = path not in topic.units
+    return replace(_read(unit), is_prose=is_prose) if unit else UNKNOWN
 
 
 @cache
@@ -172,10 +175,12 @@ class Measure:
     Attributes:
         unit: of it, at least of the same kind.
         is_exact: whether the scale is known as well.
+        is_prose: whether a comment says it.
     """
 
     unit: Unit
     is_exact: bool = True
+    is_prose: bool = False
 
 
 def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
@@ -191,7 +196,8 @@ def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
             meaning = meaning_of(str(term), topic)
             if meaning.sort is Sort.QUATERNION:
                 return (Measure(PLAIN),)
-            return tuple(Measure(unit, not meaning.is_scaled) for unit in meaning.units)
+            is_exact, is_prose = not meaning.is_scaled, meaning.is_prose
+            return tuple(Measure(unit, is_exact, is_prose) for unit in meaning.units)
         case Applied(sign=turn) if turn in TURNS:
             return (Measure(parse_unit("rad")),)
         case Applied(args=(value, _), sign=""):
@@ -215,7 +221,8 @@ def _combined(
     if sign == "/" and not inner[0]:
         return ()
     # A number that is not a field may change the scale: thousandths of metres become metres.
-    return tuple(Measure(one.unit, one.is_exact and sign not in ("*", "/")) for one in known[0][1])
+    keeps = sign not in ("*", "/")
+    return tuple(replace(one, is_exact=one.is_exact and keeps) for one in known[0][1])
 
 
 def _expect_alike(term: Applied, inner: list[tuple[Measure, ...]], topic: Topic) -> None:
@@ -244,16 +251,18 @@ def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
 
 def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> None:
     found = measures_of(term, topic)
-    if not found or not declared:
-        return
+    is_prose = bool(found) and all(one.is_prose for one in found)
+    if not found or not declared or (is_prose and given):
+        return  # who writes the unit of a field has read what its comment means
     target = parse_unit(given or declared)
     alike = [one for one in found if one.unit.dimension == target.dimension]
     where = f"topic {topic.name} ({topic.type})" if topic.type else f"topic {topic.name}"
-    is_so = f"`{term}` of {where} is {_written(found)}"
+    is_so = f"`{term}` of {where} is {_written(found)}{', as a comment says' if is_prose else ''}"
     wanted = f"`{name}` is declared [{declared}]"
     if not alike:
+        otherwise = f', or write `unit = "{declared}"` in a binding if it is' if is_prose else ""
         raise TraceError(
-            f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}"
+            f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}{otherwise}"
         )
     if any(not one.is_exact or one.unit.factor == target.factor for one in alike):
         return

@@ -1,12 +1,14 @@
 """What the fields of messages mean, by the tables."""
 
+from dataclasses import replace
 from importlib import resources
 
 import pytest
 
-from rvmon.readers.messages.meaning import Sort, is_listed, meaning_of
+from rvmon.errors import TraceError
+from rvmon.readers.messages.meaning import Sort, expect_units, is_listed, meaning_of
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Bound, Field, Kind, Schema
 
 pytest.importorskip("rosbags")
 
@@ -92,6 +94,22 @@ def test_what_nobody_can_know_is_open():
     assert meaning_of("pose.pose.orientation.x", Topic("/o", "nav_msgs/Odometry", {})).sort is (
         Sort.QUATERNION
     )
+
+
+def test_who_writes_a_unit_has_read_the_comment_that_says_another():
+    """A comment is prose; what a recording says of itself, or a standard, is none."""
+    schema = Schema({"turn": Kind.REAL}, {}, units={"turn": "rad"})
+    told = Topic(
+        "/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, told={"turn": "[m] or degrees"}
+    )
+    sure = Topic("/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, units={"turn": "m"})
+    bound = Bound("/turn", Field(("turn",)))
+    with pytest.raises(TraceError, match=r"in \[m\], as a comment says: .* write `unit = "):
+        expect_units("turn", bound, schema, told)
+    written = replace(bound, unit="rad")
+    expect_units("turn", written, schema, told)
+    with pytest.raises(TraceError, match=r"is in \[m\]: bind what is in \[rad\]"):
+        expect_units("turn", written, schema, sure)
 
 
 def test_all_tables_can_be_read():
