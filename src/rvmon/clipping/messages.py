@@ -185,15 +185,9 @@ def _clip_ros1(
 ) -> Copied:
     from rosbags.rosbag1 import Writer
 
-    def declared(writer: Any, connection: Any) -> Any:
-        return writer.add_connection(
-            connection.topic,
-            connection.msgtype,
-            msgdef=connection.msgdef.data,
-            md5sum=connection.digest,
-            callerid=connection.ext.callerid,
-            latching=connection.ext.latching,
-        )
+    def declared(connection: Any) -> dict[str, Any]:
+        own = connection.ext
+        return {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
 
     def is_latched(connection: Any) -> bool:
         return bool(connection.ext.latching) and connection.topic not in happening
@@ -207,15 +201,12 @@ def _clip_ros2(
     from rosbags.interfaces import QosDurability
     from rosbags.rosbag2 import StoragePlugin, Writer
 
-    def declared(writer: Any, connection: Any) -> Any:
-        return writer.add_connection(
-            connection.topic,
-            connection.msgtype,
-            msgdef=connection.msgdef.data,
-            rihs01=connection.digest,
-            serialization_format=connection.ext.serialization_format,
-            offered_qos_profiles=connection.ext.offered_qos_profiles,
-        )
+    def declared(connection: Any) -> dict[str, Any]:
+        return {
+            "rihs01": connection.digest,
+            "serialization_format": connection.ext.serialization_format,
+            "offered_qos_profiles": connection.ext.offered_qos_profiles,
+        }
 
     def is_latched(connection: Any) -> bool:
         offered = connection.ext.offered_qos_profiles
@@ -239,7 +230,7 @@ def _clip_bag(
     path: Path,
     piece: Piece,
     brought: Collection[str],
-    made: tuple[Callable[[Any], bool], Callable[[Any, Any], Any], Any],
+    made: tuple[Callable[[Any], bool], Callable[[Any], dict[str, Any]], Any],
 ) -> Copied:
     """Write a piece of a bag.
 
@@ -248,7 +239,7 @@ def _clip_bag(
         path: of the bag.
         piece: as it was recorded.
         brought: topics of which the last message before it comes along.
-        made: whether that is so of a connection; what declares one in the new bag; its writer.
+        made: whether that is so of a connection; what is said of one in the new bag; its writer.
     """
     is_latched, declared, writer = made
     with bag_errors(form), bag_readers()[form](path) as reader, writer:
@@ -260,7 +251,10 @@ def _clip_bag(
         for one in reader.connections:
             key = (one.topic, one.msgtype, one.digest, repr(one.ext))
             if key not in alike:
-                alike[key] = declared(writer, one)
+                said = declared(one)
+                alike[key] = writer.add_connection(
+                    one.topic, one.msgtype, msgdef=one.msgdef.data, **said
+                )
             connections[one.id] = alike[key]
 
         def read(topics: Collection[str] | None, start: int, stop: int) -> Iterator[_Raw]:
