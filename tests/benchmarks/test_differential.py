@@ -25,6 +25,7 @@ FEW = {
     "networks": (2, [], "runs checked as concrete runs", 10),
     "logics": (2, [], "CTL: true", 2),
     "damage": (20, [], "refused", 5),
+    "snapshots": (3, [], "taken up again", 20),
 }
 """How many, settings, and a count with what it is at least."""
 
