@@ -2,11 +2,11 @@
  * what came of it. So mutants of the core are compared with it, and builds for other machines.
  *
  * A case is judged step by step, asked now and then what is open and due; the same after a reset,
- * without asking; by rows, where it can be; and in blocks of memory, most of them too small. The line
- * is a sum of all records in the order in which they came, one of what was open, noted and measured,
- * then letters for what should never be: a, o, m: asked or reset, by rows, in a block it says something
- * else; d: time alone decided what was not due; f, t: a sample was taken after the end, or twice; g: it
- * was short of memory, and green; r, s: rows, or a step, were refused. */
+ * without asking; by rows, where it can be; put away and taken up again; and in blocks of memory, most of
+ * them too small. The line is a sum of all records in the order in which they came, one of what was open,
+ * noted and measured, then letters for what should never be: a, o, k, m: asked or reset, by rows, taken up,
+ * in a block it says something else; d: time alone decided what was not due; f, t: a sample was taken after
+ * the end, or twice; g: it was short of memory, and green; r, s: rows, or a step, were refused. */
 #include "../fuzz/told.h"
 
 #include "plan/plan.h"
@@ -232,9 +232,33 @@ static void note_end(told *x, rv_monitor *m, const story *s)
     }
 }
 
-/* Step by step. `asks`: of all that is open and due, in between. */
-static told by_steps(rv_monitor *m, const story *s, bool asks)
+static const rv_memory heap = {malloc, realloc, free, NULL, 0};
+
+/* Have another monitor go on from where one stands, which is freed. */
+static rv_monitor *taken_up(told *x, rv_monitor *m, const story *s)
 {
+    const size_t size = rv_save(m, NULL, 0);
+    void *bytes = malloc(size + 1U);
+    rv_monitor *made = rv_new(s->plan, s->size, heap);
+    if ((size == 0) || (bytes == NULL) || (made == NULL)) { /* what is measured is not put away */
+        rv_free(made);
+        made = m;
+    } else if ((rv_keep_notes(made, NULL, NULL) != RV_OK) || (rv_save(m, bytes, size) != size)
+               || (rv_load(made, bytes, size) != RV_OK)) {
+        blame(x, 'k');
+        rv_free(made);
+        made = m;
+    } else {
+        rv_free(m);
+    }
+    free(bytes);
+    return made;
+}
+
+/* Step by step. `asks`: of all that is open and due, in between. `put_away`: so it is then, too. */
+static told by_steps(rv_monitor **own, const story *s, bool asks, bool put_away)
+{
+    rv_monitor *m = *own;
     told x = {1, 0, ""};
     int64_t due = RV_NO_TIME;
     int64_t i;
@@ -254,6 +278,8 @@ static told by_steps(rv_monitor *m, const story *s, bool asks)
                 x.open = 3 * x.open + (rv_count(m, k).open ? 1 : 0);
             }
         }
+        m = put_away ? taken_up(&x, m, s) : m;
+        *own = m;
     }
     note_end(&x, m, s);
     return x;
@@ -384,7 +410,6 @@ static void blame_other(told *x, const told *other, char letter)
 
 static void judge(const story *s)
 {
-    static const rv_memory heap = {malloc, realloc, free, NULL, 0};
     static char block[1 << 20];
     rv_monitor *m = rv_new(s->plan, s->size, heap);
     told whole;
@@ -396,14 +421,17 @@ static void judge(const story *s)
     }
     (void)rv_keep_notes(m, NULL, NULL);
     mark_absent(m, s);
-    whole = by_steps(m, s, true);
+    whole = by_steps(&m, s, true, false);
     (void)rv_reset(m);
-    other = by_steps(m, s, false);
+    other = by_steps(&m, s, false, false);
     blame_other(&whole, &other, 'a');
     (void)rv_reset(m);
     other = by_rows(m, s);
     blame_other(&whole, &other, 'o');
     used = rv_memory_used(m);
+    (void)rv_reset(m);
+    other = by_steps(&m, s, true, true);
+    blame_other(&whole, &other, 'k');
     rv_free(m);
     for (size = used / 4; (size <= 2 * used) && (size + 16 < sizeof block); size += used / 4 + 64) {
         rv_memory own = {NULL, NULL, NULL, 0};
@@ -412,7 +440,7 @@ static void judge(const story *s)
         m = rv_new(s->plan, s->size, own);
         if (m != NULL) {
             mark_absent(m, s);
-            other = by_steps(m, s, true);
+            other = by_steps(&m, s, true, false);
             other.sum = rv_spoilt(m) ? whole.sum : other.sum;
             blame_other(&whole, &other, 'm');
             rv_free(m);
