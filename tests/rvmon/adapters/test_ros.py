@@ -203,11 +203,20 @@ def test_names_lead_to_the_topics_that_are_read(feed):
     assert set(feed[0].topics()) == {"/base/speed", "/base", "/stop"}
 
 
-def test_a_message_that_does_not_fit_is_unknown(feed):
-    """What its topic feeds; the rest is judged as before."""
+class Odd:
+    """A message whose field cannot be read, for a reason of its own."""
+
+    @property
+    def data(self):
+        raise RuntimeError("it was taken from the pool")
+
+
+@pytest.mark.parametrize("odd", [{"data": "fast"}, Odd()])
+def test_a_message_that_does_not_fit_is_unknown(feed, odd):
+    """What its topic feeds; the rest is judged as before, and who gave it goes on."""
     messages, driver, clock = feed
-    messages.take(FLOAT, {"data": 0.5})
-    messages.take(FLOAT, {"data": "fast"})
+    messages.take(FLOAT, SimpleNamespace(data=0.5) if isinstance(odd, Odd) else {"data": 0.5})
+    messages.take(FLOAT, odd)
     driver.work()
     clock.set_ns(10**9)
     messages.take(Topic("/stop", "std_msgs/msg/Empty", {}), {})
