@@ -27,7 +27,7 @@ from rvmon.report.pages import component
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:
-    from rvmon.timed.conformance.outcome import Conformance
+    from rvmon.timed.conformance.conform import Conformance
 
 SUFFIX = "_all"
 """Ends the names of queries that say of all runs what a requirement demands."""

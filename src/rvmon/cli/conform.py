@@ -14,7 +14,7 @@ from rvmon.cli.reading import add_time
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
-    from rvmon.timed.conformance.outcome import Allowed, Conformance
+    from rvmon.timed.conformance.conform import Allowed, Conformance
     from rvmon.timed.model.network import Network
     from rvmon.trace.schema import Stamps
 

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
-from rvmon.timed.conformance.outcome import Recorded
 from rvmon.timed.model.evaluate import Evaluator
 from rvmon.timed.model.network import Network
 from rvmon.timed.runs.run import Action, Position, Run
 from rvmon.trace.sample import Sample
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """An action of a recording: its label, and its instant in ticks since the start."""
+
+    t: int
+    label: str
 
 
 def labels_of(network: Network) -> tuple[str, ...]:

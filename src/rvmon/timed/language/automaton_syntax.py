@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.diagnostics import Span
+from rvmon.diagnostics import Source, Span
 from rvmon.timed.language.syntax import (
     Call,
     Declared,
@@ -99,3 +99,36 @@ class QueryText:
     text: str
     formula: Expression
     span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SignalText:
+    """`signal name = value`: what a specification calls something of the model."""
+
+    name: str
+    value: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole model as written.
+
+    Attributes:
+        unit: ticks of one unit of the model's time; `None` if it says nothing.
+        system: the automata and templates that run, each with its priority; `None`: all that are
+            there.
+        open_ints: whether `int` without a range is allowed, as UPPAAL's 16 bits.
+    """
+
+    source: Source
+    name: str
+    title: str
+    unit: int | None
+    declarations: tuple[Declared, ...]
+    templates: tuple[Template, ...]
+    instances: tuple[Instance, ...]
+    system: tuple[tuple[Name, int], ...] | None
+    queries: tuple[QueryText, ...]
+    signals: tuple[SignalText, ...] = ()
+    open_ints: bool = False

@@ -7,7 +7,7 @@ from typing import Any
 
 from rvmon.diagnostics import Source, Span
 from rvmon.timed.language import automaton_syntax, syntax
-from rvmon.timed.language.document import Document
+from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.model.network import Network

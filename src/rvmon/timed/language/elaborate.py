@@ -9,9 +9,9 @@ from rvmon.diagnostics import Severity, Source, Span
 from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automata import automaton_of, location_names
+from rvmon.timed.language.automaton_syntax import Document, SignalText
 from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.diagonals import Diagonals
-from rvmon.timed.language.document import Document, SignalText
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
 from rvmon.timed.language.layout import refuse_double

@@ -8,8 +8,8 @@ from itertools import product
 
 from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
+from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.declare import Findings, check_range
-from rvmon.timed.language.document import Document
 from rvmon.timed.language.layout import MAX_VALUES, check_count, count_of, refuse_double, values_of
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import leaves

@@ -13,8 +13,7 @@ import lark
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.errors import ModelError
 from rvmon.spec.syntax.grammar_cache import parser_of
-from rvmon.timed.language.automaton_syntax import QueryText
-from rvmon.timed.language.document import Document
+from rvmon.timed.language.automaton_syntax import Document, QueryText
 from rvmon.timed.language.foreign import reason_at
 from rvmon.timed.language.syntax_builder import SyntaxBuilder
 from rvmon.timed.model.rules import model_error, refusal

@@ -12,7 +12,7 @@ from lark import Token, Tree, v_args
 from lark.tree import Meta
 
 from rvmon.timed.language import automaton_syntax, syntax
-from rvmon.timed.language.document import SignalText
+from rvmon.timed.language.automaton_syntax import SignalText
 from rvmon.timed.language.query_builder import QueryBuilder
 from rvmon.timed.language.statement_builder import is_rule
 from rvmon.timed.language.syntax import TypeText

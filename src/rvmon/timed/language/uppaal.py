@@ -21,8 +21,8 @@ from typing import Any
 from rvmon.diagnostics import Diagnostic, Source
 from rvmon.errors import ModelError
 from rvmon.timed.language import automaton_syntax, syntax
+from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.declare import Findings
-from rvmon.timed.language.document import Document
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.language.xml_tree import Element, read_xml
 from rvmon.timed.model.operators import LocationKind
