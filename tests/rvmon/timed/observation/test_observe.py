@@ -1,5 +1,6 @@
 """Requirements on all runs of a network: claims, witnesses and counterexamples, judged twice."""
 
+from collections import Counter
 from fractions import Fraction
 from random import Random
 
@@ -9,7 +10,15 @@ from tests.tools.timed_generate import random_model
 import rvmon
 from rvmon.errors import ModelError
 from rvmon.timed.language.load import loads_network
+from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.observation.observe import observe
+from rvmon.timed.runs.concrete import (
+    InvalidRunError,
+    act,
+    every_action,
+    initial_configuration,
+    wait,
+)
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
@@ -264,3 +273,81 @@ def test_promises_agree_with_formulas_of_ltl(first):
             assert one.holds == expected.holds, (seed, requirement)
             compared += 1
     assert compared > 9
+
+
+BOUNDED = (
+    "whenever p then within {a} s q",
+    "upon p then for {a} s q",
+    "upon q then F[{a} s, {b} s] r",
+    "upon q then F[{a} s, {a} s] r",
+    "upon a0 then within {a} s q",
+    "upon p then (q U[{a} s, {b} s] r)",
+    "upon p and a1 then immediately q",
+    "upon start then within {b} s p",
+    "upon p then G[{a} s, {b} s] (q or r)",
+    "upon a1 then within {a} s (p and within {b} s q)",
+    "upon p then for {a} s not a0",
+)
+
+
+def walked(network, random):
+    """The instants of a random run, with the signals and the events there; then its end."""
+    read = {one.name: evaluator(one.value) for one in network.signals}
+    now, t, names = initial_configuration(network), Fraction(0), set[str]()
+    for _ in range(12):
+        signals = {name: bool(one(now.locations, now.values)) for name, one in read.items()}
+        yield t, signals | dict.fromkeys(names, True)
+        try:
+            delay = Fraction(random.randint(1, 5), 2)
+            now, t = wait(network, now, delay), t + delay
+            action = random.choice([*every_action(network, now)])
+            now = act(network, now, action)
+        except (InvalidRunError, IndexError):
+            break
+        names = {edge.label for _, edge in action.edges}
+    yield t, None
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("first", range(0, 40, 10))
+def test_no_random_run_says_otherwise(first):
+    """What holds fails on none and what is vacuous starts on none, by the core's monitors."""
+    said = Counter()
+    for seed in range(first, first + 10):
+        random = Random(seed)
+        p, q, r = random.choices(["P0.l0", "P0.l1", "b", "v > 0", "not P0.l1", "not b"], k=3)
+        lines = random_model(seed).replace("network random", "network random\nunit 1 s").split("\n")
+        lines = [
+            f"{line} as a{k % 3}" if line.split()[:1] == ["edge"] else line
+            for k, line in enumerate(lines)
+            if not line.startswith("query")
+        ]
+        lines += [f"signal p = {p}", f"signal q = {q}", f"signal r = {r}"]
+        network = loads_network("\n".join(lines))
+        for requirement in random.sample(BOUNDED, 5):
+            text = requirement.format(a=random.randint(1, 3), b=random.randint(3, 6))
+            spec = rvmon.loads(
+                "spec s\ntime held\nsignal p, q, r : bool\nevent a0, a1, a2\n"
+                f"requirement R\n  {text}\n"
+            )
+            try:
+                (one,) = observe(network, spec.checked)
+            except ModelError:
+                continue  # it cannot start, or a variable leaves its range
+            for _ in range(25):
+                monitor, attempts = spec.monitor(), []
+                try:
+                    for t, sample in walked(network, random):
+                        instant = int(t * TICKS_PER_SECOND)
+                        if sample is None:
+                            attempts += monitor.advance_ns(instant)
+                        else:
+                            attempts += monitor.step_ns(instant, sample)
+                except ModelError:
+                    continue  # a variable leaves its range
+                verdicts = {attempt.verdict.value for attempt in attempts}
+                said.update(verdicts)
+                if one.holds is not None and attempts:
+                    assert one.triggered is not None, (seed, text)
+                    assert not (one.holds and "F" in verdicts), (seed, text)
+    assert min(said["F"], said["P"]) > 20
