@@ -17,8 +17,11 @@ import pytest
 LONG = 30.0
 """Seconds in which what was asked to end has to."""
 
-_LOOKS = 60_000
+_LOOKS = 10_000
 """So often something is looked for that has to come."""
+
+_LEAST_S, _MOST_S = 0.0005, 0.02
+"""Seconds between two looks: more and more, so that waiting takes nothing from what is to come."""
 
 SYSTEM = "/usr/lib/python3/dist-packages"
 """Where Debian has rospy."""
@@ -27,7 +30,7 @@ LOOPBACK = (
     '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>'
     "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
     '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers>'
-    "</Discovery></Domain></CycloneDDS>"
+    "<SPDPInterval>1 s</SPDPInterval></Discovery></Domain></CycloneDDS>"
 )
 """`CYCLONEDDS_URI` for processes of this machine alone."""
 
@@ -57,15 +60,17 @@ def _free_port() -> int:
 
 
 def until(true: Callable[[], bool]) -> None:
-    """Wait until it is: for half a minute, or longer where the machine has much to do.
+    """Wait until it is: for three minutes, or longer where the machine has much to do.
 
     Raises:
         TimeoutError: it does not come.
     """
+    wait = _LEAST_S
     for _ in range(_LOOKS):
         if true():
             return
-        time.sleep(0.0005)
+        time.sleep(wait)
+        wait = min(1.2 * wait, _MOST_S)
     raise TimeoutError("it did not come")
 
 
