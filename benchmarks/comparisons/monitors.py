@@ -16,7 +16,8 @@ from tests.tools.compare import Key
 from tests.tools.coverage import judge as judge_coverage
 from tests.tools.differential import campaign, case_of, cases_of
 from tests.tools.doors import content_of, whole
-from tests.tools.drive import feed
+from tests.tools.drive import Found as Gained
+from tests.tools.drive import Lost, Told, told
 from tests.tools.forms import Compiler, Maker
 from tests.tools.generate_ltl import random_ltl, random_mtl
 from tests.tools.judgement import Judgement
@@ -28,7 +29,7 @@ from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
-from rvmon.monitor.robustness import Robustness, RobustnessMonitor
+from rvmon.monitor.robustness import Measured, Robustness, RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
@@ -98,9 +99,21 @@ def judge_verdicts(
 def by_samples(case: Case) -> Figures:
     """Robustness by a monitor that is stepped."""
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
-    found = [one for action in case.actions for one in feed(monitor, action)]
+    found = [one for action in told(case) for one in _tell(monitor, action)]
     found += monitor.finish_ns(case.end)
     return _bounds({(o.requirement, o.in_doubt, o.number or 0): o.robustness for o in found})
+
+
+def _tell(monitor: RobustnessMonitor, action: Told) -> Sequence[Measured]:
+    match action:
+        case Lost(names, t):
+            return monitor.lose_ns(names, t)
+        case Gained(names, t):
+            return monitor.found_ns(names, t)
+        case Sample(t, values):
+            return monitor.step_ns(t, values)
+        case int():
+            return monitor.advance_ns(action)
 
 
 def by_arrays(case: Case) -> Figures:
@@ -119,10 +132,10 @@ def _bounds(found: Mapping[Key, Robustness]) -> Figures:
 
 
 def _in_columns(case: Case) -> Case:
-    """A case each sample of which says something of all names, as rows do."""
+    """A case each sample of which says something of all names, as rows do; columns lose nothing."""
     content = whole(content_of(random.Random(len(case.actions)), case))
     samples = tuple(Sample(t, cells) for t, cells in content.rows)
-    return replace(case, actions=samples, names=frozenset(content.columns))
+    return replace(case, actions=samples, names=frozenset(content.columns), outages=())
 
 
 def _robustness_differs(way: str, case: Case) -> list[str]:
