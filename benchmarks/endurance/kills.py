@@ -38,6 +38,7 @@ from tests.tools.forked import Forked
 
 import handover.cli
 from rvmon import cli
+from rvmon.execute.journal import entries
 from rvmon.files import SUFFIX, read_kept
 
 PATIENCE_S = 2.0
@@ -182,8 +183,14 @@ def _database(path: Path) -> None:
         raise ValueError(found)
 
 
+def _journal(path: Path) -> None:
+    entries(path, all_of_them=True)  # the last one may be torn: it was killed in it
+
+
 READERS: dict[str, Callable[[Path], object]] = {
     ".db": _database,
+    ".journal": _journal,
+    ".unfinished": _journal,
     ".json": lambda path: json.loads(path.read_bytes()),
     ".jsonl": _lines,
     ".xml": ElementTree.parse,
