@@ -41,9 +41,6 @@ from rvmon import cli
 from rvmon.execute.journal import entries
 from rvmon.files import SUFFIX, read_kept
 
-JOURNALS = (".journal", ".unfinished")
-"""The last entry may be torn, which its checksum says."""
-
 PATIENCE_S = 2.0
 """Seconds that processes may take to end."""
 
@@ -201,8 +198,6 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 
 def _is_half_written(path: Path) -> bool:
-    if path.suffix in JOURNALS:
-        return False
     body = path.read_bytes()
     if path.parent.name == "rvmon":  # a cache, with a file that is empty
         if not path.suffix:
@@ -252,7 +247,7 @@ def _kept(out: Path) -> int:
     size = 0
     for path in out.rglob("*"):
         with suppress(FileNotFoundError):  # it is finished just now
-            size += path.stat().st_size * (path.suffix in JOURNALS)
+            size += path.stat().st_size * (path.suffix in (".journal", ".unfinished"))
     return size
 
 
