@@ -257,7 +257,10 @@ class FileRecording:
         """That the last cell may be half of one: in CSV the end of a line alone says that it ends.
 
         Of a file as it is, or as it lies at an address; nobody looks into what is packed or piped.
+        Each of several that are joined is looked at by itself.
         """
+        if self._joined is not None:
+            return []
         if endings_of(self.path) != (".csv", "") or not can_be_read_again(self.path):
             return []
         with open(local_path(self.path), "rb") as file:
