@@ -9,6 +9,7 @@
  * Source: the law, section 1 (Outage). */
 #include "formulas/formulas.h"
 #include "input/input.h"
+#include "results/results.h"
 #include "runs/runs.h"
 
 #include <string.h>
@@ -366,6 +367,7 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
         }
     }
     arena_give(&m->memory, updates, size);
+    sort_records(m);
     return m->spoilt ? RV_NO_MEMORY : RV_OK;
 }
 
