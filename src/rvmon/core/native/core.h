@@ -215,6 +215,7 @@ typedef struct {
     int32_t last_count;        /* words of the last piece */
 } rv_note;
 
+/* Keep notes of decisions. Of a plan that measures none are kept: figures have no reasons. */
 typedef void (*rv_let_go)(void *user, void *held);
 int rv_keep_notes(rv_monitor *m, rv_let_go let_go, void *user);
 
