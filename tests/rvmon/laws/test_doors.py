@@ -8,7 +8,7 @@ from tests.tools.lossy.trial import outcomes, trials
 from tests.tools.servers import missing
 
 pytestmark = pytest.mark.law
-RUNS = 60
+RUNS = 100
 
 
 @pytest.mark.parametrize("door", DOORS)
