@@ -27,6 +27,10 @@ _PREFIX = "rt/"
 """Before the names of topics of ROS 2 on the wire."""
 
 
+_MAKING = Lock()
+"""A type is completed as its first topic is made: sources that do so at once break each other's."""
+
+
 class DdsSource:
     """A participant that offers what the topics of a feed say, from `with` on.
 
@@ -136,12 +140,15 @@ class DdsSource:
 
     def _written(self, topic: str) -> Any:
         from cyclonedds.pub import DataWriter
+
+        wire = self._wire_topic(topic.lstrip("/"), "std_msgs/msg/String", ())
+        return DataWriter(self._participant, wire)
+
+    def _wire_topic(self, name: str, kind: str, definitions: tuple[tuple[str, str], ...]) -> Any:
         from cyclonedds.topic import Topic as DdsTopic
 
-        kind = _idl_type("std_msgs/msg/String", ())
-        return DataWriter(
-            self._participant, DdsTopic(self._participant, _PREFIX + topic.lstrip("/"), kind)
-        )
+        with _MAKING:
+            return DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, definitions))
 
     def _find(self) -> None:
         """Read the topics that are wanted and published."""
@@ -171,7 +178,6 @@ class DdsSource:
     def _begin(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Listener, Policy, Qos
         from cyclonedds.sub import DataReader
-        from cyclonedds.topic import Topic as DdsTopic
 
         kind = wire_type.replace("::dds_::", "/").replace("::", "/").removesuffix("_")
         topic, _ = ros_topic(self._wanted[name], kind, ("msg", ""), False, dict(self._definitions))
@@ -181,7 +187,7 @@ class DdsSource:
         # A history that keeps the last messages would replace others and report nothing.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
-        wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
+        wire = self._wire_topic(name, kind, self._definitions)
         # To be called for each message would hold up the thread of DDS that receives them, until
         # the socket drops some and nobody learns of it; a loss is rare.
         listener = Listener(

@@ -133,6 +133,41 @@ def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(monkeypatch
     assert live.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
 
 
+FLEET = """
+import sys
+from threading import Barrier, Thread
+from rvmon import loads
+from rvmon.adapters import dds
+from rvmon.adapters.messages import MessageFeed
+from rvmon.live import Live
+
+sys.setswitchinterval(1e-6)
+spec, domain, begun = loads("signal p : bool"), int(sys.argv[1]), Barrier(12)
+def make(number):
+    with Live(spec) as live, dds.DdsSource(MessageFeed(live, spec.schema), domain=domain) as source:
+        begun.wait()
+        for kind in ("Bool", "Int64", "Float64", "String", "Empty"):
+            source._wire_topic(f"{kind}{number}", f"std_msgs/msg/{kind}", ())
+        begun.wait()
+        print("made")
+robots = [Thread(target=make, args=(number,)) for number in range(12)]
+for one in robots:
+    one.start()
+for one in robots:
+    one.join(20)
+"""
+
+
+@pytest.mark.process
+def test_sources_that_begin_at_once_hear_alike():
+    """In a process of their own, where no type was made before."""
+    pytest.importorskip("cyclonedds")
+    words = [sys.executable, "-c", FLEET, str(100 + os.getpid() % 100)]
+    environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
+    told = subprocess.run(words, capture_output=True, text=True, timeout=60, env=environment)  # noqa: S603 - the interpreter itself
+    assert told.stdout.count("made") == 12, told.stderr
+
+
 @pytest.fixture
 def linked(monkeypatch):
     """Of a stand-in for rospy what its one connection is, and what its master says."""

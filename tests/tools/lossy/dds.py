@@ -65,7 +65,8 @@ class _Talker:
         for name, topic in topics.items():
             kind = _TYPES[spec.signals[name].type.kind] if name in spec.signals else _EMPTY
             mouth.say([topic, kind])
-        is_full = all(name in spec.signals for name in self.samples[trial.lost.start].values)
+        heard = {name for one in self.samples[: trial.lost.start] for name in one.values}
+        is_full = {*self.samples[trial.lost.start].values} <= heard & spec.signals.keys()
         self.how = trial.rng.choice(("depth", "flood")) if is_full else "flood"
         trial.is_named = True
         if self.how == "depth":
@@ -108,7 +109,7 @@ class _Talker:
         """
         for name, value in self.samples[place].values.items():
             known = (s.values[name] for s in self.samples[place - 1 :: -1] if name in s.values)
-            former = next(known, value)
+            former = next(known)
             self.feed.gate.clear()
             before = self.driver.waiting
             self.write(name, former)

@@ -168,17 +168,26 @@ def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
         if how.ends:
             filled = replace(filled, actions=(*filled.actions, trial.end))
         truly = judge(filled).verdicts
+        # What was lost before a first value may have been one, and is no excuse (section 1).
+        born = all(_has_value(filled, trial, name) for name in trial.names)
         told = {} if verdicts is None or (trial.is_whole and which) else verdicts
         for name, verdict in told.items():
             failed = truly[name] is Verdict.FAIL
             if verdict in GREEN and failed:
                 bad.add(name)
-            if verdict is Verdict.FAIL and not failed and not trial.is_late:
+            if verdict is Verdict.FAIL and not failed and not trial.is_late and born:
                 bad.add(name)
         for name, verdict in truly.items():
             seen[name].add(verdict is Verdict.FAIL)
     split = any(len(kinds) > 1 for kinds in seen.values())
     return Outcome(trial.name, tuple(sorted(bad)), split, verdicts is None)
+
+
+def _has_value(case: Case, trial: Trial, name: str) -> bool:
+    """Whether a name has had a value when the loss is over; events need none."""
+    told = case.samples[: trial.lost.stop]
+    values = (one.values[name] for one in told if name in one.values)
+    return name in case.spec.events or any(value is not None and value == value for value in values)
 
 
 def _filled(rng: random.Random, trial: Trial, case: Case) -> Case:
