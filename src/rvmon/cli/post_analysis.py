@@ -11,6 +11,8 @@ from rvmon.cli.reading import opened
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.report.run_text import SHOWN_PER_REQUIREMENT
+from rvmon.report.tracks import blamed_names, concerned_names
+from rvmon.report.wording import value_text
 from rvmon.session import Spec
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from rvmon.analysis.truths import Question
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
-    from rvmon.report.changes import Changes
+    from rvmon.report.changes import RunChanges
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -114,7 +116,7 @@ def post_analysis(
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
         report,
-        values=values.told(report),
+        values=values.told(),
         late={name: found for name, found in arrived.items() if found},
         misses={name: miss for name, miss in misses.items() if miss},
     )
@@ -137,31 +139,47 @@ class _Values:
         ]
         self.names: Set[str] = {name for _, names in self._reads for name in names}
         self.until = max((attempt.decided or 0 for attempt, _ in self._reads), default=0)
-        self._changes: Mapping[str, Changes] = {}
+        self._told: dict[int, Mapping[str, str]] = {}
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """The pieces, unchanged."""
+        """The pieces, unchanged; nothing is kept of one that was passed."""
         from rvmon.report.changes import RunChanges
 
-        changes = RunChanges(self._spec.checked)
-        self._changes = changes.by_name
+        changes = RunChanges(self._spec.checked, self.names)
+        waiting = sorted({attempt.decided or 0 for attempt, _ in self._reads}, reverse=True)
+
+        def tell(until: int) -> None:
+            while waiting and waiting[-1] <= until:
+                instant = waiting.pop()
+                self._told[instant] = self._values_at(instant, changes)
+
         for piece in pieces:
-            begin = piece.t if isinstance(piece, Sample) else piece.times[0]
-            if begin <= self.until:
+            times = [piece.t] if isinstance(piece, Sample) else piece.times
+            if waiting and len(times):
+                tell(int(times[0]) - 1)
                 changes.add(piece)
+                tell(int(times[-1]) - 1)  # of the last instant more may come
+                for one in changes.by_name.values():
+                    one.forget()
             yield piece
+        tell(self.until)
 
-    def told(self, report: Report) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+    def _values_at(self, instant: int, changes: RunChanges) -> Mapping[str, str]:
+        signals = self._spec.checked.signals
+        return {
+            name: value_text(changes.by_name[name].value_at(instant), signals[name].type.unit)
+            for name in sorted(self.names)
+        }
+
+    def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
-        from rvmon.report.tracks import signals_told, tracks_of
-
         told: dict[str, dict[int, Mapping[str, str]]] = {}
         for attempt, names in self._reads:
-            requirement = self._spec.requirements[attempt.requirement]
-            tracks = tracks_of(self._spec.checked, requirement, self._changes, report.absent)
-            told.setdefault(attempt.requirement, {})[attempt.number] = signals_told(
-                [one for one in tracks if one.name in names], attempt.decided or 0
-            )
+            values = self._told[attempt.decided or 0]
+            order = concerned_names(self._spec.requirements[attempt.requirement])
+            told.setdefault(attempt.requirement, {})[attempt.number] = {
+                name: values[name] for name in order if name in names
+            }
         return told
 
 
@@ -170,8 +188,6 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
 
     Not what is itself true or false, nor what was measured over a window.
     """
-    from rvmon.report.tracks import blamed_names
-
     assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]
     windows = [one for one in subformulas(requirement.consequent) if isinstance(one, Amount)]

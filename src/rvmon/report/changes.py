@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
@@ -109,15 +109,23 @@ def changes_of(
 class RunChanges:
     """What signals and events change to, noted piece by piece of a run.
 
+    Args:
+        spec: declares them.
+        only: the names that are noted; `None`: all.
+
     Attributes:
-        by_name: the changes of each signal and event up to here.
+        by_name: the changes of each up to here.
     """
 
-    def __init__(self, spec: CheckedSpec) -> None:
+    def __init__(self, spec: CheckedSpec, only: Set[str] | None = None) -> None:
         self._signals = spec.signals
         self._ignoring = spec.ignoring
-        self.by_name = {name: Changes(one.stale_after) for name, one in spec.signals.items()}
-        self.by_name |= {name: Changes(None) for name in spec.events}
+        stale = {name: one.stale_after for name, one in spec.signals.items()}
+        self.by_name = {
+            name: Changes(stale.get(name))
+            for name in (*spec.signals, *spec.events)
+            if only is None or name in only
+        }
 
     def add(self, piece: Batch | Sample) -> None:
         """Add what changes in a piece; they come in order."""
@@ -126,10 +134,10 @@ class RunChanges:
                 if name in self.by_name:
                     self.by_name[name].add(piece.t, value, is_signal=name in self._signals)
         else:
-            for name, cells in piece.signals.items():
-                self.by_name[name].add_cells(piece, cells)
-            for name, events in piece.events.items():
-                self.by_name[name].add_occurrences(piece.times, events.says)
+            for name in self.by_name.keys() & piece.signals.keys():
+                self.by_name[name].add_cells(piece, piece.signals[name])
+            for name in self.by_name.keys() & piece.events.keys():
+                self.by_name[name].add_occurrences(piece.times, piece.events[name].says)
 
 
 class Changes:
@@ -210,6 +218,23 @@ class Changes:
         for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
             found[t] = True if said == YES else found.get(t)
         self._found += found.items()
+
+    def value_at(self, instant: int) -> Scalar:
+        """A signal's value at an instant that is not before what was forgotten."""
+        if self._last is not None and instant >= self._last:
+            limit = self._stale_after
+            return None if limit is not None and instant > self._last + limit else self._known
+        self._settle()
+        for columns in reversed(self._columns):
+            course = Course(*columns)
+            if behind := course.behind(instant):
+                return course[behind - 1][1]
+        return None
+
+    def forget(self) -> None:
+        """Let go of all changes but the last one."""
+        self._columns = []
+        self._found = [] if self._last is None else [(self._last, self._known)]
 
     def _settle(self) -> None:
         """Put what was added one by one into columns."""

@@ -134,9 +134,7 @@ def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
     told = {}
     for track in tracks:
         if track.kind is not TrackKind.EVENT:
-            value = track.value_at(instant)
-            unit = f" {track.unit}" if track.unit and value is not None else ""
-            told[track.name] = value_text(value) + unit
+            told[track.name] = value_text(track.value_at(instant), track.unit)
     return told
 
 

@@ -11,7 +11,7 @@ from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.tracks import Track, signals_told
-from rvmon.report.wording import forecast_sentence, instants_of, with_lateness
+from rvmon.report.wording import forecast_sentence, instants_of, told_reason
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Attempt
@@ -91,7 +91,7 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield with_lateness(attempt, breakdown.late)
+        yield told_reason(attempt, breakdown.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
 

@@ -48,11 +48,11 @@ def full_reason(attempt: Attempt, report: Report) -> str:
     """The reason of an attempt with what the report knows besides: values, and how late it came."""
     late = report.late.get(attempt.requirement, {}).get(attempt.number)
     values = report.values.get(attempt.requirement, {}).get(attempt.number, {})
-    return with_lateness(attempt, late, values)
+    return told_reason(attempt, late, values)
 
 
-def with_lateness(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
-    """The reason of an attempt; if what it awaited came after the deadline, also how late.
+def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
+    """The reason of an attempt, with values; if what it awaited came too late, also how late.
 
     Args:
         attempt: any.
@@ -64,11 +64,11 @@ def with_lateness(attempt: Attempt, came: int | None, values: Mapping[str, str] 
     >>> second = 10**9
     >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
-    >>> with_lateness(failed, 3 * second + 20_000_000)
+    >>> told_reason(failed, 3 * second + 20_000_000)
     'no `a`; it came at 3.02 s, 20 ms after the deadline'
-    >>> with_lateness(failed, 5 * second + 500_000_000)
+    >>> told_reason(failed, 5 * second + 500_000_000)
     'no `a`; it came at 5.5 s, 2.5 s after the deadline'
-    >>> with_lateness(failed, None, {"speed": "3 m/s", "mode": "idle"})
+    >>> told_reason(failed, None, {"speed": "3 m/s", "mode": "idle"})
     'no `a` (speed = 3 m/s, mode = idle)'
     """
     told = ", ".join(f"{name} = {value}" for name, value in values.items())
@@ -123,12 +123,14 @@ def first_of(names: Sequence[str], most: int) -> str:
     return ", ".join(names[:most]) + more
 
 
-def value_text(value: Scalar) -> str:
+def value_text(value: Scalar, unit: str = "") -> str:
     """A value of a signal or proposition.
 
-    >>> value_text(True), value_text(0.1 + 0.2), value_text("closed"), value_text(None)
-    ('true', '0.3', 'closed', 'not known')
+    >>> value_text(True), value_text(0.1 + 0.2, "m"), value_text("closed"), value_text(None, "m")
+    ('true', '0.3 m', 'closed', 'not known')
     """
+    if unit and value is not None:
+        return f"{value_text(value)} {unit}"
     match value:
         case None:
             return "not known"

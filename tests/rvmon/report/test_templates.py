@@ -5,6 +5,8 @@ from importlib import resources
 
 import pytest
 
+from rvmon.report.tracks import TrackKind
+
 TEMPLATES = {
     path.name: path.read_text("utf-8")
     for path in (resources.files("rvmon.report") / "templates").iterdir()
@@ -17,3 +19,12 @@ def test_what_a_template_writes_is_escaped(name):
     text = TEMPLATES[name]
     assert not re.search(r"\|\s*safe\b|autoescape", text)
     assert not re.search(r"\w=\{\{", text)
+
+
+@pytest.mark.parametrize("kind", [one.value for one in TrackKind])
+def test_no_style_of_something_else_takes_a_lane_out_of_its_row(kind):
+    """A lane has its kind as a class beside `plot`: no selector begins with that class alone."""
+    assets = resources.files("rvmon.report") / "assets"
+    styles = "".join(one.read_text() for one in assets.iterdir() if one.name.endswith(".css"))
+    assert f".plot.{kind}" in styles
+    assert not re.search(rf"(?:^|[,}}])\s*\.{kind}\b", styles, re.MULTILINE)

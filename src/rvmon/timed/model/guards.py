@@ -216,10 +216,15 @@ MOST_PIECES = 4000
 
 
 def together(parts: Iterable[Expression]) -> Expression:
-    """One formula for parts that hold together."""
+    """One formula for parts that hold together, without those that always do."""
     formula: Expression = TRUE
     for part in parts:
-        formula = part if formula == TRUE else BinaryOperation(BinaryOp.AND, formula, part)
+        if part == FALSE:
+            return FALSE
+        if formula == TRUE:
+            formula = part
+        elif part != TRUE:
+            formula = BinaryOperation(BinaryOp.AND, formula, part)
     return formula
 
 

@@ -26,7 +26,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Expression,
 )
-from rvmon.timed.model.guards import either
+from rvmon.timed.model.guards import either, together
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import BinaryOp, LocationKind
 from rvmon.timed.observation.propositions import Labelling, NotExpressibleError, events_of
@@ -35,7 +35,6 @@ from rvmon.timed.observation.tables import (
     Edge,
     Region,
     Tables,
-    both,
     bounds_of,
     negated,
 )
@@ -224,7 +223,7 @@ class Observed:
             self._watcher.add_edge(place, self._place(_Site(Phase.READY)), held, (), resets)
         if self._pulse or not is_ready:
             for letters, edge in self._tables.edges(self._automaton.initial, ()):
-                when = both(self._triggers, letters)
+                when = together((self._triggers, letters))
                 if when != FALSE:
                     site, started = self._fresh(edge, ())
                     self._watcher.add_edge(place, self._place(site), when, (), started)

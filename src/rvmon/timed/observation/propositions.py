@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import reduce
 from math import ceil, floor
 
 from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
@@ -18,8 +17,9 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
 )
-from rvmon.timed.model.expressions import FALSE, TRUE, BinaryOperation, Expression, UnaryOperation
+from rvmon.timed.model.expressions import FALSE, BinaryOperation, Expression, UnaryOperation
 from rvmon.timed.model.expressions import Constant as Number
+from rvmon.timed.model.guards import either, together
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 
@@ -60,9 +60,9 @@ class Labelling:
             case StateOp.NOT, _:
                 return UnaryOperation(UnaryOp.NOT, args[0])
             case StateOp.AND, _:
-                return _joined(BinaryOp.AND, args)
+                return together(args)
             case StateOp.OR, _:
-                return _joined(BinaryOp.OR, args)
+                return either(args)
             case StateOp.SURE, _:  # nothing is unknown
                 return args[0]
             case StateOp.LEAF, Constant(value=value):
@@ -108,9 +108,3 @@ class Labelling:
             fix = f"`--bind '{name}=…'` gives it a meaning"
             raise NotExpressibleError(f"the network has no signal `{name}`: {fix}")
         return self._signals[name]
-
-
-def _joined(op: BinaryOp, args: list[Expression]) -> Expression:
-    if not args:
-        return TRUE if op is BinaryOp.AND else FALSE
-    return reduce(lambda left, right: BinaryOperation(op, left, right), args)

@@ -12,7 +12,6 @@ from rvmon.timed.model.expressions import (
     FALSE,
     MAX_TIME,
     TRUE,
-    BinaryOperation,
     Choice,
     ClockCompare,
     ClockOp,
@@ -20,7 +19,8 @@ from rvmon.timed.model.expressions import (
     Expression,
     UnaryOperation,
 )
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
+from rvmon.timed.model.guards import together
+from rvmon.timed.model.operators import UnaryOp
 from rvmon.timed.observation.propositions import NotExpressibleError
 
 MOST_CONDITIONS = 14
@@ -120,8 +120,8 @@ class Tables:
         if no == yes:
             return no
         if yes == FALSE:
-            return both(negated(test), no)
-        return both(test, yes) if no == FALSE else Choice(test, yes, no)
+            return together((negated(test), no))
+        return together((test, yes)) if no == FALSE else Choice(test, yes, no)
 
     # Ages.
 
@@ -208,12 +208,3 @@ def negated(one: Expression) -> Expression:
     if one in (TRUE, FALSE):
         return FALSE if one == TRUE else TRUE
     return UnaryOperation(UnaryOp.NOT, one)
-
-
-def both(one: Expression, other: Expression) -> Expression:
-    """That two conditions hold."""
-    if FALSE in (one, other):
-        return FALSE
-    if TRUE in (one, other):
-        return other if one == TRUE else one
-    return BinaryOperation(BinaryOp.AND, one, other)

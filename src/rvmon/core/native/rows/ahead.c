@@ -262,7 +262,8 @@ static bool is_calm(const rv_monitor *m)
             return false;
         }
     }
-    return may_pass_measured(m) && !m->finished && !m->spoilt && (m->heard == RV_NO_TIME) && (m->dense_until == RV_NO_TIME);
+    return may_pass_measured(m) && !m->finished && !m->spoilt && (m->heard == RV_NO_TIME)
+           && (m->dense_until == RV_NO_TIME);
 }
 
 static bool is_settled(const rv_monitor *m)

@@ -165,23 +165,22 @@ void make_ready(batch *s, int64_t row, int64_t end)
 /* Note that these rows were judged. */
 void note_judged(batch *s, int64_t end)
 {
-    bool stale = false;
-    bool others = false;
+    bool other = false;        /* whether what stands there is no longer what the rows before it said */
     int32_t i;
     s->fresh = end;
     for (i = 0; (s->m->shapes != NULL) && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
-        others = others || (w->is_idle != is_idle_now(s, w)); /* attempts may have begun */
+        other = other || (w->is_idle != is_idle_now(s, w)); /* attempts may have begun */
     }
     for (i = 0; s->perishes && (i < s->columns); i++) {
         const column_watch *w = &s->watches[i];
-        stale = stale || (w->perishable
+        other = other || (w->perishable
                           && (root_of(s, w, 0)->value[w->readers[0].local].kind == RV_UNKNOWN));
     }
     if (s->together == 0) {
         s->first = end;
-    } else if (stale || others) {
-        turn_from(s, end); /* what stands there is no longer what the rows before it said */
+    } else if (other) {
+        turn_from(s, end);
     } else {
         /* What is known of the rows behind is still so. */
     }
