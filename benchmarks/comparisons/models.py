@@ -26,7 +26,7 @@ from rvmon.timed.model.expressions import UnaryOperation
 from rvmon.timed.model.guards import compares_of, is_linear
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network
 from rvmon.timed.model.operators import UnaryOp
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.verify import verify
@@ -104,7 +104,7 @@ def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
     agrees = outcome.holds != LinearTruth(network, denied, False, 3_000).some_run()
     counts[f"LTL: {str(outcome.holds).lower()}"] += 1
     if outcome.run is not None:
-        replay(network, outcome.run)
+        Rules(network).replay(outcome.run)
         counts["LTL: runs replayed"] += 1
         if not list(compares_of(denied)):
             agrees = agrees and satisfied_by(network, outcome.run, denied)

@@ -30,7 +30,7 @@ from rvmon.timed.model.guards import (
 )
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
-from tests.tools.timed_regions import Region, RegionGraph, Steps, satisfies
+from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 Regions = frozenset[Region]
 
@@ -74,7 +74,8 @@ class _Truth:
         """The regions where a formula holds."""
         everywhere = self._plain.nodes
         if is_plain(formula):
-            return frozenset(r for r in everywhere if satisfies(r.now, formula))
+            holds = truth_of(formula)
+            return frozenset(r for r in everywhere if holds(r.now))
         match formula:
             case Deadlock():
                 return frozenset(filter(self._regions.is_dead, everywhere))
@@ -191,9 +192,10 @@ def _reaches(regions: MakeRegions, formula: Expression, bound: int | None) -> bo
     graph = regions([formula], bound)
     found = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
     if not speaks_of_deadlock(formula):
-        return any(satisfies(region.now, formula) for region in found)
-    by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
-    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in found)
+        holds = truth_of(formula)
+        return any(holds(region.now) for region in found)
+    by_death = {dead: truth_of(with_deadlock(formula, dead)) for dead in (True, False)}
+    return any(by_death[graph.is_dead(r)](r.now) for r in found)
 
 
 def _avoids(regions: MakeRegions, formula: Expression, bound: int | None) -> bool:
@@ -202,7 +204,8 @@ def _avoids(regions: MakeRegions, formula: Expression, bound: int | None) -> boo
     starts = [graph.start()]
     if bound is not None and _is_late(graph, starts, formula, bound):
         return True
-    inside = graph.reachable(starts, lambda region: satisfies(region.now, formula))
+    holds = truth_of(formula)
+    inside = graph.reachable(starts, lambda region: holds(region.now))
     return bool(graph.staying(inside) & set(starts))
 
 
@@ -210,18 +213,18 @@ def _responds(regions: MakeRegions, left: Expression, right: Expression, bound: 
     graph = regions([left, right], bound)
     missing = normal_form(right, positive=False)
     everywhere = graph.reachable([graph.start()])
-    starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
+    first, holds = truth_of(left), truth_of(missing)
+    starts = [graph.restarted(r) for r in everywhere if first(r.now)]
     if bound is not None and _is_late(graph, starts, missing, bound):
         return False
-    inside = graph.reachable(starts, lambda region: satisfies(region.now, missing))
+    inside = graph.reachable(starts, lambda region: holds(region.now))
     return not graph.staying(inside) & set(starts)
 
 
 def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:
     """Whether the timer can pass the bound with the formula true until then."""
-    waiting = graph.reachable(
-        starts, lambda region: region.timer <= bound and satisfies(region.now, inside)
-    )
+    holds = truth_of(inside)
+    waiting = graph.reachable(starts, lambda region: region.timer <= bound and holds(region.now))
     return any(later is not None and later.timer > bound for later in map(graph.later, waiting))
 
 

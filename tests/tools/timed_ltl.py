@@ -8,7 +8,7 @@ Source: Clarke, Grumberg, Hamaguchi, Another Look at LTL Model Checking, 1997.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import product
 from random import Random
@@ -18,10 +18,10 @@ import networkx as nx
 from rvmon.timed.model.expressions import BinaryOperation, Expression, PathFormula, UnaryOperation
 from rvmon.timed.model.guards import is_linear, parts_of
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
-from rvmon.timed.runs.concrete import act, initial_configuration, wait
+from rvmon.timed.model.operators import PathOp, UnaryOp
+from rvmon.timed.runs.concrete import Rules, initial_configuration
 from rvmon.timed.runs.run import Run
-from tests.tools.timed_regions import Region, RegionGraph, TooManyRegionsError, satisfies
+from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
 _Node = tuple[Region, frozenset[PathFormula]]
 
@@ -43,6 +43,8 @@ class LinearTruth:
         self._regions = RegionGraph(network, [formula], 1 if progress else None, limit)
         self._formula, self._progress, self._limit = formula, progress, limit
         temporal = [p for p in parts_of(formula) if isinstance(p, PathFormula)]
+        plain = [p for p in parts_of(formula) if not is_linear(p)]
+        self._plain = {id(part): truth_of(part) for part in plain}
         self._temporal = list(dict.fromkeys(temporal))
         sets = product((False, True), repeat=len(self._temporal))
         self._sets = [
@@ -74,14 +76,14 @@ class LinearTruth:
     def _holds(self, formula: Expression, node: _Node) -> bool:
         region, held = node
         if not is_linear(formula):
-            return satisfies(region.now, formula)
+            return self._plain[id(formula)](region.now)
         match formula:
             case PathFormula():
                 return formula in held
             case UnaryOperation(UnaryOp.NOT, operand):
                 return not self._holds(operand, node)
             case BinaryOperation(op, left, right):
-                return _JOINED[op](self._holds(left, node), self._holds(right, node))
+                return JOINED[op](self._holds(left, node), self._holds(right, node))
             case _:
                 raise AssertionError(f"{formula} is none of LTL")
 
@@ -133,19 +135,19 @@ class LinearTruth:
 
 def satisfied_by(network: Network, run: Run, formula: Expression) -> bool:
     """Whether a run that ends in a loop, or at rest, satisfies a formula without clocks."""
-    letters, back = [initial_configuration(network)], 0
+    rules, letters, back = Rules(network), [initial_configuration(network)], 0
     for number, step in enumerate(run.steps):
         if number == run.loop:
             back = len(letters)
-        letters.append(wait(network, letters[-1], step.delay))
+        letters.append(rules.wait(letters[-1], step.delay))
         if step.action is not None:
-            letters.append(act(network, letters[-1], step.action))
+            letters.append(rules.act(letters[-1], step.action))
     last = len(letters) - 1
     following = [*range(1, last + 1), last if run.loop is None else back]
 
     def where(part: Expression) -> list[bool]:
         if not is_linear(part):
-            return [satisfies(letter, part) for letter in letters]
+            return [*map(truth_of(part), letters)]
         match part:
             case PathFormula(op, body, _, left):
                 final = op is PathOp.FINALLY
@@ -157,18 +159,11 @@ def satisfied_by(network: Network, run: Run, formula: Expression) -> bool:
                 return [not held for held in where(operand)]
             case BinaryOperation(op, one, other):
                 pairs = zip(where(one), where(other), strict=True)
-                return [_JOINED[op](*pair) for pair in pairs]
+                return [JOINED[op](*pair) for pair in pairs]
             case _:
                 raise AssertionError(f"{part} is none of LTL")
 
     return where(formula)[0]
-
-
-_JOINED: dict[BinaryOp, Callable[[bool, bool], bool]] = {
-    BinaryOp.AND: lambda one, other: one and other,
-    BinaryOp.OR: lambda one, other: one or other,
-    BinaryOp.IMPLY: lambda one, other: other or not one,
-}
 
 
 def random_linear(random: Random, states: list[str], size: int) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
+from operator import ge, gt, le, lt
 from typing import Any
 
 import networkx as nx
@@ -22,6 +23,7 @@ from rvmon.timed.model.expressions import (
     BinaryOperation,
     Choice,
     ClockCompare,
+    ClockOp,
     Constant,
     Expression,
     UnaryOperation,
@@ -35,11 +37,8 @@ from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,
-    act,
-    compares,
-    every_action,
+    Rules,
     initial_configuration,
-    wait,
 )
 
 
@@ -47,34 +46,45 @@ class TooManyRegionsError(Exception):
     """A network has more regions than were asked to be walked through."""
 
 
-def satisfies(now: Configuration, formula: Expression) -> bool:
-    """Whether a state formula without `deadlock` holds."""
+_COMPARISONS = {ClockOp.LT: lt, ClockOp.LE: le, ClockOp.GE: ge, ClockOp.GT: gt}
+
+
+def truth_of(formula: Expression) -> Callable[[Configuration], bool]:
+    """Make a function that says whether a state formula without `deadlock` holds."""
     if is_discrete(formula):
-        return bool(evaluator(formula)(now.locations, now.values))
+        value = evaluator(formula)
+        return lambda now: bool(value(now.locations, now.values))
     match formula:
-        case ClockCompare():
-            return compares(now, formula)
+        case ClockCompare(clock, op, written):
+            compare, bound = _COMPARISONS[op], evaluator(written)
+            return lambda now: compare(now.clocks[clock], bound(now.locations, now.values))
         case UnaryOperation(UnaryOp.NOT, operand):
-            return not satisfies(now, operand)
-        case BinaryOperation(BinaryOp.AND, left, right):
-            return satisfies(now, left) and satisfies(now, right)
-        case BinaryOperation(BinaryOp.OR, left, right):
-            return satisfies(now, left) or satisfies(now, right)
-        case BinaryOperation(BinaryOp.IMPLY, left, right):
-            return not satisfies(now, left) or satisfies(now, right)
-        case BinaryOperation(BinaryOp.EQ, left, right):
-            return satisfies(now, left) == satisfies(now, right)
-        case BinaryOperation(BinaryOp.NE, left, right):
-            return satisfies(now, left) != satisfies(now, right)
+            denied = truth_of(operand)
+            return lambda now: not denied(now)
+        case BinaryOperation(word, left, right):
+            join, first, second = JOINED[word], truth_of(left), truth_of(right)
+            return lambda now: join(first(now), second(now))
         case Choice(condition, then, otherwise):
-            return satisfies(now, then if satisfies(now, condition) else otherwise)
+            test, yes, no = truth_of(condition), truth_of(then), truth_of(otherwise)
+            return lambda now: yes(now) if test(now) else no(now)
         case _:
             raise AssertionError(f"{formula} is no state formula")
 
 
-@dataclass(frozen=True, slots=True)
+JOINED: dict[BinaryOp, Callable[[bool, bool], bool]] = {
+    BinaryOp.AND: lambda one, other: one and other,
+    BinaryOp.OR: lambda one, other: one or other,
+    BinaryOp.IMPLY: lambda one, other: other or not one,
+    BinaryOp.EQ: lambda one, other: one == other,
+    BinaryOp.NE: lambda one, other: one != other,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Region:
     """A configuration that stands for all of its region, and the time since a chosen instant.
+
+    There is one object for each region that graphs share.
 
     Attributes:
         now: the representative; clocks above all constants are one more than the largest.
@@ -85,9 +95,9 @@ class Region:
     timer: Fraction
 
 
-Steps = dict[tuple[int, bool, str, "Region"], Any]
-"""What follows on regions, as far as it was asked, by the largest constant and whether there is a
-timer: questions on one network share it."""
+Steps = dict[Any, Any]
+"""The regions by what they hold, and what follows on them, as far as it was asked, by the largest
+constant and whether there is a timer: questions on one network share it."""
 
 
 class RegionGraph:
@@ -120,6 +130,7 @@ class RegionGraph:
         self._timed = bound is not None
         self._limit = limit
         self._steps: Steps = {} if steps is None else steps
+        self._rules = Rules(network)
 
     def _known(self, kind: str, region: Region, find: Callable[[Region], Any]) -> Any:
         key = (self._largest, self._timed, kind, region)
@@ -129,7 +140,7 @@ class RegionGraph:
 
     def start(self) -> Region:
         """The region of the initial configuration."""
-        return Region(initial_configuration(self._network), Fraction(0))
+        return self.region_of(initial_configuration(self._network))
 
     def region_of(self, now: Configuration) -> Region:
         """The region of any configuration."""
@@ -144,9 +155,9 @@ class RegionGraph:
         return list(self._known("actions", region, lambda one: [*self._actions(one)]))
 
     def _actions(self, region: Region) -> Iterator[Region]:
-        for action in every_action(self._network, region.now):
+        for action in self._rules.every_action(region.now):
             try:
-                after = act(self._network, region.now, action)
+                after = self._rules.act(region.now, action)
             except InvalidRunError:
                 continue
             yield self._canonical(after, region.timer)
@@ -166,7 +177,7 @@ class RegionGraph:
             # fraction reaches the next one.
             step = (Fraction(1) - fractions[-1]) / 2 if fractions[0] == 0 else 1 - fractions[-1]
         try:
-            now = wait(self._network, region.now, step)
+            now = self._rules.wait(region.now, step)
         except InvalidRunError:
             return None
         return self._canonical(now, region.timer + step if self._timed else region.timer)
@@ -224,20 +235,22 @@ class RegionGraph:
     def _canonical(self, now: Configuration, timer: Fraction) -> Region:
         """The representative of a configuration's region."""
         clocks = [*now.clocks, *([timer] if self._timed else [])]
-        finite = [clock for clock in clocks if clock <= self._largest]
-        fractions = sorted({clock - floor(clock) for clock in finite} - {Fraction(0)})
-        gaps = len(fractions) + 1
-        rank = {fraction: Fraction(i, gaps) for i, fraction in enumerate(fractions, start=1)}
-        rank[Fraction(0)] = Fraction(0)
-        moved = [
-            floor(clock) + rank[clock - floor(clock)]
-            if clock <= self._largest
-            else Fraction(self._largest + 1)
-            for clock in clocks
-        ]
-        if self._timed:
-            timer = moved.pop()
-        return Region(Configuration(now.locations, now.values, tuple(moved)), timer)
+        whole = [floor(clock) if clock <= self._largest else self._largest + 1 for clock in clocks]
+        over = [clock - floor(clock) if clock <= self._largest else Fraction(0) for clock in clocks]
+        fractions = sorted({Fraction(0), *over})
+        ranks = [fractions.index(part) for part in over]
+        key = (self._largest, self._timed, now.locations, now.values, *whole, *ranks)
+        if key not in self._steps:
+            moved = [
+                number + Fraction(rank, len(fractions))
+                for number, rank in zip(whole, ranks, strict=True)
+            ]
+            if self._timed:
+                timer = moved.pop()
+            found = Configuration(now.locations, now.values, tuple(moved))
+            self._steps[key] = Region(found, timer)
+        region: Region = self._steps[key]
+        return region
 
 
 def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:

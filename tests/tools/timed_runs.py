@@ -10,14 +10,12 @@ from rvmon.timed.model.network import LeadsToFormula, Network
 from rvmon.timed.model.operators import PathOp
 from rvmon.timed.runs.concrete import (
     Configuration,
-    act,
+    Rules,
     initial_configuration,
-    replay,
-    wait,
 )
 from rvmon.timed.runs.run import Run
 from rvmon.timed.search.outcome import Outcome
-from tests.tools.timed_regions import RegionGraph, satisfies
+from tests.tools.timed_regions import RegionGraph, truth_of
 
 Instants = list[tuple[Fraction, Configuration]]
 
@@ -30,13 +28,14 @@ def shows(network: Network, outcome: Outcome) -> bool:
     """
     run = outcome.run
     assert run is not None
-    replay(network, run)
+    Rules(network).replay(run)
     instants = instants_of(network, run)
     match outcome.query.formula:
         case LeadsToFormula(left, right, bound):
+            left_holds = truth_of(left)
             missing = normal_form(right, positive=False)
             return any(
-                satisfies(now, left) and _stays(instants[index:], missing, bound)
+                left_holds(now) and _stays(instants[index:], missing, bound)
                 for index, (_, now) in enumerate(instants)
             )
         case PathFormula(op, body, bound):
@@ -55,33 +54,33 @@ def shows(network: Network, outcome: Outcome) -> bool:
 
 def instants_of(network: Network, run: Run) -> Instants:
     """Each instant at which something is done, before and after it, and the middle of each wait."""
-    time, now = Fraction(0), initial_configuration(network)
+    rules, time, now = Rules(network), Fraction(0), initial_configuration(network)
     instants = [(time, now)]
     for step in run.steps:
         half = step.delay / 2
-        instants.append((time + half, wait(network, now, half)))
-        time, now = time + step.delay, wait(network, now, step.delay)
+        instants.append((time + half, rules.wait(now, half)))
+        time, now = time + step.delay, rules.wait(now, step.delay)
         instants.append((time, now))
         if step.action is not None:
-            now = act(network, now, step.action)
+            now = rules.act(now, step.action)
             instants.append((time, now))
     return instants
 
 
 def _holds_at_end(network: Network, formula: Expression, last: Configuration) -> bool:
     if not speaks_of_deadlock(formula):
-        return satisfies(last, formula)
+        return truth_of(formula)(last)
     graph = RegionGraph(network, [formula])
     dead = graph.is_dead(graph.region_of(last))
-    return satisfies(last, with_deadlock(formula, dead))
+    return truth_of(with_deadlock(formula, dead))(last)
 
 
 def _stays(instants: Instants, formula: Expression, bound: int | None) -> bool:
     """Whether a formula holds throughout, or until more than the bound has gone by."""
-    start = instants[0][0]
+    start, holds = instants[0][0], truth_of(formula)
     for time, now in instants:
         if bound is not None and time - start > bound:
             return True
-        if not satisfies(now, formula):
+        if not holds(now):
             return False
     return True

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.timed.model.network import Network
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.constraints import Atom
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep
 from rvmon.timed.runs.space import Move, State
@@ -89,7 +89,7 @@ def make_run(
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
     run = Run(_position(network, start), run_steps, ending, loop, timing)
-    replay(network, run)
+    Rules(network).replay(run)
     return run
 
 

@@ -23,7 +23,7 @@ from rvmon.timed.model.guards import compares_of, is_discrete, normal_form
 from rvmon.timed.model.network import Extremes, Network, Query, Term
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import Space, check_clocks, check_start
 from rvmon.timed.search.clock_bounds import value_range
@@ -104,6 +104,7 @@ class _Climb:
         self._sign = 1 if largest else -1
         self._meter = meter
         self._space = Space(network)
+        self._rules = Rules(network)
 
     def run(self) -> Extreme:
         """The end, or what is known of it."""
@@ -147,7 +148,7 @@ class _Climb:
 
     def _value(self, run: Run) -> Fraction:
         """The value in the last state of a run."""
-        last = replay(self._network, run)[-1]
+        last = self._rules.replay(run)[-1]
         if self._term.clock is not None:
             return self._sign * last.clocks[self._term.clock]
         return Fraction(self._sign * evaluator(self._term.value)(last.locations, last.values))

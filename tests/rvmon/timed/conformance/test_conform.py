@@ -9,7 +9,7 @@ from rvmon.errors import ModelError
 from rvmon.timed.conformance.conform import Allowed, conform
 from rvmon.timed.conformance.recordings import Recorded
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.search.suite import Criterion, build_suite
 from rvmon.trace.time import TICKS_PER_SECOND
 
@@ -141,7 +141,7 @@ def test_every_run_of_a_network_conforms_to_it(seed):
         return
     labels = frozenset(edge.label for a in network.automata for edge in a.edges if edge.label)
     for run, _ in suite.runs:
-        replay(network, run)
+        Rules(network).replay(run)
         now, actions = Fraction(0), []
         for step in run.steps:
             now += step.delay

@@ -11,7 +11,7 @@ from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.concrete import Configuration, compares, is_ready
+from rvmon.timed.runs.concrete import Configuration, Rules
 from rvmon.timed.runs.statistics import sample
 from rvmon.timed.search.verify import verify
 
@@ -163,12 +163,12 @@ def test_clocks_under_or_make_edges_of_which_one_fits():
     ):
         network = loads_network(text.format(query))
         assert verify(network, network.queries[0]).holds is expected, query
-    edges = network.automata[0].edges
+    edges, rules = network.automata[0].edges, Rules(network)
     assert len(edges) == 4
     for x, y, v in ((0, 0, 0), (1, 6, 1), (7, 7, 1), (8, 8, 0), (8, 8, 1), (3, 3, 0), (1, 1, 2)):
         now = Configuration((0,), (v,), (Fraction(x), Fraction(y)))
         fitting = sum(
-            is_ready(now, 0, edge) and all(compares(now, c) for c in edge.guard.clocks)
+            rules.is_ready(now, 0, edge) and all(rules.compares(now, c) for c in edge.guard.clocks)
             for edge in edges
         )
         assert fitting == int((x < 2 or y > 5) and (v == 0 or x == 7))

@@ -14,10 +14,8 @@ from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.observation.observe import observe
 from rvmon.timed.runs.concrete import (
     InvalidRunError,
-    act,
-    every_action,
+    Rules,
     initial_configuration,
-    wait,
 )
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.outcome import Budget
@@ -294,14 +292,15 @@ def walked(network, random):
     """The instants of a random run, with the signals and the events there; then its end."""
     read = {one.name: evaluator(one.value) for one in network.signals}
     now, t, names = initial_configuration(network), Fraction(0), set[str]()
+    rules = Rules(network)
     for _ in range(12):
         signals = {name: bool(one(now.locations, now.values)) for name, one in read.items()}
         yield t, signals | dict.fromkeys(names, True)
         try:
             delay = Fraction(random.randint(1, 5), 2)
-            now, t = wait(network, now, delay), t + delay
-            action = random.choice([*every_action(network, now)])
-            now = act(network, now, action)
+            now, t = rules.wait(now, delay), t + delay
+            action = random.choice([*rules.every_action(now)])
+            now = rules.act(now, action)
         except (InvalidRunError, IndexError):
             break
         names = {edge.label for _, edge in action.edges}

@@ -5,14 +5,14 @@ from math import ceil, floor
 
 import pytest
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import RegionGraph, TooManyRegionsError, satisfies
+from tests.tools.timed_regions import RegionGraph, TooManyRegionsError, truth_of
 
 from rvmon.cli import main
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import ClockCompare, ClockOp, Constant
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.search.extremes import FARTHEST, extremes
 from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
@@ -90,7 +90,7 @@ def test_values_are_those_of_the_regions(first):
         where = " and ".join(f"{clock.name} <= 7" for clock in network.clocks)
         terms = ", ".join(one.name for one in (network.variables[0], *network.clocks))
         query = query_on(network, f"bounds{{{where}}}: {terms}")
-        inside = [now for now in states if all(satisfies(now, one) for one in fence)]
+        inside = [now for now in states if all(truth_of(one)(now) for one in fence)]
         values = [
             [now.values[0] for now in inside],
             *([now.clocks[clock] for now in inside] for clock in clocks),
@@ -100,7 +100,7 @@ def test_values_are_those_of_the_regions(first):
             assert (least.value, least.attained) == (floor(min(own)), min(own) == floor(min(own)))
             assert (largest.value, largest.attained) == (ceil(max(own)), max(own) == ceil(max(own)))
         for one in found:
-            assert satisfies(replay(network, one.run)[-1], query.formula.where)
+            assert truth_of(query.formula.where)(Rules(network).replay(one.run)[-1])
 
 
 @pytest.mark.parametrize(

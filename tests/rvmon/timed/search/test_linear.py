@@ -13,7 +13,7 @@ from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import UnaryOperation
 from rvmon.timed.model.guards import compares_of, is_linear
 from rvmon.timed.model.operators import UnaryOp
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.verify import verify
 
@@ -115,7 +115,7 @@ def test_answers_agree_with_an_explicit_tableau(first):
                 expected = not LinearTruth(network, denied, False, 3_000).some_run()
                 assert outcome.holds == expected, (seed, query.text)
                 if outcome.run is not None:
-                    replay(network, outcome.run)
+                    Rules(network).replay(outcome.run)
                     if not list(compares_of(denied)):
                         assert satisfied_by(network, outcome.run, denied), (seed, query.text)
                     passes = outcome.run.ending not in (Ending.ZENO_LOOP, Ending.TIME_LOCK)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.suite import Criterion, all_items, build_suite, item_text
 
@@ -36,7 +36,7 @@ def test_what_is_said_to_be_covered_is(model, criterion):
     suite = build_suite(network, criterion)
     seen = set()
     for run, items in suite.runs:
-        replay(network, run)
+        Rules(network).replay(run)
         here = items_of(network, run, criterion)
         assert {(item.automaton, *item.numbers) for item in items} <= here
         seen |= here

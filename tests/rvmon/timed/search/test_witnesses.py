@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.concrete import InvalidRunError, replay
+from rvmon.timed.runs.concrete import InvalidRunError, Rules
 from rvmon.timed.runs.run import Run, RunStep, Window
 from rvmon.timed.runs.timing import TimedStep, earliest, sample, timing_of, windows
 from rvmon.timed.search.outcome import Policy
@@ -69,7 +69,7 @@ def test_samples_are_runs(seed):
         RunStep(step.window, delay, step.action, step.position)
         for step, delay in zip(run.steps, delays, strict=True)
     )
-    replay(network, Run(run.start, moved))
+    Rules(network).replay(Run(run.start, moved))
 
 
 def test_earliest_is_the_least_of_all():
@@ -93,7 +93,7 @@ def test_a_wrong_delay_is_no_run(position):
     wide = Window(0, None)
     steps[position] = RunStep(wide, Fraction(1, 2), broken.action, broken.position)
     with pytest.raises(InvalidRunError):
-        replay(network, Run(run.start, tuple(steps)))
+        Rules(network).replay(Run(run.start, tuple(steps)))
 
 
 def test_fastest_beats_shortest():
