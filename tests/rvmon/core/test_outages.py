@@ -472,3 +472,27 @@ def test_random_outages_are_judged_as_the_law_has_it(time):
     found = campaign(makers, seeds, profile, traces, each=5)
     assert not found.disagreements, found.disagreements[0]
     assert found.counts["pairs with outages"] > 60
+
+
+def test_what_was_learnt_of_a_value_before_all_was_born_is_no_news_in_an_outage() -> None:
+    """A trigger that rises while another signal is lost starts an attempt, whatever came before."""
+    run = Run("requirement R upon p then immediately once[0, 9 ns] q and x > 1")
+    run.sample(4, p=True).sample(5, p=True, q=False).sample(7, p=False)
+    assert run.lose("x", 12)
+    report = run.sample(12, p=True).report()
+    assert [(one.triggered, one.verdict.value) for one in report.attempts] == [
+        (12, "F"),
+        (4, "I"),
+    ]
+
+
+def test_what_was_learnt_of_a_value_in_one_outage_is_no_news_in_the_next() -> None:
+    """A limit that is passed between two outages, and kept in the second, is passed again there."""
+    run = Run("requirement R upon x > 1 then immediately q")
+    run.sample(1, x=0.5, q=False, p=False).lost("q", 2, 3).sample(3, x=0.7).sample(6, q=False)
+    assert run.sample(8, x=2.0).sample(9, x=0.5).lose("q", 10)
+    report = run.sample(11, x=2.0).report()
+    assert [(one.triggered, one.verdict.value) for one in report.attempts] == [
+        (8, "F"),
+        (11, "I"),
+    ]

@@ -65,9 +65,11 @@ static void learn_span(run *r, int32_t local)
     const int32_t *place = LIST(PLAN(r), atoms);
     const rv_number *value = &r->value[local];
     span *found = &r->spans[local];
+    const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
     int32_t i;
     *found = NO_SPAN;
-    if (((quick_now(r) != NULL) && (r->part->quick[local].kind != RV_UNKNOWN)) || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
+    /* What is taken quickly, now or later, learns of no span that its values leave. */
+    if (may_be_quick || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
         return;
     }
     if (value->kind == RV_WHOLE) {
