@@ -487,12 +487,12 @@ def test_what_was_learnt_of_a_value_before_all_was_born_is_no_news_in_an_outage(
 
 
 def test_what_was_learnt_of_a_value_in_one_outage_is_no_news_in_the_next() -> None:
-    """A limit that is passed between two outages, and kept in the second, is passed again there."""
+    """A limit that was passed between two outages is kept, and passed again, in the second."""
     run = Run("requirement R upon x > 1 then immediately q")
     run.sample(1, x=0.5, q=False, p=False).lost("q", 2, 3).sample(3, x=0.7).sample(6, q=False)
-    assert run.sample(8, x=2.0).sample(9, x=0.5).lose("q", 10)
-    report = run.sample(11, x=2.0).report()
+    assert run.sample(8, x=2.0).lose("q", 10)
+    report = run.sample(11, x=0.5).sample(12, x=2.0).report()
     assert [(one.triggered, one.verdict.value) for one in report.attempts] == [
         (8, "F"),
-        (11, "I"),
+        (12, "I"),
     ]
