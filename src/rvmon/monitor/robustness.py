@@ -32,7 +32,11 @@ class Robustness:
     kept: float
 
     def of(self, attempt: Attempt) -> float | None:
-        """The figure for a decided attempt: its distance from the other verdict, at least."""
+        """The figure for a decided attempt: its distance from the other verdict, at least.
+
+        `None` if there is none: nothing is said of what is left open or settled by a policy, and
+        what decided an attempt may lie outside the piece of the trace that was measured.
+        """
         match attempt.decision, attempt.verdict:
             case Decision.OPEN, _:
                 return None
@@ -40,9 +44,9 @@ class Robustness:
                 return self.low
             case Decision.HELD_TO_END, _:
                 return self.kept
-            case Decision.PREFIX, Verdict.PASS:
+            case Decision.PREFIX, Verdict.PASS if self.low >= 0:
                 return self.low
-            case Decision.PREFIX, Verdict.FAIL:
+            case Decision.PREFIX, Verdict.FAIL if self.high <= 0:
                 return self.high
             case _:
                 return None

@@ -240,6 +240,46 @@ def test_margins_are_intervals_where_a_source_was_lost():
     assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), 3.0)
 
 
+PIECES = """spec s
+time sampled
+signal x : real
+event e
+requirement Ahead
+  upon start
+  then for 10 s x <= 5
+requirement Back
+  upon e
+  then historically[0 s, 2 s] x <= 5
+"""
+
+
+def test_an_attempt_is_measured_in_the_piece_of_the_trace_in_which_it_begins():
+    """Where samples are positions an outage may hide some: what lies beyond it may be anything."""
+    monitor = rvmon.loads(PIECES).robustness_monitor()
+    figures = [*monitor.step(0, {"x": 2.0}), *monitor.step(1, {"x": 3.0})]
+    figures += monitor.lose(["x"], since=2, until=3)
+    for t, x in ((4, 4.0), (6, 1.0)):
+        figures += monitor.step(t, {"x": x, "e": True})
+    figures += monitor.finish(20)
+    found = [(one.requirement, one.t, one.robustness.low, one.robustness.high) for one in figures]
+    behind = [one for one in found if one[0] == "Back" and one[1] >= 4 * 10**9]
+    assert ("Ahead", 0, float("-inf"), 2.0) in found
+    assert behind == [("Back", 4 * 10**9, float("-inf"), 1.0), ("Back", 6 * 10**9, 1.0, 1.0)]
+
+
+def test_what_is_decided_behind_an_outage_has_no_figure_of_before_it():
+    """Its sign would say the contrary of the verdict."""
+    spec = rvmon.loads(PIECES)
+    judged, measured = spec.monitor(only=["Ahead"]), spec.robustness_monitor(only=["Ahead"])
+    for one in (judged, measured):
+        one.step(0, {"x": 2.0})
+    judged.lose(["x"], since=2, until=3)
+    [figure] = [one for one in measured.lose(["x"], since=2, until=3) if one.t == 0]
+    [attempt] = [one for one in judged.step(4, {"x": 9.0}) if one.triggered == 0]
+    assert (attempt.verdict, figure.robustness.high) == (rvmon.Verdict.FAIL, 3.0)
+    assert figure.robustness.of(attempt) is None
+
+
 def test_reasons_that_are_all_different_do_not_fill_the_memory():
     """As those of a program that puts a line number into each."""
     monitor = begun()

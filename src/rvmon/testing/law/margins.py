@@ -1,7 +1,8 @@
 """The robustness of attempts, straight from its definition.
 
 Every position is explicit and every operator a minimum of maxima over positions. Unknown input and
-what lies behind the end may be anything: each figure is an interval.
+what lies behind the end may be anything: each figure is an interval. Where positions may not be
+there a trace is in pieces: what lies outside the one in which an attempt begins may be anything.
 """
 
 from __future__ import annotations
@@ -52,18 +53,32 @@ def margins(
     return found
 
 
+def _piece(word: Word, position: int) -> tuple[Word, int]:
+    """The word as far as there surely are positions around one, and the first of these."""
+    letters = word.letters
+    last = next((k for k in range(position, len(letters)) if not letters[k].sure), None)
+    first = next((k + 1 for k in reversed(range(position)) if not letters[k].sure), 0)
+    if last is None:
+        return word, first
+    return Word(letters[:last], None, letters[last].instant), first
+
+
 def _required(start: Start, *, kept: bool) -> Range:
     requirement = start.view.requirement
     favour = counts_in_favour(requirement)
-
-    ranges = _Ranges(start.word, start.captured, favour=favour, kept=kept)
+    if not start.word.letters[start.position].sure:
+        return ANY
+    word, first = _piece(start.word, start.position)
+    owes = [k for k in start.owes if k < len(word.letters)]
+    over = start.stop is not None and start.stop < len(word.letters)
+    ranges = _Ranges(word, start.captured, first, favour=favour, kept=kept)
 
     def consequent(k: int) -> Range:
         return ranges.range(requirement.consequent, k)
 
     if is_upon_end(requirement) or (requirement.mode is Mode.UPON and start.sure is not None):
         return consequent(start.position)
-    trigger = Past(start.word, start.captured)
+    trigger = Past(word, start.captured, first)
 
     def required(k: int) -> Range:
         if start.blurred is not None and k >= start.blurred:
@@ -73,19 +88,21 @@ def _required(start: Start, *, kept: bool) -> Range:
         excused = negated(trigger.range(requirement.trigger, k, Truth.FALSE))
         return most([excused, consequent(k)])
 
-    return least([*map(required, start.owes), TOP if kept or start.stop is not None else ANY])
+    end = over or (kept and len(word.letters) == len(start.word.letters))
+    return least([*map(required, owes), TOP if end else ANY])
 
 
 class _Ranges:
     def __init__(
-        self, word: Word, captured: Mapping[str, Scalar], *, favour: bool, kept: bool
+        self, word: Word, captured: Mapping[str, Scalar], first: int, *, favour: bool, kept: bool
     ) -> None:
         self.letters = word.letters
         self.end = word.end
         self.reached = word.reached
         self.favour = favour
         self.kept = kept
-        self.past = Past(word, captured)
+        self.first = first
+        self.past = Past(word, captured, first)
         self.known: dict[tuple[int, int, bool], Range] = {}
 
     def range(self, formula: Formula, i: int, *, positive: bool = True) -> Range:
@@ -125,7 +142,7 @@ class _Ranges:
             case UnaryOp.ALWAYS:
                 return self._release(_always(BOTTOM), operand, i, window, positive)
             case UnaryOp.PREVIOUS:
-                return operand(i - 1) if i else BOTTOM
+                return self._before(operand, i, BOTTOM)
             case UnaryOp.ONCE:
                 return self._since(_always(TOP), operand, i, window)
             case UnaryOp.HISTORICALLY:
@@ -135,9 +152,9 @@ class _Ranges:
                 whole = negated(self._since(_always(TOP), _not(operand), i, window))
                 return least([TOP if begun else BOTTOM, whole])
             case UnaryOp.RISE:
-                return least([operand(i), opposite(i - 1) if i else TOP])
+                return least([operand(i), self._before(opposite, i, TOP)])
             case UnaryOp.FALL:
-                return least([opposite(i), operand(i - 1) if i else BOTTOM])
+                return least([opposite(i), self._before(operand, i, BOTTOM)])
             case _:
                 assert_never(formula.op)
 
@@ -215,12 +232,20 @@ class _Ranges:
         return most(ways)
 
     def _since(self, left: Operand, right: Operand, i: int, window: Interval) -> Range:
-        now = self.letters[i].instant
-        return most(
+        now, own = self.letters[i].instant, range(self.first, i + 1)
+        ways = [
             least([right(j), *(left(k) for k in range(j + 1, i + 1))])
-            for j in range(i + 1)
+            for j in own
             if is_within(now - self.letters[j].instant, window)
-        )
+        ]
+        if self.past.reaches_out(i, window):
+            ways.append(least([ANY, *map(left, own)]))
+        return most(ways)
+
+    def _before(self, operand: Operand, i: int, nothing: Range) -> Range:
+        if i == self.first:
+            return ANY if i else nothing
+        return operand(i - 1)
 
 
 Operand = Callable[[int], Range]

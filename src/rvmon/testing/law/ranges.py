@@ -68,12 +68,14 @@ class Past:
     Args:
         word: the trace.
         captured: values of `let` and `for each`.
+        first: what lies before this position may be anything; nothing lies before the first one.
 
     Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
     """
 
-    def __init__(self, word: Word, captured: Mapping[str, Scalar]) -> None:
+    def __init__(self, word: Word, captured: Mapping[str, Scalar], first: int = 0) -> None:
         self._letters = word.letters
+        self._first = first
         self._captured = captured
         self._truths = Truths(word, captured)
         self._known: dict[tuple[int, int, Truth], Range] = {}
@@ -159,25 +161,38 @@ class Past:
     ) -> Range:
         """Positions at which `left` is not born do not stand in the way."""
         now = self._letters[i].instant
-        kept = [TOP if left is None else self.range(left, k, Truth.TRUE) for k in range(i + 1)]
-        return most(
-            least([right(j), *kept[j + 1 :]])
-            for j in range(i + 1)
+        own = range(self._first, i + 1)
+        kept = [TOP if left is None else self.range(left, k, Truth.TRUE) for k in own]
+        ways = [
+            least([right(j), *kept[j + 1 - self._first :]])
+            for j in own
             if is_within(now - self._letters[j].instant, window)
-        )
+        ]
+        if self.reaches_out(i, window):
+            ways.append(least([ANY, *kept]))
+        return most(ways)
+
+    def reaches_out(self, i: int, window: Interval) -> bool:
+        """Whether a window of the past holds something that may be anything."""
+        if self._first == 0:
+            return False
+        outside = self._letters[i].instant - self._letters[self._first - 1].instant
+        return window.high is None or outside <= window.high
 
     def _before(self, operand: Formula, i: int) -> Seen:
         if i == 0:
             return Seen(Truth.FALSE, lambda _: BOTTOM)
         state = self._truths.state(operand, i - 1)
-        value = self.range(operand, i - 1, Truth.FALSE)
+        value = ANY if i == self._first else self.range(operand, i - 1, Truth.FALSE)
         return Seen(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
 
     def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
         start, now = self._letters[0].instant, self._letters[i].instant
-        inside = [k for k in range(i + 1) if is_within(now - self._letters[k].instant, window)]
+        own = range(self._first, i + 1)
+        inside = [k for k in own if is_within(now - self._letters[k].instant, window)]
         begun = TOP if now - start >= (window.high or 0) else BOTTOM
-        value = least([begun, *(self.range(operand, k, Truth.FALSE) for k in inside)])
+        rest = ANY if self.reaches_out(i, window) else TOP
+        value = least([begun, rest, *(self.range(operand, k, Truth.FALSE) for k in inside)])
         return self._unless_unborn(value, operand, i, window, unborn)
 
     def _unless_unborn(

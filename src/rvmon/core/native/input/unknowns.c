@@ -192,7 +192,7 @@ void begin_blank(run *r, int64_t t)
     if (r == r->home->root) {
         r->opens_at = -LIMIT; /* whatever occurs is unknown */
     }
-    margins_miss(r);
+    margins_miss(r, t);
     remember_unknown(r, t);
     blank_out(r, t);
     if (r->part->is_watched) {

@@ -56,6 +56,30 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answere
     g->answered = answered;
     g->reported = -INFINITE;
     g->begun = false;
+    g->amid = false;
+}
+
+/* The bound at work of what may be anything. */
+double bound_of_anything(const gauging *w)
+{
+    return (w->side == 0) ? -INFINITE : INFINITE;
+}
+
+/* Have what lies before the first position of a gauge be anything; `last` is the last position there. */
+void gauge_begin_amid(gauging *w, int64_t last)
+{
+    const margin_shape *s = w->shape;
+    int32_t i;
+    w->g->amid = true;
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        margin_node *o = &w->g->nodes[i];
+        if ((n->kind == OP_WINDOW) && (n->low < 0) && room_for_step(w, &o->wedge, o->wedge.first)) {
+            add_step(&o->wedge, last - n->low, bound_of_anything(w));
+        } else {
+            o->carried = bound_of_anything(w);
+        }
+    }
 }
 
 /* The same as another one, independent from now on. */
@@ -83,6 +107,7 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
         made->answered = g->answered;
         made->reported = g->reported;
         made->begun = g->begun;
+        made->amid = g->amid;
     }
     return done;
 }

@@ -181,7 +181,7 @@ void margins_clear(run *r)
         q->position = -LIMIT;
         q->active = false;
         q->parted = false;
-        q->blind = false;
+        q->missed = false;
         q->changed_inputs = false;
     }
 }

@@ -212,6 +212,7 @@ static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reache
         answers[i - q->asks_first] = (side == 0) ? ask_at(q, i)->low : ask_at(q, i)->high;
     }
     w.g = &q->scratch;
+    w.side = side;
     w.answers = answers;
     for (k = 0; k < q->letter_count; k++) {
         if (q->letters[k].at <= floored(end->instant, w.step)) {
@@ -271,6 +272,19 @@ static bool found_at_end(void *user, const rv_margin *figure, int32_t record)
         *made = *figure;
     }
     return made != NULL;
+}
+
+static bool found_where_cut(void *user, const rv_margin *figure, int32_t record)
+{
+    rv_margin made = *figure;
+    made.kept = made.low;
+    return found_at_end(user, &made, record);
+}
+
+/* Tell all figures of a judge that are left, as nothing is known of what is there from `t` on. */
+void margins_cut(run *r, int32_t index, int64_t t)
+{
+    (void)each_at_end(r, index, t - 1, t, found_where_cut, r->home->monitor);
 }
 
 /* Tell all figures that are left, when time has come to the end. */

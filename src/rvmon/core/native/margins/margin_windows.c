@@ -302,7 +302,8 @@ static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, 
 void gauge_shift(gauging *w, int32_t place)
 {
     const operator_plan *n = node_plan_of(w, place);
-    const double before = (node_plan_of(w, n->left)->turned != 0) ? INFINITE : -INFINITE;
+    const double nothing = (node_plan_of(w, n->left)->turned != 0) ? INFINITE : -INFINITE;
+    const double before = w->g->amid ? bound_of_anything(w) : nothing;
     const int64_t known = (w->end != NULL) ? LIMIT : w->g->nodes[n->left].known - n->low;
     shifting x = {&w->g->nodes[n->left].out, &w->g->edges[w->shape->places[place].edge], n->low,
                 {{0, 0.0}, {0, 0.0}}, 0, 0};

@@ -178,6 +178,19 @@ void part_margins(run *r, int32_t index)
     q->parted = gauge_copy(r->home->monitor, shape_of(r, index), &q->readings[1], &q->readings[0]);
 }
 
+/* Begin behind positions that were missed, which may have been anything. */
+static void begin_amid(run *r, int32_t index, int64_t position)
+{
+    measuring *q = &r->margins[index];
+    gauging w;
+    part_margins(r, index);
+    begin_gauging(&w, r, index, position, position);
+    for (w.side = 0; q->parted && (w.side < 2); w.side++) {
+        w.g = &q->readings[w.side];
+        gauge_begin_amid(&w, floored(r->at.before, w.step));
+    }
+}
+
 /* Read the leaves at a position, up to which they are given to the gauges. */
 static void read_measures(run *r, int32_t index, int64_t position)
 {
@@ -219,6 +232,9 @@ void enter_position(run *r, int32_t index, int64_t t)
         q->parted = false;
         q->letter_count = 0;
         gauge_begin(s, &q->readings[0], position, q->asks_first);
+        if (q->missed && (s->plan->looks_back != 0)) {
+            begin_amid(r, index, position);
+        }
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
     } else if (q->letter_count > 0) {
@@ -276,7 +292,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
         return;
     }
     q = &r->margins[index];
-    if (q->blind || (r->at.presence != ARE_THERE) || r->at.dense) {
+    if ((r->at.presence != ARE_THERE) || r->at.dense) {
         const margin_ask none = {floored(t, step_of(r)), -INFINITE, INFINITE, record};
         tell_figure(r, index, &none, -INFINITE);
         return;
@@ -295,7 +311,7 @@ static void visit_measured(run *r, int32_t index, int64_t t)
     measuring *q = &r->margins[index];
     const bool wanted = q->active || is_kept_up(r, index) || awaits_the_end(r, index);
     q->changed_inputs = false;
-    if (!q->blind && wanted && (!q->active || (q->position < t))) {
+    if (wanted && (!q->active || (q->position < t))) {
         enter_position(r, index, t);
     }
 }
@@ -315,7 +331,7 @@ void margins_visit(run *r, int64_t t)
     }
     r->changed_count = 0;
     for (i = 0; i < streamed; i++) {
-        if (is_streamed(r, i) && !r->margins[i].blind && (t - step_of(r) < r->at.after)) {
+        if (is_streamed(r, i) && (t - step_of(r) < r->at.after)) {
             ask_for(r, i, floored(t, step_of(r)), 0);
         }
     }
@@ -352,20 +368,20 @@ void margins_settle(home *h, int64_t reached)
     }
 }
 
-/* Positions are missed in an outage: what was measured may be anything, and what looks back stays so. */
-void margins_miss(run *r)
+/* Positions from `t` on are missed in an outage: what is asked for is what the trace gives before them. */
+void margins_miss(run *r, int64_t t)
 {
     int32_t i;
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
-        q->blind = shape_of(r, i)->plan->looks_back != 0;
+        margins_cut(r, i, t);
         for (; q->asks_first < q->asks_end; q->asks_first++) {
-            const margin_ask *one = ask_at(q, q->asks_first);
-            const margin_ask none = {one->position, -INFINITE, INFINITE, one->record};
-            r->asked -= (one->record != 0) ? 1 : 0;
-            tell_figure(r, i, &none, -INFINITE);
+            r->asked -= (ask_at(q, q->asks_first)->record != 0) ? 1 : 0;
         }
+        q->missed = true;
         q->active = false;
+        q->letter_count = 0;
+        timers_set(&r->margins_due, i, NEVER);
     }
     r->measured_at = -LIMIT;
 }

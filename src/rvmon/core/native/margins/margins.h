@@ -15,7 +15,7 @@ void margins_clear(run *r);
 void margins_begin(run *r, int32_t index, int64_t t, int32_t record);
 void margins_visit(run *r, int64_t t);
 void margins_settle(home *h, int64_t reached);
-void margins_miss(run *r);
+void margins_miss(run *r, int64_t t);
 void margins_close(home *h, int64_t end, int64_t reached);
 int32_t measured_attempt(run *r, int64_t triggered, uint32_t number);
 void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number);
@@ -138,9 +138,11 @@ void gauge_shift(gauging *w, int32_t place);
 /* ---- gauge.c */
 bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g);
 void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered);
+void gauge_begin_amid(gauging *w, int64_t last);
 bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g);
 void gauge_take(gauging *w, int64_t at, const double *values);
 void gauge_run(gauging *w);
+double bound_of_anything(const gauging *w);
 
 bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s);
 
@@ -151,6 +153,7 @@ bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
 /* ---- margins.c, of a run */
 bool is_streamed(const run *r, int32_t index);
+void margins_cut(run *r, int32_t index, int64_t t);
 bool is_kept_up(const run *r, int32_t index);
 bool awaits_the_end(const run *r, int32_t index);
 void give_letters(gauging *w, int64_t last);

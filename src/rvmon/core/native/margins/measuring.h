@@ -65,6 +65,7 @@ typedef struct {
     int64_t answered;          /* the number of the first position that is asked for still */
     double reported;
     bool begun;
+    bool amid;                 /* whether what lies before the first position may be anything */
 } gauge;
 
 /* A position that is asked for. */
@@ -95,7 +96,7 @@ typedef struct {
     int32_t letter_count;
     bool active;
     bool parted;
-    bool blind;                /* whether it missed positions that matter */
+    bool missed;               /* whether positions before those that it follows were missed */
     bool changed_inputs;              /* whether its leaves may be others than was read */
 } measuring;
 

@@ -266,7 +266,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
 {
     measuring *q = &r->margins[index];
     int64_t i = row;
-    if (q->blind || !(q->active || is_kept_up(r, index) || awaits_the_end(r, index))) {
+    if (!(q->active || is_kept_up(r, index) || awaits_the_end(r, index))) {
         return;
     }
     if (!q->active && (end - row > 1)) {

@@ -77,7 +77,7 @@ void run_begin_dense(run *r, int64_t t)
     }
     r->at.presence = ARE_THERE;
     r->opening = false;
-    margins_miss(r);
+    margins_miss(r, t);
     remember_unknown(r, t);
     blank_out(r, t);
     r->at.position = t;
