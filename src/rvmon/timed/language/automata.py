@@ -8,7 +8,7 @@ from itertools import product
 from rvmon.diagnostics import Span
 from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
-from rvmon.timed.language.bodies import updates_of
+from rvmon.timed.language.bodies import is_price, updates_of
 from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
 from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
@@ -88,9 +88,8 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
     for part, inner in parts:
         match part:
             case syntax.Binary(BinaryOp.EQ, syntax.Rate(target), value):
-                is_cost = isinstance(target, syntax.Name) and target.name == "cost"
-                if is_cost and inner.find("cost") is None:
-                    continue  # that of priced automata, which nothing compares
+                if is_price(target, inner):
+                    continue
                 clock = resolver.clock(target, inner)
                 if clock is None:
                     raise model_error("TA004", "this is no clock", target.span, "declare it")

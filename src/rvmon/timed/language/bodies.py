@@ -70,6 +70,15 @@ def updates_of(
     return tuple(s for update in written for s in _update(update, scope, resolver))
 
 
+def is_price(target: syntax.Expression, scope: Scope) -> bool:
+    """Whether this is the cost or the reward of priced automata, which nothing reads."""
+    match target:
+        case syntax.Name("cost" | "reward" as name):
+            return not scope.declares(name) and not scope.names_automaton(name)
+        case _:
+            return False
+
+
 def _update(
     written: syntax.UpdateText | syntax.Call, scope: Scope, resolver: Resolver
 ) -> list[Statement]:
@@ -78,6 +87,8 @@ def _update(
         if not isinstance(call, Invoke):
             raise model_error("TA004", "this is no function", written.span)
         return [Perform(call)]
+    if is_price(written.target, scope):
+        return []
     clock = resolver.clock(written.target, scope)
     if clock is not None:
         value = number(written.value, scope, resolver)

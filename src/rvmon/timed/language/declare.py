@@ -22,15 +22,17 @@ from rvmon.timed.language.layout import (
     variable_of,
 )
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.symbols import flat, leaves
-from rvmon.timed.model.expressions import Slot, Variable
+from rvmon.timed.language.symbols import element_of, flat, leaves
+from rvmon.timed.model.expressions import Constant, Slot, Variable
 from rvmon.timed.model.network import Channel, Clock
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import finding, model_error, refusal
 from rvmon.timed.model.scope import (
+    ConstantSymbol,
     ConstantValue,
     FunctionSymbol,
     PlacedSymbol,
+    RecordSymbol,
     ResolvedType,
     Scope,
     Symbol,
@@ -252,6 +254,8 @@ def _initial(
     scope: Scope,
     resolver: Resolver,
 ) -> ConstantValue:
+    if (extents or kind.fields) and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
+        return _copied(resolver.symbol(written, scope), extents, kind, written.span)
     parts = parts_of_initial(written, extents, kind)
     if parts is None:
         assert not isinstance(written, syntax.Values), "it would have parts"
@@ -259,6 +263,25 @@ def _initial(
         check_range(value, kind, written.span)
         return value
     return tuple(_initial(*part, scope, resolver) for part in parts)
+
+
+def _copied(
+    symbol: Symbol, extents: tuple[range, ...], kind: ResolvedType, span: Span
+) -> ConstantValue:
+    """The values of a constant array or record."""
+    if extents:
+        elements = (element_of(symbol, Constant(index), span) for index in extents[0])
+        return tuple(_copied(element, extents[1:], kind, span) for element in elements)
+    if kind.fields and isinstance(symbol, RecordSymbol):
+        pairs = zip(symbol.fields, kind.fields, strict=False)
+        return tuple(_copied(own, field.extents, field, span) for (_, own), (_, field) in pairs)
+    match symbol:
+        case ConstantSymbol(int(value)) if not kind.fields:
+            check_range(value, kind, span)
+            return value
+        case _:
+            fix = "name a constant array or record of the same type, or write {a, b, …}"
+            raise model_error("TA004", "these are not the values of a constant", span, fix)
 
 
 def check_range(value: int, kind: ResolvedType, span: Span) -> None:

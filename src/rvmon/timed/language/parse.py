@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from importlib import resources
 from typing import Any
 
 import lark
 
-from rvmon.diagnostics import Diagnostic, Source, Span
+from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
 from rvmon.spec.syntax.grammar_cache import parser_of
 from rvmon.timed.language.automaton_syntax import Document, QueryText
 from rvmon.timed.language.foreign import reason_at
+from rvmon.timed.language.mistakes import Place, all_mistakes
 from rvmon.timed.language.syntax_builder import SyntaxBuilder
 from rvmon.timed.model.rules import model_error, refusal
 
@@ -35,9 +35,6 @@ STARTS = (
 MAX_CHARACTERS = 2_000_000
 """Longer texts are refused: no model for people is that long."""
 
-Place = Callable[[int, int], Span]
-"""Where the characters `[start, end)` of a parsed text stand for people."""
-
 
 def parse_document(source: Source) -> Document:
     """Read a whole `.ta` text.
@@ -48,14 +45,7 @@ def parse_document(source: Source) -> Document:
     >>> parse_document(Source("tiny.ta", "automaton a { location l start l }")).templates[0].name
     'a'
     """
-
-    def read(text: str) -> Any:
-        return parse_part(text, "document", lambda start, end: Span(source, start, end))
-
-    try:
-        parts = read(source.text)
-    except ModelError as error:
-        raise refusal(*all_mistakes(source.text, error, read)) from None
+    parts = parse_part(source.text, "document", lambda start, end: Span(source, start, end))
     name, title, unit, declarations, templates, instances, system, queries, signals = parts
     return Document(
         source, name, title, unit, declarations, templates, instances, system, queries, signals
@@ -80,8 +70,16 @@ def parse_part(text: str, start: str, place: Place) -> Any:
         What `SyntaxBuilder` makes of that rule.
 
     Raises:
-        ModelError: the text does not belong to the rule.
+        ModelError: the text does not belong to the rule; it has the mistakes of all parts.
     """
+    try:
+        return _read(start, text, place)
+    except ModelError:
+        found = all_mistakes(text, start, place, partial(_read, start))
+    raise refusal(*found)
+
+
+def _read(start: str, text: str, place: Place) -> Any:
     if len(text) > MAX_CHARACTERS:
         raise model_error("TA019", f"the text has more than {MAX_CHARACTERS:,} characters", None)
     try:
@@ -171,63 +169,3 @@ def _word(terminal: str) -> str:
         case _:
             pattern = _parser(whole=True).get_terminal(terminal).pattern
             return f"`{pattern.value}`" if pattern.type == "str" else ""
-
-
-MOST = 20
-"""Behind so many, nothing more is looked for: the text is read again for each."""
-
-LONGEST = 100_000
-"""Of a longer text the first mistake is reported: reading it again and again takes too long."""
-
-_ALONE = r"(?:(?:urgent|committed)[ \t]+)?location|edge|start|query|signal"
-_OTHERS = "automaton|clock|broadcast|chan|int|bool|const|typedef|unit|system|network"
-_BEGINS = re.compile(rf"^[ \t]*(?:(?P<alone>{_ALONE})\b|(?:{_OTHERS})\b|\}})", re.MULTILINE)
-"""Lines that begin something. What stands `alone` can be left out, and the rest is still a text."""
-
-
-def all_mistakes(
-    text: str, first: ModelError, read: Callable[[str], object]
-) -> tuple[Diagnostic, ...]:
-    """The mistakes that are found when each part with one is left out in turn."""
-    found = list(first.diagnostics)
-    error: ModelError | None = first
-    while error is not None and len(found) < MOST and len(text) <= LONGEST:
-        at = _place(error)
-        error = None
-        for start, end in [] if at is None else _suspects(text, at):
-            left = text[:start] + re.sub(r"\S", " ", text[start:end]) + text[end:]
-            following = _tried(left, read)
-            if following is None or (_place(following) or 0) > (at or 0):
-                text, error = left, following
-                break
-        if error is not None:
-            found += error.diagnostics
-    return tuple(found)
-
-
-def _tried(text: str, read: Callable[[str], object]) -> ModelError | None:
-    try:
-        read(text)
-    except ModelError as error:
-        return error
-    return None
-
-
-def _place(error: ModelError) -> int | None:
-    """Where the mistake stands."""
-    spans = error.diagnostics[0].spans
-    return spans[0].span.start if spans else None
-
-
-def _suspects(text: str, at: int) -> list[tuple[int, int]]:
-    """Parts that may hold the mistake: the one before, which may be cut short, and that around."""
-    begins = [match for match in _BEGINS.finditer(text) if match.start() <= at]
-    around = [match.start() for match in begins[1:]] + [_end(text, at)]
-    parts = list(zip(begins, around, strict=False))[-2:]  # there may be none
-    return [(match.start(), end) for match, end in parts if match["alone"]]
-
-
-def _end(text: str, at: int) -> int:
-    """Where the next part begins."""
-    following = _BEGINS.search(text, text.find("\n", at) + 1 or len(text))
-    return following.start() if following else len(text)

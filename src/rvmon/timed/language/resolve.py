@@ -26,6 +26,7 @@ from rvmon.timed.language.operations import (
     whole_compare,
 )
 from rvmon.timed.language.symbols import clock_of, element_of, is_whole, value_of
+from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
     MAX_TIME,
     TRUE,
@@ -36,6 +37,7 @@ from rvmon.timed.model.expressions import (
     InLocation,
     PathFormula,
 )
+from rvmon.timed.model.guards import is_fixed
 from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
@@ -134,8 +136,8 @@ class Resolver:
                     op, self.expression(body, scope), self.limit(bound, scope), until
                 )
             case syntax.LeadsTo(_, _, _, span):
-                fix = "write A[] (p imply A<> q)"
-                raise model_error("TA020", "`-->` can only stand outermost", span, fix)
+                message = "`-->` can only stand outermost"
+                raise model_error("TA020", message, span, "write A[] (p imply A<> q)")
             case (
                 syntax.Assuming()
                 | syntax.Chance()
@@ -159,12 +161,11 @@ class Resolver:
         Raises:
             ModelError: it does, or it has none.
         """
-        match self.expression(written, scope):
-            case Constant(value):
-                return value
-            case _:
-                fix = "use numbers, `const` names and parameters only"
-                raise model_error("TA006", "this is not constant", written.span, fix)
+        value = self.expression(written, scope)
+        if not is_fixed(value):
+            fix = "use numbers, `const` names, parameters, and functions of them only"
+            raise model_error("TA006", "this is not constant", written.span, fix)
+        return evaluator(value)((), ())
 
     def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
         """The bound of a path operator in units of time, if it has one.
@@ -272,8 +273,7 @@ class Resolver:
                 refuse_clocks(position, index.span)
                 return element_of(self.symbol(base, scope), position, span)
             case syntax.Member(base, name, span) if whole := self._record(base, scope):
-                fields = dict(whole.fields)
-                if name not in fields:
+                if name not in (fields := dict(whole.fields)):
                     fix = did_you_mean(name, list(fields))
                     raise model_error("TA002", f"no field `{name}`", span, fix)
                 return fields[name]

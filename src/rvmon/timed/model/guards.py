@@ -16,6 +16,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    InLocation,
     Invoke,
     Lookup,
     PathFormula,
@@ -48,6 +49,23 @@ _NEGATED_PATH = {
     PathOp.EVERY_RUN: PathOp.SOME_RUN,
     PathOp.SOME_RUN: PathOp.EVERY_RUN,
 }
+
+
+def is_fixed(expression: Expression) -> bool:
+    """Whether an expression has the same value always: functions may compute it from constants."""
+    for part in parts_of(expression):
+        match part:
+            case InLocation() | ClockCompare() | Deadlock() | PathFormula():
+                return False
+            case VariableValue(slot) if slot.first >= 0:
+                return False
+            case Invoke(function):
+                inside = (e for s in statements_in(function.body) for e in expressions_of(s))
+                if function.changes or not all(map(is_fixed, inside)):
+                    return False
+            case _:
+                pass
+    return True
 
 
 def parts_of(expression: Expression) -> Iterator[Expression]:

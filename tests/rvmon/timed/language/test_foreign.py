@@ -5,6 +5,7 @@ import pytest
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
+from rvmon.timed.search.verify import verify
 
 
 def model(declaration="", local="", invariant="", system="system T;", queries="", **labels):
@@ -89,3 +90,61 @@ def test_names_of_the_text_form_are_free(text):
     with pytest.raises(ModelError) as caught:
         loads_network(f"automaton A {{ location {text} location end\n edge {text} -> end do = 3 }}")
     assert caught.value.diagnostics[0].code == "TA001"
+
+
+def test_constants_are_computed_and_copied():
+    """A constant may be what a function gives for constants, and an array or record another one."""
+    network = loads_network("""<nta><declaration>
+    int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
+    const int N = half(7) + 1;
+    typedef struct { int[0,9] a; int[0,9] b[2]; } pair;
+    const pair one = {N, {1, 2}};
+    const int[0,9] row[2] = {half(4), N};
+    const pair both[2] = {one, {0, row}};
+    pair first = both[1];
+    int[0,N] n;
+    </declaration><template><name>A</name><location id="a"/><init ref="a"/></template>
+    <system>system A;</system></nta>""")
+    assert [(v.name, v.high, v.initial) for v in network.variables] == [
+        ("first.a", 9, 0),
+        ("first.b[0]", 9, 2),
+        ("first.b[1]", 9, 4),
+        ("n", 4, 0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("declared", "code"),
+    [
+        ("int v; int f() { return v; } const int N = f();", "TA006"),
+        ("int v; int f() { v = 1; return 2; } const int N = f();", "TA006"),
+        ("int f() { while (true) { } return 2; } const int N = f();", "TA019"),
+        ("int f(int n) { return 1 / n; } const int N = f(0);", "TA007"),
+        ("int v[2]; const int w[2] = v;", "TA004"),
+        ("const int v[2] = {1, 2}; const int w[3] = v;", "TA007"),
+        ("typedef struct { int a; } p; const int v[2] = {1, 2}; p w = v;", "TA004"),
+        ("const int v = 1; const int w[2] = v;", "TA004"),
+    ],
+)
+def test_what_is_no_constant_is_refused(declared, code):
+    """A constant depends on no variable, and an initial value has the parts of its type."""
+    with pytest.raises(ModelError) as raised:
+        loads_network(f"""<nta><declaration>{declared}</declaration><template><name>A</name>
+        <location id="a"/><init ref="a"/></template><system>system A;</system></nta>""")
+    assert raised.value.diagnostics[0].code == code
+
+
+def test_the_price_of_a_run_changes_no_run():
+    """Cost and reward of priced automata are passed over, unless the model declares them."""
+    text = """<nta><declaration>clock x; {}</declaration><template><name>A</name>
+    <location id="a"><label kind="invariant">cost' == 2 and x &lt;= 5 and reward' == 1</label>
+    </location><init ref="a"/><transition><source ref="a"/><target ref="a"/>
+    <label kind="guard">{}</label><label kind="assignment">cost += 7, reward += x0, x = 0</label>
+    </transition></template><system>system A;</system></nta>"""
+    network = loads_network(text.format("", "x >= 5"))
+    assert [clock.name for clock in network.clocks] == ["x"]
+    assert verify(network, "A[] not deadlock").holds
+    with pytest.raises(ModelError, match="no name `cost`"):
+        loads_network(text.format("", "cost >= 5"))
+    with pytest.raises(ModelError, match="no name `x0`"):
+        loads_network(text.format("int cost, reward;", "x >= 5"))
