@@ -47,16 +47,17 @@ def write_ulog(path: Path, rows: Sequence[Row], drops: Sequence[tuple[int, int]]
     return path
 
 
-def write_dataflash(path: Path, rows: Sequence[Row]) -> Path:
-    """A log of ArduPilot."""
+def write_dataflash(path: Path, rows: Sequence[Row], letter: str = "f") -> Path:
+    """A log of ArduPilot; `C` writes speeds as hundredths."""
 
     def form(number: int, length: int, name: str, letters: str, columns: str) -> bytes:
         texts = (name.encode(), letters.encode(), columns.encode())
         return b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", number, length, *texts)
 
     parts = [form(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")]
-    parts.append(form(1, 16, "DRV", "QfB", "TimeUS,speed,mode"))
-    parts += [b"\xa3\x95\x01" + struct.pack("<QfB", *row) for row in rows]
+    layout = "<QfB" if letter == "f" else "<QHB"
+    parts.append(form(1, 3 + struct.calcsize(layout), "DRV", f"Q{letter}B", "TimeUS,speed,mode"))
+    parts += [b"\xa3\x95\x01" + struct.pack(layout, *row) for row in rows]
     path.write_bytes(b"".join(parts))
     return path
 

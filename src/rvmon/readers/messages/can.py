@@ -82,7 +82,8 @@ class FrameMessages:
         self._seen: dict[_Key, Any] = {}
         self.outages: list[Outage] = []
         self.count, self.end = 0, None
-        channels: dict[Any, set[Any]] = {}
+        channels: dict[str, set[Any]] = {}
+        by_name: dict[str, Any] = {}
         others = 0
         for t, key, channel, _ in self._frames(self.outages):
             self.end = t if self.end is None else max(self.end, t)
@@ -90,6 +91,7 @@ class FrameMessages:
             if message is None:
                 others += 1
             else:
+                by_name.setdefault(message.name, message)
                 channels.setdefault(message.name, set()).add(channel)
                 self.count += 1
         if not self.count:
@@ -97,7 +99,6 @@ class FrameMessages:
                 f"no frame is of a message that the databases know, of {others:,}: name the right "
                 'one in a binding, as `definitions = ["car.dbc"]`'
             )
-        by_name = {message.name: message for message in self._known.values()}
         self._several = {name for name, found in channels.items() if len(found) > 1}
         self.topics: Mapping[str, Topic] = {
             (name := self._name(message, channel)): _topic(name, by_name[message])

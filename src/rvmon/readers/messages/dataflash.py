@@ -144,7 +144,11 @@ def _cells(column: Any, scale: float | None) -> Any:
     if column.dtype.kind == "S":
         texts = [one.partition(b"\0")[0].decode("utf-8", "replace") for one in column.tolist()]
         return np.array(texts, object)
-    return column if scale is None else column.astype(np.float64) * scale
+    if scale is None:
+        return column
+    # The double nearest to 337.09 is 33709 / 100, and not 33709 * 0.01.
+    wide = column.astype(np.float64)
+    return wide / (1 / scale) if 0 < scale < 1 else wide * scale
 
 
 def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Outage]:

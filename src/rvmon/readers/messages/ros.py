@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager
-from functools import cache, lru_cache
+from contextlib import AbstractContextManager, suppress
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +68,7 @@ class BagMessages:
                 (connection.msgdef.format.name.lower(), connection.msgdef.data),
                 self._form == "ros1",
                 definitions,
+                partial(self._first, connection),
             )
             known = topics.setdefault(topic.name, topic)
             if known.type != topic.type:
@@ -75,6 +76,12 @@ class BagMessages:
                 topics[topic.name] = Topic(topic.name, topic.type, {}, fault)
             self._decoders[connection.id] = decode
         self.topics: Mapping[str, Topic] = topics
+
+    def _first(self, connection: Any) -> bytes | None:
+        with suppress(TraceError), bag_errors(self._form):  # who reads it all tells of damage
+            for _, _, raw in self._reader.messages([connection]):
+                return bytes(raw)
+        return None
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
@@ -166,6 +173,7 @@ def ros_topic(
     definition: Definition,
     is_ros1: bool,
     others: Mapping[str, str],
+    first: Callable[[], bytes | None] = lambda: None,
 ) -> tuple[Topic, Callable[[bytes], Any]]:
     """A topic of messages of ROS, and what decodes them.
 
@@ -175,14 +183,13 @@ def ros_topic(
         definition: of them; without a text it has to be among the others, or one of ROS itself.
         is_ros1: whether they are packed as ROS 1 does.
         others: definitions by type.
+        first: gives the first message, if there is one: a definition of ROS has to fit it.
     """
     if definition[1]:
         store, fault = _store(type_name, *definition)
     else:
-        store, fault = ros_types(tuple(sorted(others.items())))
-        if not fault and type_name not in store.fielddefs:
-            fault = _UNDEFINED
-    if fault:
+        store, fault = _of_ros(type_name, tuple(sorted(others.items())), first)
+    if fault or (fault := _lacking(store, type_name)):
         return Topic(name, type_name, {}, fault), bytes
     messages: dict[str, str] = {}
     leaves = dict(_leaves(store, type_name, messages))
@@ -233,18 +240,58 @@ _UNDEFINED = (
 )
 
 
+_DISTRIBUTIONS = ("LATEST", "ROS2_HUMBLE", "ROS2_FOXY", "ROS2_DASHING")
+"""Those in which messages of ROS itself changed, the newest first."""
+
+
+def _of_ros(
+    type_name: str, definitions: tuple[Definition, ...], first: Callable[[], bytes | None]
+) -> tuple[Any, str]:
+    """The types of the newest distribution whose definition fits the first message, or of all."""
+    newest, fault = ros_types(definitions)
+    if fault or type_name not in newest.fielddefs:
+        return newest, fault or _UNDEFINED
+    raw = None if type_name in dict(definitions) else first()
+    for distribution in _DISTRIBUTIONS if raw is not None else ():
+        store, _ = ros_types(definitions, distribution)
+        with suppress(Exception):
+            store.deserialize_cdr(raw, type_name)
+            return store, ""
+    return newest, ""
+
+
 @lru_cache(maxsize=8)
-def ros_types(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
+def ros_types(
+    definitions: tuple[Definition, ...], distribution: str = _DISTRIBUTIONS[0]
+) -> tuple[Any, str]:
     """The types of ROS itself and these, by type and text; or why there are none."""
     from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
-    store = get_typestore(Stores.LATEST)
+    store = get_typestore(Stores[distribution])
     try:
         made = [get_types_from_msg(text, name) for name, text in definitions]
         store.register({name: fields for one in made for name, fields in one.items()})
     except (TypesysError, KeyError, ValueError, TypeError) as error:
         return None, f"the `definitions` of the binding cannot be read ({first_line(error)})"
     return store, ""
+
+
+def _lacking(store: Any, type_name: str) -> str:
+    """What a definition names and nobody defines, as a fault; empty: nothing."""
+    from rosbags.interfaces import Nodetype
+
+    known, waiting = {type_name}, [type_name]
+    while waiting:
+        for _, (node, inner) in store.fielddefs[waiting.pop()][1]:
+            if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+                node, inner = inner[0]
+            if node is not Nodetype.NAME or inner in known:
+                continue
+            if inner not in store.fielddefs:
+                return f"the definition of its messages names {inner}, and does not say what it is"
+            known.add(inner)
+            waiting.append(inner)
+    return ""
 
 
 def _bare_idl(part: str) -> str:
@@ -287,7 +334,7 @@ def _leaves(
             path += "[]"
             node, inner = inner[0]
         if node is Nodetype.NAME:
-            if inner in store.fielddefs and inner not in above:
+            if inner not in above:
                 messages[path] = inner
                 yield from _leaves(store, inner, messages, f"{path}.", above | {type_name})
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from array import array
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -21,6 +20,12 @@ _STAMP = 8
 
 _MAGIC_1, _MAGIC_2 = 0xFE, 0xFD
 _IS_SIGNED = 1
+_Key = tuple[int, int, int, int]
+"""A message, its system and component, and what its checksum says of its definition."""
+
+_OURS = -1
+"""That a checksum says that a message is defined as in the dialect that is known."""
+
 _FAR = 3 * 24 * 3600 * 1_000_000
 """Microseconds: a stamp so far from the one before is none."""
 
@@ -52,7 +57,8 @@ class TelemetryMessages:
         self._data = path.read_bytes()
         self.outages: list[Outage] = []
         self._times, self._places, self._senders = array("q"), array("q"), array("q")
-        self._keys: dict[tuple[int, int, int], int] = {}
+        self._keys: dict[_Key, int] = {}
+        self._lost: set[_Key] = set()
         self._index()
         if not self._times:
             raise TraceError("holds no packet of MAVLink: is it telemetry?")
@@ -60,13 +66,15 @@ class TelemetryMessages:
         self.end: int | None = max(
             max(self._times), max((one.until for one in self.outages), default=0)
         )
-        senders: dict[int, int] = {}
-        for number, _, _ in self._keys:
-            senders[number] = senders.get(number, 0) + 1
-        self._names = [self._name(*key, is_only=senders[key[0]] == 1) for key in self._keys]
+        senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
+        self._names = [
+            "" if key in self._lost else self._name(key, is_only=senders[self._called(key)] == 1)
+            for key in self._keys
+        ]
         self.topics: Mapping[str, Topic] = {
-            name: self._topic(name, key[0])
+            name: self._topic(name, key)
             for name, key in zip(self._names, self._keys, strict=True)
+            if name
         }
 
     def _index(self) -> None:
@@ -93,18 +101,17 @@ class TelemetryMessages:
             self.outages.append(Outage(end, end + 1, "it ends within a packet"))
 
     def _lose_strangers(self) -> None:
-        """A packet of a message that no dialect has, and that comes once, may be another, damaged.
+        """A packet that fits another definition, as no second one does, may be one that is damaged.
 
-        No checksum fits what nobody knows; dialects that are not ours send theirs again and again.
+        Dialects that are not ours send theirs again and again.
         """
-        counts = Counter(self._senders)
-        unknown = {
-            number
-            for (message, _, _), number in self._keys.items()
-            if message not in self._dialect.mavlink_map and counts[number] == 1
-        }
-        for one, sender in enumerate(self._senders):
-            if sender in unknown:
+        agreeing: Counter[tuple[int, int]] = Counter()
+        for (message, _, _, extra), sender in self._keys.items():
+            agreeing[message, extra] += self._senders.count(sender) if extra != _OURS else 2
+        for key, sender in self._keys.items():
+            if agreeing[key[0], key[3]] < 2:
+                self._lost.add(key)
+                one = self._senders.index(sender)
                 near = self._times[max(0, one - 1) : one + 2]
                 why = f"there is an unknown packet at byte {self._places[one]:,}"
                 self.outages.append(Outage(min(near), max(near), why))
@@ -116,8 +123,8 @@ class TelemetryMessages:
         until = max(since, micros * 1_000)
         self.outages.append(Outage(since, until, f"there is no packet at byte {place:,}"))
 
-    def _packet_at(self, place: int) -> tuple[int, tuple[int, int, int]] | None:
-        """The size of the packet behind a stamp, and its message and sender; `None`: none is."""
+    def _packet_at(self, place: int) -> tuple[int, _Key] | None:
+        """The size of the packet behind a stamp, and what it is; `None`: none is."""
         data, start = self._data, place + _STAMP
         head = data[start : start + 10]
         if len(head) < 8 or head[0] not in (_MAGIC_1, _MAGIC_2):
@@ -134,23 +141,39 @@ class TelemetryMessages:
         behind = start + header + head[1]
         if behind + 2 + signature > len(data):
             return None
-        known = self._dialect.mavlink_map.get(number)
-        if known is not None:
-            body = bytearray(data[start + 1 : behind])
-            body.append(known.crc_extra)
-            [checksum] = struct.unpack_from("<H", data, behind)
-            if self._dialect.x25crc(body).crc != checksum:
-                return None
-        return header + head[1] + 2 + signature, (number, system, component)
+        extra = self._extra(number, data[start + 1 : behind], data[behind : behind + 2])
+        if extra is None:
+            return None
+        return header + head[1] + 2 + signature, (number, system, component, extra)
 
-    def _name(self, number: int, system: int, component: int, *, is_only: bool) -> str:
-        known = self._dialect.mavlink_map.get(number)
-        name = f"message_{number}" if known is None else known.msgname
+    def _extra(self, number: int, body: bytes, checksum: bytes) -> int | None:
+        """The byte of the definition that the checksum is of, too; `None`: it is of none."""
+        expected = int.from_bytes(checksum, "little")
+        known, sum_of = self._dialect.mavlink_map.get(number), self._dialect.x25crc
+        if known is not None and sum_of(body + bytes([known.crc_extra])).crc == expected:
+            return _OURS
+        before = sum_of(body).crc
+        for extra in range(256):
+            one = (extra ^ before) & 0xFF
+            one ^= one << 4 & 0xFF
+            if before >> 8 ^ one << 8 ^ one << 3 ^ one >> 4 == expected:
+                return extra
+        return None
+
+    def _called(self, key: _Key) -> str:
+        number, *_, extra = key
+        known = self._dialect.mavlink_map.get(number) if extra == _OURS else None
+        return f"message_{number}" if known is None else str(known.msgname)
+
+    def _name(self, key: _Key, *, is_only: bool) -> str:
+        _, system, component, _ = key
+        name = self._called(key)
         return f"/{name}" if is_only else f"/sys{system}_comp{component}/{name}"
 
-    def _topic(self, name: str, number: int) -> Topic:
+    def _topic(self, name: str, key: _Key) -> Topic:
+        number, _, _, extra = key
         known = self._dialect.mavlink_map.get(number)
-        if known is None:
+        if known is None or extra != _OURS:
             fault = f"message {number} of MAVLink is of a dialect that is not ArduPilot's"
             return Topic(name, "", {}, fault)
         kinds = {"float": Kind.REAL, "double": Kind.REAL, "char": Kind.LABEL}

@@ -3,6 +3,7 @@
 import gc
 import json
 import random
+import sqlite3
 import struct
 
 import pytest
@@ -181,3 +182,46 @@ def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
     write_ros2(folder / "more", sent, plugin)
     with pytest.raises(rvmon.TraceError, match="holds 2 recordings"):
         spec.evaluate(folder)
+
+
+@pytest.mark.parametrize("distribution", ["ROS2_DASHING", "ROS2_FOXY", "ROS2_HUMBLE", "LATEST"])
+def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path, distribution):
+    """`sensor_msgs/Range` got a field after Humble; older bags hold no definitions."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores[distribution])
+    kinds = store.types
+    stamp = kinds["builtin_interfaces/msg/Time"](1, 0)
+    rest = (0.5,) if distribution == "LATEST" else ()
+    header = kinds["std_msgs/msg/Header"](stamp, "sonar")
+    said = kinds["sensor_msgs/msg/Range"](header, 0, 0.5, 0.25, 8.0, 1.5, *rest)
+    path = write_ros2(tmp_path / "bag", [("/speed", START, {"data": 1.0})], "sqlite3", version=8)
+    [file] = path.glob("*.db3")
+    with sqlite3.connect(file) as base:
+        base.execute("UPDATE topics SET name = '/sonar', type = 'sensor_msgs/msg/Range'")
+        raw = bytes(store.serialize_cdr(said, "sensor_msgs/msg/Range"))
+        base.execute("UPDATE messages SET data = ?", (raw,))
+    base.close()
+    metadata = path / "metadata.yaml"
+    text = metadata.read_text().replace("name: /speed", "name: /sonar")
+    metadata.write_text(text.replace("std_msgs/msg/Float64", "sensor_msgs/msg/Range"))
+    text = "spec s\nsignal sonar.range : real\nrequirement R\n always sonar.range == 1.5"
+    spec = rvmon.loads(text)
+    assert spec.evaluate(path).verdicts["R"] == "P"
+
+
+def test_a_definition_that_lacks_a_part_is_a_fault_of_its_topic(tmp_path, capsys):
+    """The other topics of the file are read."""
+    from mcap.writer import Writer
+
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        kind = writer.register_schema("shop_msgs/msg/Tool", "ros2msg", b"shop_msgs/msg/Grip grip\n")
+        channel = writer.register_channel("/tool", "cdr", kind)
+        writer.add_message(channel, START, b"\0\1\0\0\1", START)
+        writer.finish()
+    assert main(["init", str(path)]) == 2
+    told = "`tool`: the definition of its messages names shop_msgs/msg/Grip, and does not say"
+    assert told in capsys.readouterr().err

@@ -232,9 +232,18 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
         spec_of("drive", "a.mf4").evaluate(path)
 
 
-def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
-    """No checksum is known of a message that nobody knows; a dialect's own come more than once."""
+def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
+    """33709 hundredths are 337.09, as mavlogdump writes them, and not 337.09000000000003."""
     pytest.importorskip("pymavlink")
+    rows = [(1_000 * n, n, 0) for n in range(65_536)]
+    path = write_dataflash(tmp_path / "a.bin", rows, "C")
+    found = [content["speed"] for _, _, content in messages_of(str(path)).read({"/DRV"})]
+    assert found == [n / 100 for n in range(65_536)]
+
+
+def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
+    """Packets of another dialect agree on a definition, of known numbers, too."""
+    dialect = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
     rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
     path = write_tlog(tmp_path / "a.tlog", rows)
     data, spec = path.read_bytes(), spec_of("VFR_HUD", "a.tlog")
@@ -243,8 +252,14 @@ def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
     strange = [(data[: 8 + 7] + b"\x60\xea\x00" + data[8 + 10 : size]) for _ in range(2)]
     path.write_bytes(data[: 3 * size] + strange[0] + data[4 * size :])
     assert spec.evaluate(path).verdicts["R1"] == "I"
-    path.write_bytes(data[:size] + b"".join(strange) + data[size:])
-    assert spec.evaluate(path).verdicts["R1"] == "P"
+    for number in (b"\x60\xea\x00", b"\x8e\0\0"):
+        body = data[8 + 1 : 8 + 7] + number + data[8 + 10 : size - 2]
+        checksum = dialect.x25crc(body + b"\x71").crc.to_bytes(2, "little")
+        other = data[: 8 + 1] + body + checksum
+        path.write_bytes(data[:size] + 2 * other + data[size:])
+        assert spec.evaluate(path).verdicts["R1"] == "P"
+        path.write_bytes(data[:size] + other + data[size:])
+        assert spec.evaluate(path).verdicts["R1"] == "I"
 
 
 @pytest.mark.parametrize("ending", ["asc", "trc"])
