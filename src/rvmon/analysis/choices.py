@@ -30,6 +30,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
     UpdateValue,
+    WindowValue,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, calculated
@@ -126,7 +127,7 @@ def _with(numeric: Numeric, variable: Variable, value: float) -> Scalar:
     match numeric:
         case Literal(value=constant):
             return constant
-        case SignalValue() | FieldValue() | Captured() | NowValue():
+        case SignalValue() | FieldValue() | Captured() | NowValue() | WindowValue():
             return value if numeric == variable else 0.0
         case UpdateValue(name=name):
             same = isinstance(variable, SignalValue) and variable.name == name

@@ -225,6 +225,7 @@ def _is_free(node: State) -> bool:
         StateOp.PREVIOUS,
         StateOp.SINCE,
         StateOp.AMOUNT,
+        StateOp.COMPARED,
         StateOp.PASSED,
     )
 
@@ -269,6 +270,7 @@ def _value(node: State, values: Mapping[State, bool]) -> bool:
             | StateOp.PREVIOUS
             | StateOp.SINCE
             | StateOp.AMOUNT
+            | StateOp.COMPARED
             | StateOp.PASSED
             | StateOp.DOUBT
         ):

@@ -14,7 +14,16 @@ from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
 from rvmon.readers.batch import HeldRecording
 from rvmon.readers.coalesce import Conflicts, coalesce
-from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.formula import (
+    Amount,
+    Binary,
+    Bound,
+    BoundAtom,
+    Formula,
+    Unary,
+    UnaryOp,
+    WindowValue,
+)
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
@@ -351,7 +360,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     yield depth, formula
     match formula:
         case (
-            Amount(value=None, operand=operand)
+            Amount(of=WindowValue(value=None, operand=operand))
             | Unary(operand=Unary() | Binary() | Amount() as operand)
         ):
             yield from subformulas(operand, depth + 1)

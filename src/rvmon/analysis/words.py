@@ -145,26 +145,27 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 
 
 def _amount(formula: Amount, positive: bool) -> str:
-    parts = _chain(formula.counted or formula.operand, BinaryOp.AND)
+    of = formula.of
+    parts = _chain(of.counted or of.operand, BinaryOp.AND)
     chosen = [one for one in parts if not (isinstance(one, Passed) and one.since == TRIGGERED)]
     back = "so far" if len(chosen) == len(parts) else "since the trigger"
-    back = back if formula.window is None else f"in the last {format_duration(formula.window)}"
-    back = back if formula.most is None else f"at the last {formula.most} updates"
+    back = back if of.window is None else f"in the last {format_duration(of.window)}"
+    back = back if of.most is None else f"at the last {of.most} updates"
     clauses = [_clause(one, True) for one in chosen] or ["time passes"]
     what = clauses[0] if len(clauses) == 1 else f"({_listed(clauses, 'and')})"
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
-    if isinstance(least, int) and formula.value is None:
-        if formula.measured is Measured.COUNT:
+    if isinstance(least, int) and of.value is None:
+        if of.measured is Measured.COUNT:
             return f"{known}{least} times or more {back}, {what}"
         return f"for {known}{format_duration(least)} or more {back}, {what}"
     op = CompareOp.GT if formula.strict else CompareOp.GE
     verb = (op if positive else op.denied).said
-    if formula.value is None or isinstance(formula.value, NumericLiteral):  # so many times 1
-        often = "for how long" if formula.measured.of_time else "how often"
+    if of.value is None or isinstance(of.value, NumericLiteral):  # so many times 1
+        often = "for how long" if of.measured.of_time else "how often"
         amount = f"{often} {what} {back}"
     else:
-        amount = f"the {formula.measured} of {format_numeric(formula.value)} {back}"
+        amount = f"the {of.measured} of {format_numeric(of.value)} {back}"
     return f"{amount} {verb} {format_numeric(formula.limit)}"
 
 

@@ -35,7 +35,9 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateFunction,
     UpdateValue,
+    WindowValue,
 )
+from rvmon.spec.checked.rewrite import without_spans
 from rvmon.trace.schema import Kind
 
 DEPTH = 32
@@ -64,6 +66,9 @@ OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
 NOW = len(Code) + len(OPERATIONS)
 """The word for `now`, behind all operations."""
 
+WINDOW = NOW + 1
+"""The word for what a window comes to."""
+
 _UPDATES = {
     UpdateFunction.PREV: Code.PREV,
     UpdateFunction.DELTA: Code.DELTA,
@@ -88,6 +93,7 @@ class Names:
         key: the event and the field whose values tell instances apart; `None`: nothing does.
         captured: by name, the place of a captured value.
         constants: captured values that are known now.
+        windows: by what is measured, the place of its number.
     """
 
     def __init__(self, plan: Plan, numbering: Numbering) -> None:
@@ -99,6 +105,8 @@ class Names:
         captured = [name for rule in plan.rules for name in rule.captured]
         self.captured = numbered(captured)
         self.constants = plan.constants
+        measured = [one.amount for one in plan.graph.nodes if isinstance(one.amount, WindowValue)]
+        self.windows = {one: place for place, one in enumerate(dict.fromkeys(measured))}
         self.numbering = numbering
         self._spec = plan.spec
 
@@ -151,6 +159,8 @@ class Programs:
                 return self._emit(_UNKNOWN if known is None else Literal(known), words)
             case Captured(name=name):
                 words.append(_word(Code.CAPTURED, names.captured[name]))
+            case WindowValue():
+                words.append(_word(WINDOW, names.windows[without_spans(expression)]))
             case Arithmetic(op=op, args=args):
                 return self._operation(op, args, words)
             case _:
@@ -284,8 +294,11 @@ class Atoms:
 
     def itself(self, number: Numeric) -> int:
         """The number of the atom that is unknown where a number is; its programs are of that."""
-        same = self._comparison(Compare(CompareOp.EQ, number, number))
-        return self._numbers.setdefault(same, len(self._numbers))
+        return self.comparison(Compare(CompareOp.EQ, number, number))
+
+    def comparison(self, compared: Compare) -> int:
+        """The number of the atom that compares two programs, whatever they read."""
+        return self._numbers.setdefault(self._comparison(compared), len(self._numbers))
 
     def _atom(self, leaf: Leaf) -> Atom:
         names = self._names

@@ -58,6 +58,7 @@ class NodeOp(IntEnum):
     STRETCH = auto()
     WINDOW = auto()
     PASSED = auto()
+    COMPARED = auto()
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
@@ -75,7 +76,7 @@ TIMED = (
 _FOLDS = {measured: number for number, measured in enumerate(Measured)}
 """What members of a window come to, in the order of plan.h."""
 _TALLIED = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL, Measured.VARIANCE)
-_STRICT, _COUNTED = 16, 32
+_STRICT, _COUNTED, _NUMBER = 16, 32, 64
 
 _PLAIN = {
     StateOp.NOT: NodeOp.NOT,
@@ -206,6 +207,9 @@ class Nodes:
                 return Node(_since(state), low=state.low, high=high, operands=operands)
             case StateOp.AMOUNT:
                 return self._window(state, operands)
+            case StateOp.COMPARED if state.compared is not None:
+                atom = self._atoms.comparison(state.compared)
+                return Node(NodeOp.COMPARED, atom, operands=operands, reads=(atom,))
             case StateOp.PASSED if state.passed is not None:
                 return self._passed(state.passed, operands)
             case _:
@@ -215,20 +219,27 @@ class Nodes:
         amount = state.amount
         if amount is None:
             raise AssertionError("it says what is measured")
-        value = -1 if amount.value is None else self._atoms.itself(amount.value)
-        limit = self._atoms.itself(amount.limit)
+        of = amount.of if isinstance(amount, Amount) else amount
+        reads = [] if of.value is None else [self._atoms.itself(of.value)]
+        if isinstance(amount, Amount):
+            limit = self._atoms.itself(amount.limit)
+            place, marks = self._atoms.all[limit].left, _STRICT * amount.strict
+            value, reads = (reads or [-1])[0], [*reads, limit]
+        else:
+            value, place, marks = (reads or [-1])[0], self._names.windows[amount], _NUMBER
+        marks += _COUNTED * (of.value is None and of.counted is not None)
         return Node(
             NodeOp.WINDOW,
             value,
-            _fold(amount),
-            self._atoms.all[limit].left,
-            NEVER if amount.window is None else amount.window,
+            _FOLDS[of.measured] + marks,
+            place,
+            NEVER if of.window is None else of.window,
             operands,
-            tally=0 if amount.measured in _TALLIED else -1,
-            most=amount.most or 0,
-            chosen=len(operands) - len(amount.chosen),
+            tally=0 if of.measured in _TALLIED else -1,
+            most=of.most or 0,
+            chosen=len(operands) - len(of.chosen),
             since=self._names.captured.get(begun_by(state) or "", -1),
-            reads=(limit,) if value < 0 else (value, limit),
+            reads=tuple(reads),
         )
 
     def _passed(self, passed: Passed, operands: Sequence[int]) -> Node:
@@ -260,12 +271,6 @@ class Nodes:
                 return Node(NodeOp.LEAF, self._atoms.number(leaf), unborn, operands=births)
             case _:
                 return Node(NodeOp.LEAF, self._atoms.number(leaf), UNKNOWN)
-
-
-def _fold(amount: Amount) -> int:
-    """What members come to, with its marks."""
-    counted = amount.value is None and amount.counted is not None
-    return _FOLDS[amount.measured] + _STRICT * amount.strict + _COUNTED * counted
 
 
 def _since(state: State) -> NodeOp:
@@ -300,6 +305,7 @@ def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
     yield from rule.noted
+    yield from rule.caught
     leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
     for _, core in leaves:
         if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):

@@ -119,6 +119,7 @@ class Part:
             *added(Section.WATCHES),
             *added(Section.GROUPS),
             nodes.tallies,
+            len(self.names.windows),
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:

@@ -125,6 +125,7 @@ class Unit:
             yield from rule.states
         named = (rule.trigger, rule.determined, rule.blurs)
         yield from (state for state in named if state is not None)
+        yield from rule.caught
 
     @property
     def _starters(self) -> tuple[int, int]:

@@ -10,15 +10,16 @@ value of a prefix nor that at the end of a trace: those of distributive lattices
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, assert_never, cast
 
 from rvmon.logic.state_formula import UNKNOWN, Leaf, Lost, State, StateOp
-from rvmon.spec.checked.formula import Amount, Passed
+from rvmon.spec.checked.formula import Amount, Compare, Passed, WindowValue
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
 from rvmon.spec.checked.formula import Literal as Zero
+from rvmon.spec.checked.rewrite import without_spans
 
 
 class Sense(Enum):
@@ -241,13 +242,25 @@ class Factory:
 
     def amount(self, amount: Amount, *args: State) -> State:
         """So much of the first of `args`; of constants too, for what was lost."""
-        own = replace(amount, operand=ConstantLeaf(True), known=None, span=None)
-        own = replace(own, chosen=tuple(replace(one, span=None) for one in own.chosen))
+        own = replace(amount, of=self._emptied(amount.of, args), known=None, span=None)
+        return self._state(StateOp.AMOUNT, args, amount=without_spans(own))
+
+    def window(self, window: WindowValue, *args: State) -> State:
+        """What a window comes to as a number."""
+        return self._state(StateOp.AMOUNT, args, amount=window)
+
+    def _emptied(self, window: WindowValue, args: Sequence[State]) -> WindowValue:
+        """A window without what its operands say, which are apart."""
+        own = replace(window, operand=ConstantLeaf(True))
         if own.counted is not None:
             own = replace(own, counted=ConstantLeaf(True))
         if args[0] is self.state_false and own.value is not None:
             own = replace(own, value=Zero(0))  # what it reads is no part of any formula
-        return self._state(StateOp.AMOUNT, args, amount=own)
+        return own
+
+    def compared(self, compared: Compare, *args: State) -> State:
+        """A comparison of windows, which are among `args`."""
+        return self._state(StateOp.COMPARED, args, compared=compared)
 
     def passed(self, passed: Passed, known: State) -> State:
         """So long has passed since an instant; unknown where `known` is."""

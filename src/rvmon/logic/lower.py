@@ -24,10 +24,18 @@ from rvmon.logic.formula import (
 )
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.normal_form import Lowering, Origin, flattened
-from rvmon.logic.state_formula import FALSE, TRUE, Lapsed, State, Unborn, signals_of
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, Unborn, signals_of
 from rvmon.logic.three_valued import Four
 from rvmon.spec.checked.classify import has_future, subformulas
-from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, Formula, SignalAtom
+from rvmon.spec.checked.formula import (
+    Bound,
+    BoundAtom,
+    Compare,
+    Formula,
+    SignalAtom,
+    itself,
+    windows_in,
+)
 from rvmon.spec.checked.specification import Mode, Requirement
 
 
@@ -54,6 +62,7 @@ class Obligation:
             start; `None` if the trigger is never unknown.
         doubted: the same where it is not known whether there is such an instance at all.
         doubt: of an episode with captured values, UNKNOWN where another may have begun.
+        caught: that numbers are known which are captured off windows.
     """
 
     trigger: State | None
@@ -66,6 +75,7 @@ class Obligation:
     hidden: Obligation | None = None
     doubted: Obligation | None = None
     doubt: State | None = None
+    caught: tuple[State, ...] = ()
 
 
 def lower(
@@ -91,9 +101,12 @@ def lower(
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
     begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
+    of_windows = [itself(one.value) for one in requirement.captures if windows_in(one.value)]
+    caught = tuple(lowering.reader.four(one).read(UNKNOWN) for one in of_windows)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
-            return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)
+            required = lowering.core(requirement.consequent, True)
+            return Obligation(None, required, lowering.origins, caught=caught)
         case formula if has_future(formula):
             raise UnmonitorableError("its trigger speaks of the future")
     four = lowering.reader.four(requirement.trigger)
@@ -111,7 +124,9 @@ def lower(
         if requirement.captures:
             doubt = factory.doubt(trigger, pulse=requirement.pulse, every=False)
         return Obligation(
-            trigger, required, lowering.origins, running, again, unborn, determined, doubt=doubt
+            *(trigger, required, lowering.origins, running, again, unborn, determined),
+            doubt=doubt,
+            caught=caught,
         )
     required = lowering.core(requirement.consequent, True)
 
@@ -130,6 +145,7 @@ def lower(
         determined=determined,
         hidden=hidden(False),
         doubted=hidden(True) if requirement.for_each is not None else None,
+        caught=caught,
     )
 
 

@@ -295,7 +295,9 @@ class _Expanding:
         match state.op:
             case StateOp.LEAF if isinstance(state.leaf, ConstantLeaf):
                 return factory.constant(state.leaf.value is positive)
-            case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT | StateOp.AMOUNT | StateOp.PASSED:
+            case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT:
+                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+            case StateOp.AMOUNT | StateOp.COMPARED | StateOp.PASSED:
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case StateOp.AND if _asks_what_is_known(state):
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)

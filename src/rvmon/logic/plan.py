@@ -42,6 +42,7 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
+        caught: that numbers are known which are captured off windows.
         stepped: whether no chain of windows is to judge it.
         traced: whether somebody asks where attempts go in its automaton; it is stepped.
         measured: what it owes as far as that is measured; `None`: it is not.
@@ -63,6 +64,7 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
+    caught: tuple[State, ...] = ()
     stepped: bool = False
     traced: bool = False
     measured: Core | None = None
@@ -74,6 +76,7 @@ class PlannedRule:
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
         yield from self.asked
+        yield from self.caught
         for beside in (self.hidden, self.doubted):
             if beside is not None:
                 yield from beside.states

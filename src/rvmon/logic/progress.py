@@ -273,6 +273,7 @@ class Duals:
                 | StateOp.PREVIOUS
                 | StateOp.SINCE
                 | StateOp.AMOUNT
+                | StateOp.COMPARED
                 | StateOp.PASSED
                 | StateOp.DOUBT
             ):

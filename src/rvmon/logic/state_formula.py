@@ -21,6 +21,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
     UpdateValue,
+    WindowValue,
 )
 
 
@@ -127,6 +128,8 @@ class StateOp(Enum):
     SINCE = "since"
     AMOUNT = "amount"
     PASSED = "passed"
+    COMPARED = "compared"
+    """A comparison of windows; its operands: whether the rest is known, and then these."""
     SURE = "sure"
     """Two-valued: the operand is TRUE."""
     DOUBT = "doubt"
@@ -145,7 +148,9 @@ class State:
         leaf: what a `LEAF` reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
-        amount: of `AMOUNT`, what is measured; its operands are those of the state.
+        amount: of `AMOUNT`, what is measured; its operands are those of the state. A window alone
+            is TRUE where it is known, and has a number.
+        compared: of `COMPARED`, the comparison.
         passed: of `PASSED`, what time is asked for; the operand says whether it is known.
         unborn: of a `LEAF` over signals, the truth that it has before their birth.
         pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
@@ -158,7 +163,8 @@ class State:
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
-    amount: Amount | None = None
+    amount: Amount | WindowValue | None = None
+    compared: Compare | None = None
     passed: Passed | None = None
     unborn: int = UNKNOWN
     pulse: bool = False

@@ -26,6 +26,7 @@ from rvmon.logic.state_formula import (
     inputs_of,
 )
 from rvmon.spec.checked.formula import (
+    Amount,
     BoundAtom,
     Captured,
     Compare,
@@ -35,6 +36,8 @@ from rvmon.spec.checked.formula import (
     FieldValue,
     ProbeAtom,
     SignalAtom,
+    itself,
+    windows_in,
 )
 from rvmon.spec.checked.specification import ForEach
 from rvmon.spec.print import format_formula, format_numeric
@@ -97,9 +100,9 @@ def begins_with_attempt(state: State) -> bool:
     """Whether a window has no members before an attempt, and nothing else of it is captured."""
     if state.amount is None or begun_by(state) is None:
         return False
-    limit = Compare(CompareOp.EQ, state.amount.limit, state.amount.limit)
     others = [part for part in _members(state) if not (part.passed and part.passed.begins)]
-    others += [part for part in state.args[1:] if part.leaf != limit]
+    limit = itself(state.amount.limit) if isinstance(state.amount, Amount) else None
+    others += [part for part in state.args[1:] if part.leaf is None or part.leaf != limit]
     return not any(map(_reads_captured, _all_of(others)))
 
 
@@ -132,9 +135,13 @@ def leaf_texts(
     last = lasting(graph, roots, determined)
     found: dict[str, dict[bool, State]] = {}
     for place, state in enumerate(graph.nodes):
-        if isinstance(state.leaf, Shown) and not _is_captured(state.leaf):
-            own = found.setdefault(_text_of(state.leaf), {})
-            asked = isinstance(state.leaf, ProbeAtom)
+        above = [graph.nodes[parent].op for parent in graph.parents[place]]
+        if above and all(op is StateOp.COMPARED for op in above):
+            continue  # what is compared says it
+        leaf = state.leaf or state.compared
+        if isinstance(leaf, Shown) and not _is_captured(leaf):
+            own = found.setdefault(_text_of(leaf), {})
+            asked = isinstance(leaf, ProbeAtom)
             if asked not in own or place in last:
                 own[asked] = state
     return tuple((own[asked], text) for text, own in found.items() for asked in sorted(own))
@@ -142,7 +149,8 @@ def leaf_texts(
 
 def _is_captured(leaf: Shown) -> bool:
     """Whether it reads nothing but captured values."""
-    return isinstance(leaf, Compare) and not inputs_of(leaf.left, leaf.right)
+    sides = (leaf.left, leaf.right) if isinstance(leaf, Compare) else ()
+    return bool(sides) and not inputs_of(*sides) and not windows_in(*sides)
 
 
 def _text_of(leaf: Shown) -> str:

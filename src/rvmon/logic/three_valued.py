@@ -6,10 +6,8 @@ that value: where a formula stands says what it is taken for, and the formula is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
-from typing import assert_never
 
 from rvmon.logic.formula import Factory
 from rvmon.logic.state_formula import (
@@ -17,9 +15,9 @@ from rvmon.logic.state_formula import (
     TRUE,
     UNKNOWN,
     Elapsed,
-    Shown,
     State,
     Unborn,
+    operands,
     reads_fields,
     signals_of,
 )
@@ -28,20 +26,21 @@ from rvmon.spec.checked.formula import (
     Atom,
     Binary,
     BinaryOp,
-    BoundAtom,
     Compare,
     Constant,
-    EventAtom,
     Formula,
     Interval,
+    Measured,
     Passed,
-    ProbeAtom,
+    Read,
     SignalAtom,
     Unary,
     UnaryOp,
+    itself,
+    windows_in,
 )
 from rvmon.spec.checked.operators import Reading, Tense
-from rvmon.spec.checked.rewrite import read, rewritten
+from rvmon.spec.checked.rewrite import read, rewritten, without_spans
 
 
 class Four:
@@ -112,13 +111,7 @@ class Reader(Reading[Four]):
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
-    def __init__(
-        self,
-        factory: Factory,
-        period: int | None,
-        *,
-        measured: bool = False,
-    ) -> None:
+    def __init__(self, factory: Factory, period: int | None, *, measured: bool = False) -> None:
         self.factory = factory
         self.period = period
         self.measured = measured
@@ -163,9 +156,11 @@ class Reader(Reading[Four]):
                 return read(formula, self.four, self)
             case Amount():
                 return self._amount(formula)
+            case Compare(left=left, right=right) if windows_in(left, right):
+                return self._compared(formula)
             case Passed(known=known):
                 value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
-                return self._born_with(value, (known,))
+                return self._born_with(value, (self._unborn(known),))
             case Constant(value=value):
                 return self.constant(value)
             case _:
@@ -177,19 +172,39 @@ class Reader(Reading[Four]):
             self.four(part).read(UNKNOWN if part is formula.known else FALSE)
             for part in formula.operands
         ]
-        return self._born_with(self.factory.amount(formula, *states), formula.born_with)
+        value = self.factory.amount(formula, *states)
+        return self._born_with(value, map(self._unborn, formula.born_with))
 
-    def _born_with(self, value: State, asked: Sequence[Formula]) -> Four:
-        """What is unknown until the signals of comparisons are born, and is not born till then."""
+    def _compared(self, formula: Compare) -> Four:
+        """Of windows: unknown where one has no number, or something else is not known."""
+        factory, leaf = self.factory, without_spans(formula)
+        parts = [part for side in (leaf.left, leaf.right) for part in operands(side)]
+        known = [itself(part) for part in parts if isinstance(part, Read)]
+        states, asked = [self.four(one).read(UNKNOWN) for one in known], [*map(self._unborn, known)]
+        for window in windows_in(leaf.left, leaf.right):
+            own = (self.four(part).read(FALSE) for part in window.operands)
+            states.append(factory.window(window, *own))
+            for unborn in map(self._unborn, window.born_with):
+                if window.measured is Measured.AGO:  # it was not, so long ago
+                    ago, born = window.window or 0, factory.negation(unborn)
+                    early = factory.since(factory.state_true, born, ago, ago)
+                    unborn = factory.negation(early)
+                asked.append(unborn)
+        return self._born_with(factory.compared(leaf, *dict.fromkeys(states)), asked)
+
+    def _unborn(self, part: SignalAtom | Compare) -> State:
+        """That a signal that is read is not born, whatever occurs."""
+        if isinstance(part, Compare) and windows_in(part.left, part.right):
+            return self._compared(part).unborn
+        signals = tuple(sorted(signals_of(part).items()))
+        return self.factory.leaf(Unborn(signals)) if signals else self.factory.state_false
+
+    def _born_with(self, value: State, asked: Iterable[State]) -> Four:
+        """What is unknown while something is not born, and is not born itself till then."""
         factory = self.factory
-        signals: dict[str, bool] = {}
-        for part in asked:
-            if isinstance(part, Compare):
-                for name, moved in signals_of(part).items():
-                    signals[name] = signals.get(name, False) or moved
-        if not signals:
+        unborn = self._some_unborn(asked)
+        if unborn is factory.state_false:
             return Four(factory, _same(value), mortal=False)
-        unborn = factory.leaf(Unborn(tuple(sorted(signals.items()))))
 
         def read(reading: int) -> State:
             if reading == UNKNOWN:
@@ -202,12 +217,10 @@ class Reader(Reading[Four]):
 
     def _atom(self, atom: Atom) -> Four:
         factory = self.factory
-        leaf = without_span(atom)
+        leaf = without_spans(atom)
         if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
             return Four(factory, lambda _: factory.leaf(leaf), mortal=False)
-        unborn = None
-        if not reads_fields(leaf):
-            unborn = factory.leaf(Unborn(tuple(sorted(signals_of(leaf).items()))))
+        unborn = None if reads_fields(leaf) else self._unborn(leaf)
         return Four(
             factory,
             lambda reading: factory.leaf(leaf, reading),
@@ -253,7 +266,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         args = [part for arg in args for part in arg.parts]
         # What was lost is not excused by what is not there: with it, the whole is unknown.
-        unborn = self._some_unborn(args)
+        unborn = self._some_unborn(arg.unborn for arg in args)
 
         def read(reading: int) -> State:
             joined = factory.state_all([arg.read(reading or TRUE) for arg in args])
@@ -279,11 +292,11 @@ class Reader(Reading[Four]):
         born = factory.state_any([factory.negation(unborn), lost])
         return factory.state_all([*(arg.read(UNKNOWN) for arg in args), born])
 
-    def _some_unborn(self, args: Sequence[Four]) -> State:
-        """Two-valued: one of them is not born; what is read off the input is one leaf."""
+    def _some_unborn(self, unborn: Iterable[State]) -> State:
+        """Two-valued: something is not born; what is read off the input is one leaf."""
         factory = self.factory
         states, signals = [], dict[str, bool]()
-        for state in (arg.unborn for arg in args):
+        for state in unborn:
             if isinstance(state.leaf, Unborn):
                 for name, moved in state.leaf.signals:
                     signals[name] = signals.get(name, False) or moved
@@ -385,14 +398,3 @@ class Reader(Reading[Four]):
             low = -(-low // self.period) * self.period
             high = None if high is None else high // self.period * self.period
         return low, high
-
-
-def without_span(atom: Atom) -> Shown:
-    """The atom as it is read off the input, wherever in a spec it stands."""
-    match atom:
-        case Constant():
-            raise AssertionError("constants are no leaves")
-        case SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
-            return replace(atom, span=None)
-        case _:
-            assert_never(atom)

@@ -55,6 +55,7 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
         running=obligation.running if captures else None,
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
+        caught=obligation.caught,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
         measured=figured,
     )

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Amount
+from rvmon.spec.checked.classify import windows_of
+from rvmon.spec.checked.formula import WindowValue
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print import format_duration, format_measured
+from rvmon.spec.print import format_duration, format_window
 
 
 def memory_lines(spec: CheckedSpec) -> list[str]:
@@ -23,10 +23,7 @@ def memory_lines(spec: CheckedSpec) -> list[str]:
 
 def _lines(requirement: Requirement) -> Iterator[str]:
     windows = {
-        format_measured(part): part
-        for whole in (requirement.trigger, requirement.consequent)
-        for part in subformulas(whole)
-        if isinstance(part, Amount)
+        format_window(one): one for one in windows_of(requirement.trigger, requirement.consequent)
     }
     again = ""
     if requirement.for_each is not None:
@@ -40,12 +37,12 @@ def _lines(requirement: Requirement) -> Iterator[str]:
         yield f"memory: {requirement.id} keeps {fixed:,} bytes in all, and what is in its windows"
 
 
-def _fixed(window: Amount) -> int:
+def _fixed(window: WindowValue) -> int:
     """Bytes that it takes whatever comes."""
     return window.measured.fixed + window.measured.each * (window.most or 0)
 
 
-def _of(window: Amount) -> str:
+def _of(window: WindowValue) -> str:
     each = f"and up to {window.measured.each} a member"
     if window.most is not None:
         return f"{_fixed(window):,} bytes at most"

@@ -233,6 +233,83 @@ CASES = {
 }
 
 
+HEIGHTS = "signal x, y : real [m]\nevent a, b"
+EXPRESSIONS = {
+    "max(x, 2 s) - min(x, 2 s) <= 0.5 m": ({"x": 0.4}, {"x": 0.6}),
+    "count(a, 5 s) - count(b, 5 s) <= 1": ({"a": True}, {"a": True, "b": False}),
+    "count(a, 5 s) <= count(b, 10 s) + 1": ({"a": True, "b": True}, {"a": True}),
+    "abs(delta(x, 2 s)) <= 50 cm": ({"x": -0.5}, {"x": -0.6}),
+    "abs(x - mean(x, 5 s)) <= 3 m": ({"x": 3.0}, {"x": 5.0}),
+    "x <= 2 * mean(x, 5 s)": ({"x": 0.0}, {"x": 0.1}),
+    "x <= max(y, 2 s) + 0.1 m": ({"x": 1.1}, {"x": 1.2}),
+    "abs(ago(x, 1 s) - x) <= 1 m": ({"x": 1.0}, {"x": 1.1}),
+    "mean(x - y, 4 s) <= 1 m": ({"x": 2.0}, {"x": 4.0}),
+}
+"""Beside what passes and what fails of it in the third second."""
+
+
+@pytest.mark.parametrize("time", TimeModel)
+@pytest.mark.parametrize("text", EXPRESSIONS)
+def test_windows_are_numbers_in_every_expression(text, time):
+    """What a user types first, in each time model."""
+    if time is not TimeModel.HELD and "ago" in text:
+        pytest.skip("there may be no sample at that instant")
+    every = " 500 ms" if time is TimeModel.CLOCKED else ""
+    spec = rvmon.loads(f"spec s\ntime {time}{every}\n{HEIGHTS}\nrequirement R\n  always {text}\n")
+    before = [(0.0, {"x": 0.0, "y": 1.0, "a": False, "b": False}), (1.0, {"a": True, "b": False})]
+    found = []
+    for last in EXPRESSIONS[text]:
+        b = {"b": last.get("b", "a" in last and text.startswith("count(a, 5 s) -"))}
+        found.append(spec.evaluate([*before, (3.0, {**last, **b}), (5.0, {})]).verdicts["R"].value)
+    assert found == ["P", "F"]
+
+
+def test_numbers_of_windows_are_captured():
+    """At the trigger, and of an event beside its own window."""
+    spec = rvmon.loads(
+        "signal x : real\nevent e(k: int)\nrequirement R\n  upon e\n"
+        "  then for 5 s x <= m + d let m = max(x, 5 s) let d = e.k - count(e, 5 s)\n"
+    )
+    samples = [(0.0, {"x": 3.0}), (1.0, {"x": 1.0}), (2.0, {"e": {"k": 2}}), (4.0, {"x": 4.0})]
+    assert spec.evaluate(samples, until=9.0).verdicts["R"] == "P"
+    samples[2] = (2.0, {"e": {"k": 1}})
+    assert spec.evaluate(samples, until=9.0).verdicts["R"] == "F"
+
+
+def test_a_lost_number_leaves_an_expression_unknown_till_it_has_left():
+    """Alone a window keeps what it may be; among others it is unknown."""
+    spec = rvmon.loads("signal x : real\nrequirement R\n  always max(x, 3 s) - min(x, 3 s) <= 2\n")
+    monitor = spec.monitor()
+    for t, x in ((0.0, 0.0), (1.0, None), (2.0, 0.0), (6.0, 3.0)):
+        monitor.step(t, {"x": x})
+    (failed,) = (one for one in monitor.finish(9.0).attempts if one.verdict == "F")
+    assert failed.decided == 6_000_000_000
+
+
+@pytest.mark.parametrize(
+    ("required", "due"),
+    [("max(x, 3 s) <= x", [0, 4_000_000_000]), ("x + 2 <= ago(x, 3 s)", [3_000_000_000])],
+)
+def test_an_expression_is_due_where_a_window_jumps(required, due):
+    """Though nothing comes."""
+    spec = rvmon.loads(f"signal x : real\nrequirement R\n  upon {required}\n  then false\n")
+    report = spec.evaluate([(0.0, {"x": 5.0}), (1.0, {"x": 3.0})], until=20.0)
+    assert [one.triggered for one in report.attempts] == due
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", TimeModel)
+def test_expressions_of_windows_are_those_of_the_oracle(time):
+    """With outages, put away and taken up again, step by step and by rows."""
+    seeds = [f"expressions/{time.name}/{number}" for number in range(40)]
+    profile, traces = Profile(time=time, amounts=100, form="expression"), TraceProfile(outages=40)
+    compiler = Compiler()
+    makers = {form: Maker(form, compiler) for form in ("c+interrupt", "c rows")}
+    found = campaign(makers, seeds, profile, traces, each=4, online_every=4)
+    assert not found.disagreements, found.disagreements[0]
+    assert [found.counts[f"judged by {form}"] for form in makers] == [160, 160]
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_requirements_of_practice(name):
     """Each passes on one recording and fails on one that is a little off."""

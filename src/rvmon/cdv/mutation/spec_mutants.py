@@ -40,6 +40,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     Unary,
     UnaryOp,
+    WindowValue,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print import format_duration, format_formula
@@ -184,9 +185,12 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
         for changed in change(formula):
             yield name, changed
     match formula:
-        case Unary(operand=operand) | Amount(value=None, operand=operand):
+        case Unary(operand=operand):
             for name, changed in changes(operand):
                 yield name, replace(formula, operand=changed)
+        case Amount(of=WindowValue(value=None, operand=operand) as window):
+            for name, changed in changes(operand):
+                yield name, replace(formula, of=replace(window, operand=changed))
         case Binary(left=left, right=right):
             for name, changed in changes(left):
                 yield name, replace(formula, left=changed)

@@ -67,7 +67,8 @@ enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
 /* Stretches of instants at which a `since` in bounds holds, or which are members of a window (members.h),
  * as a ring. Of a window, what is said of members stands in the first one of two, and in the second how
- * many may be some, and how many are to come until it is known which the last ones are. */
+ * many may be some, and how many are to come until it is known which the last ones are. Of sums, `left` says
+ * that all numbers were whole ones; of the last updates that are the least or greatest, `total` counts all. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
@@ -157,6 +158,7 @@ struct run {
     stretches *past;
     edge *edges;
     tally *tallies;
+    rv_number *amounts;        /* what windows come to */
     timers wake;               /* nodes, then perishable signals */
     uint64_t *dirty;           /* nodes to be worked out, as bits */
     uint64_t *dirty_words;     /* words of that which are not 0, as bits */

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
+from rvmon.spec.check.moving import refuse_moving
 from rvmon.spec.check.quantities import is_time, seconds_of
 from rvmon.spec.check.scope import Operands, Quantity, Scope
 from rvmon.spec.checked.formula import (
@@ -64,7 +65,9 @@ def bound_of(
     value = operands.values((window.high,), scope)[0]
     if not isinstance(value, Quantity) or value.node is None or not is_time(value):
         return None
-    return Bounded(seconds_of((value, window.high.span)), scope)
+    seconds = seconds_of((value, window.high.span))
+    refuse_moving(operands.table.time, seconds, window.high.span)
+    return Bounded(seconds, scope)
 
 
 def bounded_prefix(op: UnaryOp, operand: Formula, bound: Bounded, span: Span) -> Formula:

@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
 
 from rvmon.diagnostics import Diagnostic, Span
+from rvmon.spec.check.moving import above, brought_alone, by_limits
 from rvmon.spec.check.quantities import (
     Placed,
     arithmetic,
     compare,
     decided,
     either,
-    node_of,
     seconds_of,
     spread,
     ticks_of,
 )
 from rvmon.spec.check.scope import (
     Age,
-    Ago,
-    AmountOf,
     Beside,
     Chosen,
-    Extreme,
+    Lone,
     Moment,
     Now,
     Operands,
@@ -55,17 +52,18 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
     UnaryOp,
-    itself,
+    WindowValue,
     passed,
+    windows_in,
 )
-from rvmon.spec.checked.measured import Dimension
 from rvmon.spec.checked.names_read import names_in
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
 from rvmon.trace.time import TICKS_PER_SECOND
-from rvmon.units import PLAIN, Unit, parse_unit, product
+from rvmon.units import Unit, parse_unit
 
 _EQUALITY = (CompareOp.EQ, CompareOp.NE)
 
@@ -78,10 +76,12 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
         Reported: a side is wrong.
     """
     sides = _sides(operands, node, scope)
-    return decided(spread(sides, node.span, lambda values: _compared(node, *values)), node.span)
+    time = operands.table.time
+    made = spread(sides, node.span, lambda values: _compared(time, node, *values))
+    return decided(made, node.span)
 
 
-def _compared(node: Comparison, left: Value, right: Value) -> Formula:
+def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> Formula:
     op, places = node.op, (node.left.span, node.right.span)
     if isinstance(right, Beside) and not isinstance(left, Beside):
         left, right, op, places = right, left, op.mirrored, places[::-1]
@@ -90,17 +90,31 @@ def _compared(node: Comparison, left: Value, right: Value) -> Formula:
     if isinstance(left, Now):
         return _now(left, op, right, places[1], node.span)
     limit = _comparable(right, places[1])
-    match left:
-        case Age():
-            return _age(left, op, limit, node.span)
-        case AmountOf():
-            return _amount(left, op, limit, node.span)
-        case Extreme():
-            return _extreme(left, op, limit, node.span)
-        case Ago():
-            return _ago(left, op, limit, node.span)
-        case _:
-            return _quantities(op, _comparable(left, places[0]), limit, node.span)
+    if isinstance(left, Age):
+        return _age(left, op, limit, node.span)
+    first = _comparable(left, places[0])
+    if limit[0].lone and not first[0].lone:
+        first, limit, op = limit, first, op.mirrored
+    windows = [_windows_of(side) for side in (first, limit)]
+    if first[0].lone and not windows[1]:
+        lone = first[0].lone
+        if not lone.of.measured.recalls:
+            return _amount(lone, first[0].unit, op, limit, node.span)
+        if (made := _extreme(lone, op, limit, node.span)) is not None:
+            return made
+    found = _quantities(op, first, limit, node.span)
+    if not any(windows) or not isinstance(found, Compare):
+        return found
+    if reads_field(found.left) or reads_field(found.right):
+        raise Refusal(rules.limit_of_event(node.span))
+    if time is TimeModel.HELD and any(one.moves for one in (*windows[0], *windows[1])):
+        return brought_alone(found, node.span)
+    return found
+
+
+def _windows_of(placed: Placed) -> tuple[WindowValue, ...]:
+    node = placed[0].node
+    return () if node is None else windows_in(node)
 
 
 def _sides(operands: Operands, node: Comparison, scope: Scope) -> list[Value]:
@@ -126,125 +140,72 @@ def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> 
     return not isinstance(expression, Name) or operands.known(expression.text, scope)
 
 
-def _amount(amount: AmountOf, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """All comparisons are made of `>= c` and `> c`."""
-    counted = amount.added is None and limit[0].constant is not None
-    make = _counted if counted else _added
-    up, above = (make(amount, limit, strict, span) for strict in (False, True))
-    match op:
-        case CompareOp.GE:
-            return up
-        case CompareOp.GT:
-            return above
-        case CompareOp.LT:
-            return Unary(UnaryOp.NOT, up, None, span)
-        case CompareOp.LE:
-            return Unary(UnaryOp.NOT, above, None, span)
-    same = Binary(BinaryOp.AND, up, Unary(UnaryOp.NOT, above, None, span), None, span)
-    return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
+def _amount(lone: Lone, unit: Unit, op: CompareOp, limit: Placed, span: Span) -> Formula:
+    if lone.added is None and limit[0].constant is not None:
+        return by_limits(op, lambda strict: _counted(lone, limit, strict, span), span)
+    bound = _bound(lone, unit, limit, span)
+    return by_limits(op, lambda strict: above(lone.of, bound, strict, span), span)
 
 
-def _counted(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
+def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
     """A count or duration beside a constant, in whole numbers: `> c` is `>= floor(c) + 1`."""
     value, place = limit
     exact = (value.constant or 0) * value.unit.factor
-    if amount.share or amount.measured is Measured.COUNT:
+    if lone.share or lone.of.measured is Measured.COUNT:
         if value.unit.dimension:
             raise Refusal(rules.mismatch(span, "no unit", value.unit.symbol, "compared with"))
-        exact *= amount.window or 1 if amount.share else 1
+        exact *= lone.of.window or 1 if lone.share else 1
     else:
         exact = Fraction(ticks_of(value, place))
     least = floor(exact) + 1 if strict else ceil(exact)
-    if least <= 0:
-        return Constant(True, span)
-    return _of(amount, Literal(least), span)
+    return Constant(True, span) if least <= 0 else Amount(lone.of, Literal(least), span=span)
 
 
-def _of(amount: AmountOf, limit: Numeric, span: Span) -> Amount:
-    """What is measured beside a limit, but for numbers."""
-    return Amount(
-        *(amount.measured, amount.operand, amount.window, limit),
-        span=span,
-        most=amount.most,
-        counted=amount.counted,
-        chosen=amount.chosen,
-    )
-
-
-_SECONDS = parse_unit("s")
-
-
-def _unit_of(measured: Measured, unit: Unit) -> Unit:
-    """The unit of what is measured of numbers."""
-    match measured.dimension:
-        case Dimension.PLAIN:
-            return PLAIN
-        case Dimension.TIMES_TIME | Dimension.TIME:
-            return product(unit, _SECONDS)
-        case Dimension.SQUARE:
-            return product(unit, unit)
-        case Dimension.SAME:
-            return unit
-
-
-def _added(amount: AmountOf, limit: Placed, strict: bool, span: Span) -> Formula:
-    """Members beside any number that does not move between samples.
-
-    A duration beside one is the integral of 1.
-    """
+def _bound(lone: Lone, unit: Unit, limit: Placed, span: Span) -> Numeric:
+    """A limit that does not move between samples, in the unit of what is measured."""
     value, place = limit
     if value.node is not None and reads_field(value.node):
         raise Refusal(rules.limit_of_event(place))
-    one = Quantity(constant=Fraction(1))
-    added = amount.added or one
-    unit = _unit_of(amount.measured, added.unit)
-    if amount.share:
-        window = Quantity(constant=Fraction(amount.window or 0, TICKS_PER_SECOND), unit=_SECONDS)
-        limit = arithmetic(NumericOp.MUL, (limit, (window, place)), span), place
-    if amount.measured is Measured.DURATION:
-        amount = replace(amount, measured=Measured.INTEGRAL, added=one)
     whole = Quantity(SignalValue(""), unit=unit)
+    if lone.share:
+        seconds = Fraction(lone.of.window or 0, TICKS_PER_SECOND)
+        whole = Quantity(constant=seconds, unit=parse_unit("s"))
+        limit = arithmetic(NumericOp.MUL, (limit, (whole, place)), span), place
+        whole = Quantity(SignalValue(""), unit=whole.unit)
     beside = compare(CompareOp.GE, (whole, span), limit, span)
     if not isinstance(beside, Compare):
         raise AssertionError("one side varies")
-    bound = beside.right
-    return replace(
-        _of(amount, bound, span),
-        value=None if amount.added is None else node_of((amount.added, span)),
-        strict=strict,
-        known=None if isinstance(bound, Literal) else itself(bound, place),
-    )
+    return beside.right
 
 
-def _ago(ago: Ago, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """It is that comparison D ago: false where there was no such instant."""
-    bound = limit[0].node
-    if bound is not None and any(names_in(bound)):
-        raise Refusal(rules.extreme_alone(span))
-    then = compare(op, (ago.quantity, ago.span), limit, span)
-    return Unary(UnaryOp.ONCE, then, Interval(ago.window, ago.window), span)
+def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | None:
+    """`max(x, D) <= c` is: `x <= c` all through the last D; `max(x, D) >= c`: at some instant.
 
-
-def _extreme(extreme: Extreme, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """`max(x, D) <= c` is: `x <= c` all through the last D; `max(x, D) >= c`: at some instant."""
-    bound = limit[0].node
-    if bound is not None and any(names_in(bound)):
-        raise Refusal(rules.extreme_alone(span))
-    every = (CompareOp.LT, CompareOp.LE) if extreme.greatest else (CompareOp.GT, CompareOp.GE)
+    `ago(x, D) <= c` is that comparison D ago: false where there was no such instant. `None`: it is
+    beside what changes, and looked at as a number.
+    """
+    bound, added = limit[0].node, lone.added
+    if added is None or (bound is not None and any(names_in(bound))):
+        return None
+    of = lone.of
+    if of.measured is Measured.AGO:
+        then = compare(op, (added, span), limit, span)
+        return Unary(UnaryOp.ONCE, then, Interval(of.window or 0, of.window), span)
+    greatest = of.measured is Measured.MAX
+    every = (CompareOp.LT, CompareOp.LE) if greatest else (CompareOp.GT, CompareOp.GE)
+    occurs = added.node is not None and reads_field(added.node)
 
     def over(how: CompareOp) -> Formula:
-        if how in every and (extreme.begun or extreme.updated):
+        if how in every and (lone.begun or of.most or occurs):
             return Unary(UnaryOp.NOT, over(how.denied), None, span)
-        one: Formula = compare(how, (extreme.quantity, extreme.span), limit, span)
-        if extreme.updated is not None:
-            counted = AmountOf(
-                Measured.COUNT, extreme.updated, None, most=extreme.most, counted=one
-            )
-            return _of(counted, Literal(1), span)
+        one: Formula = compare(how, (added, span), limit, span)
+        if of.most is not None:
+            counted = WindowValue(Measured.COUNT, of.operand, None, most=of.most, counted=one)
+            return Amount(counted, Literal(1), span=span)
         whole = UnaryOp.HISTORICALLY if how in every else UnaryOp.ONCE
-        if extreme.begun is not None:
-            one = Binary(BinaryOp.AND, extreme.begun, one, None, span)
-        return Unary(whole, one, Interval(0, extreme.window), span)
+        if lone.begun is not None:
+            one = Binary(BinaryOp.AND, lone.begun, one, None, span)
+        return Unary(whole, one, Interval(0, of.window), span)
 
     if op not in _EQUALITY:
         return over(op)
@@ -259,10 +220,6 @@ def alone(value: Beside, span: Span) -> Diagnostic:
             return rules.age_alone(span)
         case Now() | Moment():
             return rules.now_alone(span)
-        case AmountOf():
-            return rules.amount_alone(span)
-        case Extreme() | Ago():
-            return rules.extreme_alone(span)
 
 
 def formula_of(value: Value, span: Span) -> Formula:
@@ -344,6 +301,8 @@ def _now(now: Now, op: CompareOp, limit: Value, place: Span, span: Span) -> Form
     value, _ = _comparable(limit, place)
     if value.node is not None and reads_field(value.node):
         raise Refusal(rules.limit_of_event(place))
+    if _windows_of((value, place)):
+        raise Refusal(rules.now_alone(span))
     if op in _EQUALITY:
         raise Refusal(rules.now_alone(span))
     strict = op in (CompareOp.GT, CompareOp.LE)

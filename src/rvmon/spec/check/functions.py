@@ -10,7 +10,7 @@ from rvmon.spec.check.scope import (
     Scope,
     Value,
 )
-from rvmon.spec.check.windows import ago, amount, extreme
+from rvmon.spec.check.windows import amount, is_extreme
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Interval,
@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function, Recall
+from rvmon.spec.checked.functions import FUNCTIONS, LAST, Argument, Function
 from rvmon.spec.rules import Refusal, Reported
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
@@ -44,7 +44,7 @@ _INSTEAD = {
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
 """What says nearly the same as functions that there are not."""
-_EXTREMES = (NumericOp.MIN, NumericOp.MAX)
+_EXTREMES = {NumericOp.MIN: Measured.MIN, NumericOp.MAX: Measured.MAX}
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
@@ -73,16 +73,13 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
             return amount(operands, Measured.DELTA, call, scope)
         case UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
-        case NumericOp() as op if op in _EXTREMES and len(call.args) <= 2:
-            found = extreme(operands, op, call, scope)
-            return found or operands.calculated(op, call.args, scope, call.span)
+        case NumericOp() as op if op in _EXTREMES and is_extreme(operands, call, scope):
+            return amount(operands, _EXTREMES[op], call, scope)
         case NumericOp() as op:
             return operands.calculated(op, call.args, scope, call.span)
         case Measured() as measured:
             return amount(operands, measured, call, scope)
-        case Recall.AGO:
-            return ago(operands, call, scope)
-        case Recall.LAST:
+        case None if function.name == LAST:
             raise Refusal(rules.last_alone(call.span))
         case None:
             return Age(_named(operands, call, scope, function)[0])

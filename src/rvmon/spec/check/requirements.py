@@ -10,6 +10,7 @@ from rvmon.diagnostics import Span
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.ctl import linear_form, property_of
 from rvmon.spec.check.expressions import Checker
+from rvmon.spec.check.moving import refuse_moving
 from rvmon.spec.check.normalise import (
     derived_response,
     normalised,
@@ -35,10 +36,10 @@ from rvmon.spec.checked.classify import (
     mixed_disjunction,
     reads_field,
     subformulas,
+    windows_of,
 )
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import (
-    Amount,
     Bound,
     BoundAtom,
     Captured,
@@ -133,15 +134,15 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
 
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
     """Of several occurrences at one instant each has to tell by itself whether it counts."""
-    for part in (part for formula in formulas for part in subformulas(formula)):
-        if not isinstance(part, Amount) or part.value is None or not reads_field(part.value):
+    for window in windows_of(*formulas):
+        if window.value is None or not reads_field(window.value):
             continue
-        events = {one.event for one in fields_in(part.value)}
-        for one in subformulas(part.operand):
+        events = {one.event for one in fields_in(window.value)}
+        for one in subformulas(window.operand):
             read = {*names_read(one)} & events if isinstance(one, Compare) else set()
-            own = isinstance(one, Compare) and one.left == one.right == part.value
+            own = isinstance(one, Compare) and one.left == one.right == window.value
             if len(events) > 1 or (read and not own):
-                raise Refusal(type_rules.sum_of_instances(part.operand.span or place))
+                raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
 
 
 def check_clauses(checker: Checker, item: RequirementItem) -> None:
@@ -309,6 +310,7 @@ def _captures(
         if not isinstance(value, Quantity):
             raise Refusal(type_rules.needs_number(clause.value.span))
         node = node_of((value, clause.value.span))
+        refuse_moving(checker.table.time, node, clause.value.span)
         captures.append(Capture(clause.name.text, node))
         values[clause.name.text] = value  # both are of the trigger's instant
         names[clause.name.text] = replace(value, node=Captured(clause.name.text), constant=None)

@@ -11,12 +11,11 @@ from rvmon.diagnostics import Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     TRIGGERED,
-    Compare,
     Formula,
-    Measured,
     NowValue,
     Numeric,
     Passed,
+    WindowValue,
     since_trigger,
 )
 from rvmon.spec.checked.specification import Capture, Event, Signal, TimeModel, Type
@@ -38,6 +37,7 @@ class Quantity:
         integral: whether all values are whole numbers by type.
         labels: the labels it may take, if it is one.
         truth: whether it is a bool, for which 0 and 1 stand.
+        lone: the window that it is, if it is no expression of one.
     """
 
     node: Numeric | None = None
@@ -46,6 +46,7 @@ class Quantity:
     integral: bool = False
     labels: tuple[str, ...] = ()
     truth: bool = False
+    lone: Lone | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,69 +90,23 @@ class Moment:
 
 
 @dataclass(frozen=True, slots=True)
-class AmountOf:
-    """`count(φ, D)`, `sum(x, D)` and their kin; only compared.
+class Lone:
+    """What a number is that is a window and nothing else: beside a limit it has ways of its own.
 
     Attributes:
-        measured: a share is the duration, divided by D.
-        operand: φ, or where x is added.
-        window: D, ticks; `None`: since the first instant.
-        share: whether it is one.
-        added: x, of numbers.
-        most: of `last(n, x)`, n.
-        counted: of a count of these, which of them count.
-        chosen: what is asked of each occurrence.
-    """
-
-    measured: Measured
-    operand: Formula
-    window: int | None
-    share: bool = False
-    added: Quantity | None = None
-    most: int | None = None
-    counted: Formula | None = None
-    chosen: tuple[Compare, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Extreme:
-    """`min(x, D)`, `max(x, D)`; only compared with what stays as it is.
-
-    Attributes:
-        greatest: whether it is the greatest value of the last D, and not the least.
-        quantity: x.
-        span: of x.
-        window: D, ticks; `None`: since the first instant.
+        of: the window; of a share, its duration.
+        added: its x, if it is of numbers.
+        share: whether it is divided by D.
         begun: that the trigger has come, if only what is since then counts.
-        most: of `last(n, x)`, n.
-        updated: of that, where x is updated.
     """
 
-    greatest: bool
-    quantity: Quantity
-    span: Span
-    window: int | None
+    of: WindowValue
+    added: Quantity | None = None
+    share: bool = False
     begun: Formula | None = None
-    most: int | None = None
-    updated: Formula | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Ago:
-    """`ago(x, D)`; only compared with what stays as it is, as an extreme is.
-
-    Attributes:
-        quantity: x.
-        span: of x.
-        window: D, ticks.
-    """
-
-    quantity: Quantity
-    span: Span
-    window: int
-
-
-Beside = Age | Now | Moment | AmountOf | Extreme | Ago
+Beside = Age | Now | Moment
 """What only stands beside something else in a comparison."""
 
 Value = Formula | Quantity | Beside | Chosen

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import TypeGuard
 
 from rvmon.diagnostics import Span
 from rvmon.spec.check.comparisons import number_of
-from rvmon.spec.check.scope import Ago, AmountOf, Chosen, Extreme, Operands, Quantity, Scope, Value
+from rvmon.spec.check.quantities import arithmetic, node_of
+from rvmon.spec.check.scope import Chosen, Lone, Operands, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.classify import fields_in, future_part, is_pulse, reads_field
+from rvmon.spec.checked.classify import fields_in, future_part, is_pulse
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -22,19 +24,24 @@ from rvmon.spec.checked.formula import (
     Probe,
     ProbeAtom,
     SignalValue,
+    WindowValue,
     itself,
+    windows_in,
 )
-from rvmon.spec.checked.measured import Members
+from rvmon.spec.checked.functions import LAST
+from rvmon.spec.checked.measured import Dimension, Members
 from rvmon.spec.checked.names_read import names_in, names_read
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.syntax.expressions import Call, Expression, Infix, Name
-from rvmon.units import parse_unit
+from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.units import PLAIN, Unit, parse_unit, product
 
-LAST, TRIGGER = "last", "trigger"
-"""Words of windows: `last(n, x)`, `x since trigger`."""
+TRIGGER = "trigger"
+"""What windows may begin with: `x since trigger`."""
+_SECONDS = parse_unit("s")
 MOST_LAST = 1_000_000
 """So many updates a window may hold."""
 
@@ -103,22 +110,46 @@ def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
     return int(number)
 
 
-def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> AmountOf:
-    """What a call measures, beside nothing yet.
+def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> Quantity:
+    """What a call measures.
 
     Raises:
         Refusal: there is no such window, or that is not measured of such members.
         Reported: an operand is wrong.
     """
     window = _window(operands, call, scope)
-    found = (_added if measured.of_numbers else _counted)(operands, measured, call, window)
+    lone = (_added if measured.of_numbers else _counted)(operands, measured, call, window)
+    of = replace(lone.of, window=window.ticks, most=window.most)
     if window.since and scope.trigger is not None:
         begun = scope.trigger.begun(window.span)
-        found = replace(found, operand=_both(begun, found.operand, window.span))
-    return replace(found, window=window.ticks, most=window.most)
+        of = replace(of, operand=_both(begun, of.operand, window.span))
+        lone = replace(lone, begun=begun)
+    lone = replace(lone, of=of)
+    added = lone.added or Quantity(integral=True)
+    whole = added.integral and measured not in (Measured.MEAN, Measured.VARIANCE)
+    unit = _unit_of(measured, added.unit)
+    found = Quantity(of, unit=unit, integral=whole and not measured.of_time)
+    if lone.share:
+        seconds = Fraction(of.window or 0, TICKS_PER_SECOND)
+        span = Quantity(constant=seconds, unit=_SECONDS)
+        found = arithmetic(NumericOp.DIV, ((found, call.span), (span, call.span)), call.span)
+    return replace(found, lone=lone)
 
 
-def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> AmountOf:
+def _unit_of(measured: Measured, unit: Unit) -> Unit:
+    """The unit of what is measured of numbers."""
+    match measured.dimension:
+        case Dimension.PLAIN:
+            return PLAIN
+        case Dimension.TIMES_TIME | Dimension.TIME:
+            return product(unit, _SECONDS)
+        case Dimension.SQUARE:
+            return product(unit, unit)
+        case Dimension.SAME:
+            return unit
+
+
+def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
     """How much of a formula there was, which has to be known at once."""
     formula = operands.formula(window.of, window.scope)
     _refuse_future(formula, call, call.function.text)
@@ -129,11 +160,11 @@ def _counted(operands: Operands, measured: Measured, call: Call, window: _Window
         if share or measured is not Measured.COUNT:
             raise Refusal(rules.not_of_last(call.span, call.function.text))
         updated = _updates(operands, {*names_read(formula)}, window.span)
-        return AmountOf(measured, updated, None, counted=formula)
+        return Lone(WindowValue(measured, updated, None, counted=formula))
     held = operands.table.time is TimeModel.HELD
     if measured is Measured.COUNT and held and not is_pulse(formula):
         raise Refusal(rules.count_of_state(window.span))
-    return AmountOf(measured, formula, None, share)
+    return Lone(WindowValue(measured, formula, None), share=share)
 
 
 def _refuse_future(formula: Formula, call: Call, name: str) -> None:
@@ -151,7 +182,7 @@ def _updates(operands: Operands, names: set[str], span: Span) -> Formula:
     return ProbeAtom(Probe.UPDATED, name, span)
 
 
-def _added(operands: Operands, measured: Measured, call: Call, window: _Window) -> AmountOf:
+def _added(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
     """The numbers of occurrences, of updates, or what is held."""
     place = window.span
     (value,) = operands.values((window.of,), window.scope)
@@ -159,20 +190,25 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     if isinstance(value, Chosen) and _may_choose(measured, window) and _is_nothing(value.otherwise):
         conditions, value = [*_conjuncts(value.condition)], value.chosen
     quantity = number_of(value, place)
-    node = quantity.node
-    if node is None:
+    if quantity.node is None:
         raise Refusal(rules.not_added(place, measured, measured.of.value))
+    node = node_of((quantity, place))
+    if windows_in(node):
+        raise Refusal(rules.window_in_window(place))
     events = {one.event for one in fields_in(node)}
     signals = {*names_in(node)} - events
     if window.most is not None:
         if measured.of is Members.HELD:
             raise Refusal(rules.not_of_last(call.span, measured))
         updated = _updates(operands, events | signals, place)
-        return AmountOf(measured, updated, None, added=quantity, counted=itself(node, place))
+        of = WindowValue(measured, updated, None, node, counted=itself(node, place))
+        return Lone(of, quantity)
     if not _can_be_added(measured, node, fields=bool(events), signals=bool(signals)):
         raise Refusal(rules.not_added(place, measured, measured.of.value))
     if measured is Measured.VARIANCE and signals:
         _refuse_curve(operands, call, window)
+    if measured is Measured.AGO and operands.table.time is not TimeModel.HELD:
+        raise Refusal(time_rules.ago_of_samples(call.span))
     if measured.of is Members.EVENTS and isinstance(node, SignalValue):
         conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
     chosen = tuple(one for one in conditions if _is_of_occurrence(one, events))
@@ -180,7 +216,7 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     for condition in reversed([one for one in conditions if one not in chosen]):
         _refuse_future(condition, call, measured)
         member = _both(condition, member, place)
-    return AmountOf(measured, member, None, added=quantity, chosen=chosen)
+    return Lone(WindowValue(measured, member, None, node, chosen=chosen), quantity)
 
 
 def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
@@ -218,6 +254,8 @@ def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: b
             return fields or isinstance(node, SignalValue)
         case Members.HELD:
             return signals and not fields
+        case _ if measured.recalls:
+            return fields or signals
         case _:
             return fields is not signals
 
@@ -231,39 +269,14 @@ def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
         raise Refusal(rules.argument_count(call.span, "variance", "two arguments", 1))
 
 
-def ago(operands: Operands, call: Call, scope: Scope) -> Ago:
-    """`ago(x, D)`.
-
-    Raises:
-        Refusal: it is of no signals, or not of held time.
-    """
-    (quantity,) = operands.quantities(call.args[:1], scope)
-    if quantity.node is None or reads_field(quantity.node):
-        raise Refusal(rules.argument_kind(call.args[0].span, "ago", "a number of signals"))
-    if operands.table.time is not TimeModel.HELD:
-        raise Refusal(time_rules.ago_of_samples(call.span))
-    return Ago(quantity, call.args[0].span, operands.duration(call.args[1], scope))
-
-
-def extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Extreme | None:
-    """That of a window, if the second argument is a duration and the first is no time."""
-    greatest = op is NumericOp.MAX
+def is_extreme(operands: Operands, call: Call, scope: Scope) -> bool:
+    """Of a window, if the second argument is a duration and the first is no time."""
     if len(call.args) == 1:
-        window = _window(operands, call, scope)
-        (number,) = operands.quantities((window.of,), window.scope)
-        found = Extreme(greatest, number, window.span, None)
-        if window.most is not None:
-            names = set() if number.node is None else {*names_in(number.node)}
-            updated = _updates(operands, names, window.span)
-            return replace(found, most=window.most, updated=updated)
-        if window.since and scope.trigger is not None:
-            return replace(found, begun=scope.trigger.begun(window.span))
-        return found
+        return True
+    if len(call.args) > 2:
+        return False
     first, second = operands.values(call.args, scope)
     if not isinstance(first, Quantity) or not isinstance(second, Quantity):
-        return None
-    time = parse_unit("s").dimension
-    is_window = second.constant is not None and second.unit.dimension == time
-    if first.constant is not None or not is_window or first.unit.dimension == time:
-        return None
-    return Extreme(greatest, first, call.args[0].span, operands.duration(call.args[1], scope))
+        return False
+    is_time = second.constant is not None and second.unit.dimension == _SECONDS.dimension
+    return first.constant is None and is_time and first.unit.dimension != _SECONDS.dimension

@@ -26,6 +26,8 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     Unary,
     UnaryOp,
+    WindowValue,
+    windows_in,
 )
 from rvmon.spec.checked.operators import OPERATORS, Connectives, Reading, Tense
 from rvmon.spec.checked.rewrite import read
@@ -52,10 +54,22 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
                 waiting.append(operand)
             case Amount():
                 waiting += reversed(node.operands)
+            case Compare(left=left, right=right):
+                windows = windows_in(left, right)
+                waiting += (part for one in reversed(windows) for part in reversed(one.operands))
             case Passed(known=known):
                 waiting.append(known)
             case Binary(left=left, right=right):
                 waiting += (right, left)
+
+
+def windows_of(*formulas: Formula) -> Iterator[WindowValue]:
+    """The windows in formulas, those in windows among them."""
+    for part in (part for formula in formulas for part in subformulas(formula)):
+        if isinstance(part, Amount):
+            yield part.of
+        elif isinstance(part, Compare):
+            yield from windows_in(part.left, part.right)
 
 
 def future_part(formula: Formula) -> Formula | None:

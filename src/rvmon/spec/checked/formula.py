@@ -87,7 +87,73 @@ class NowValue:
     """`now`: ticks since the first instant; unknown if an outage hides which that was."""
 
 
-Numeric = Literal | NowValue | SignalValue | FieldValue | Captured | UpdateValue | Arithmetic
+@dataclass(frozen=True, slots=True)
+class WindowValue:
+    """`count(φ, D)`, `sum(x, D)` and their kin: what the members of a window come to.
+
+    A member is a position at which φ is true, with the number x there; where φ is not born there is
+    none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
+
+    Attributes:
+        measured: what they come to.
+        operand: φ, of the present and past.
+        window: D, ticks; `None`: since the first instant.
+        value: x; `None`: positions or ticks are counted.
+        most: how many of the last members count, at most; `None`: all of the window.
+        counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
+        chosen: comparisons of fields that are asked of each occurrence.
+    """
+
+    measured: Measured
+    operand: Formula
+    window: int | None
+    value: Numeric | None = None
+    most: int | None = None
+    counted: Formula | None = None
+    chosen: tuple[Compare, ...] = ()
+
+    @property
+    def operands(self) -> tuple[Formula, ...]:
+        """φ, what says whether a member counts, and what is chosen."""
+        asked = (self.operand, self.counted, *self.chosen)
+        return tuple(part for part in asked if part is not None)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it goes on changing between samples, and not by jumps."""
+        held = self.measured in (Measured.MEAN, Measured.VARIANCE) and self.most is None
+        return self.measured.of_time or (held and not _reads_field(self.value))
+
+    @property
+    def born_with(self) -> tuple[Compare, ...]:
+        """A comparison that is born first: of x, where of nothing there is no number."""
+        asks = self.value is not None and self.measured.asks_for_one
+        return (itself(self.value),) if asks and self.value is not None else ()
+
+
+def _reads_field(number: Numeric | None) -> bool:
+    if isinstance(number, Arithmetic):
+        return any(map(_reads_field, number.args))
+    return isinstance(number, FieldValue)
+
+
+Read = NowValue | SignalValue | FieldValue | Captured | UpdateValue
+"""What a number is read off."""
+
+Numeric = Literal | Read | WindowValue | Arithmetic
+
+
+def windows_in(*numbers: Numeric) -> tuple[WindowValue, ...]:
+    """The windows that numbers are made of, each once, from the left."""
+    found: dict[WindowValue, None] = {}
+    waiting = [*reversed(numbers)]
+    while waiting:
+        match waiting.pop():
+            case WindowValue() as window:
+                found[window] = None
+            case Arithmetic(args=args):
+                waiting += reversed(args)
+    return tuple(found)
 
 
 class CompareOp(StrEnum):
@@ -229,50 +295,34 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: what the members of a window come to.
-
-    A member is a position at which φ is true, with the number x there; where φ is not born there is
-    none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
+    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window beside a limit, exactly.
 
     Attributes:
-        measured: what they come to.
-        operand: φ, of the present and past.
-        window: D, ticks; `None`: since the first instant.
-        limit: n or c, in the unit of `measured`: of a duration ticks, of an integral that of x
-            times seconds, of a variance the square of that of x.
+        of: the window.
+        limit: n or c, in the unit of what is measured: of a duration ticks, of an integral that of
+            x times seconds, of a variance the square of that of x.
         strict: whether it is `> c`.
         span: of the whole.
-        value: x; `None`: positions or ticks are counted.
         known: a comparison of c with itself, if it may change.
-        most: how many of the last members count, at most; `None`: all of the window.
-        counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
-        chosen: comparisons of fields that are asked of each occurrence.
     """
 
-    measured: Measured
-    operand: Formula
-    window: int | None
+    of: WindowValue
     limit: Numeric
     strict: bool = False
     span: Span | None = None
-    value: Numeric | None = None
     known: Compare | None = None
-    most: int | None = None
-    counted: Formula | None = None
-    chosen: tuple[Compare, ...] = ()
 
     @property
     def operands(self) -> tuple[Formula, ...]:
-        """φ, what says whether a member counts, and whether c is known, what is chosen."""
-        asked = (self.operand, self.counted, self.known, *self.chosen)
-        return tuple(part for part in asked if part is not None)
+        """Those of the window; behind the first ones, whether c is known."""
+        own = self.of.operands
+        chosen = len(own) - len(self.of.chosen)
+        return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
 
     @property
     def born_with(self) -> tuple[Compare, ...]:
         """Comparisons that are born first: of c, and of x where of nothing there is none."""
-        born = () if self.known is None else (self.known,)
-        asks = self.value is not None and self.measured.asks_for_one
-        return (*born, itself(self.value)) if asks and self.value is not None else born
+        return (*(() if self.known is None else (self.known,)), *self.of.born_with)
 
 
 @dataclass(frozen=True, slots=True)

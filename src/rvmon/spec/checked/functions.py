@@ -25,20 +25,14 @@ class Argument(Enum):
     SOURCE = "the name of a signal or event"
 
 
-class Recall(Enum):
-    """Of values that were there before."""
-
-    AGO = "ago"
-    LAST = "last"
-
-
 @dataclass(frozen=True, slots=True)
 class Function:
     """A function.
 
     Attributes:
         name: of it.
-        means: what a call becomes; `None`: an age, which stands in comparisons only.
+        means: what a call becomes; `None`: an age, which stands in comparisons only, or the last
+            updates, which stand in windows only.
         arguments: of a call.
         doc: its value in a few words.
         more: whether further arguments like the last may follow.
@@ -46,7 +40,7 @@ class Function:
     """
 
     name: str
-    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | Recall | None
+    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
     arguments: tuple[Argument, ...]
     doc: str
     more: bool = False
@@ -74,23 +68,27 @@ _OF_UPDATES = (
 )
 
 
+LAST = "last"
+"""What stands in windows: `last(n, x)`."""
 _COUNTED = (Argument.FORMULA, Argument.DURATION)
 _ADDED = (Argument.NUMBER, Argument.DURATION)
 
 _AMOUNTS = (
     *(
-        Function(one.value, one, _ADDED if one.of_numbers else _COUNTED, one.doc, optional=1)
+        Function(
+            *(one.value, one, _ADDED if one.of_numbers else _COUNTED, one.doc),
+            optional=int(one is not Measured.AGO),
+        )
         for one in Measured
-        if one is not Measured.DELTA
+        if one not in (Measured.DELTA, Measured.MIN, Measured.MAX)
     ),
     Function(
         *("share", Measured.DURATION, _COUNTED),
         "that duration divided by D, beside a number or `%`",
         optional=1,
     ),
-    Function("ago", Recall.AGO, _ADDED, "the value that x had D ago; in `time held`"),
     Function(
-        *("last", Recall.LAST, (Argument.WHOLE, Argument.NUMBER)),
+        *(LAST, None, (Argument.WHOLE, Argument.NUMBER)),
         "the last n updates of x, or of what φ reads, in place of a D: `mean(last(5, x)) <= 2`",
     ),
 )

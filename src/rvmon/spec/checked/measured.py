@@ -83,6 +83,18 @@ class Measured(StrEnum):
         "how many different values x had in the last D",
         *("at least as many as are known", 96, 128, False),
     )
+    MIN = (
+        *("min", Members.EITHER, Dimension.SAME, "the least value that x had in the last D"),
+        *("between what it may be; unknown in an expression, as of nothing", 64, 128),
+    )
+    MAX = (
+        *("max", Members.EITHER, Dimension.SAME, "the greatest value that x had in the last D"),
+        *("between what it may be; unknown in an expression, as of nothing", 64, 128),
+    )
+    AGO = (
+        *("ago", Members.HELD, Dimension.SAME, "the value that x had D ago; in `time held`"),
+        *("unknown if that is; none before D has passed since the birth of x", 64, 128),
+    )
 
     of: Members
     dimension: Dimension
@@ -123,7 +135,12 @@ class Measured(StrEnum):
     @property
     def asks_for_one(self) -> bool:
         """Whether it is not born before its numbers are: of nothing there is none."""
-        return self in (Measured.MEAN, Measured.VARIANCE, Measured.DELTA)
+        return self.dimension in (Dimension.SAME, Dimension.SQUARE) and self is not Measured.SUM
+
+    @property
+    def recalls(self) -> bool:
+        """Whether it is one of the values that there were."""
+        return self in (Measured.MIN, Measured.MAX, Measured.AGO)
 
     @property
     def of_time(self) -> bool:

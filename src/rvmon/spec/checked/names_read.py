@@ -25,6 +25,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
     UpdateValue,
+    WindowValue,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.texts import did_you_mean
@@ -50,6 +51,9 @@ def names_in(numeric: Numeric) -> Iterator[str]:
                 yield name
             case Arithmetic(args=args):
                 waiting += args
+            case WindowValue() as window:
+                for part in window.operands:
+                    yield from names_read(part)
 
 
 def names_of_requirement(requirement: Requirement) -> Iterator[str]:

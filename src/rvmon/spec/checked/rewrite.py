@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, TypeVar, cast
 
 from rvmon.diagnostics import Span
-from rvmon.spec.checked.formula import Binary, Constant, Formula, Unary
+from rvmon.spec.checked.formula import Binary, Constant, Formula, Numeric, Unary
 from rvmon.spec.checked.operators import BinaryOp, Connectives, Interval, UnaryOp
 
 T = TypeVar("T")
+Part = TypeVar("Part", bound=Formula | Numeric | Interval)
 
 
 def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectives[T]) -> T:
@@ -81,3 +82,22 @@ def rewritten(formula: Unary | Binary) -> Formula:
     True
     """
     return read(formula, lambda operand: operand, Formulas(formula.span))
+
+
+def without_spans(part: Part) -> Part:
+    """A formula, or a number, wherever in a spec it stands.
+
+    >>> from rvmon.diagnostics import Source, Span
+    >>> without_spans(Constant(True, Span(Source("", ""), 0, 0)))
+    Constant(value=True, span=None)
+    """
+    changed: dict[str, Any] = {}
+    for one in fields(part):
+        value = getattr(part, one.name)
+        if one.name == "span":
+            changed["span"] = None
+        elif isinstance(value, tuple):
+            changed[one.name] = tuple(map(without_spans, value))
+        elif is_dataclass(value) and not isinstance(value, type):
+            changed[one.name] = without_spans(cast(Any, value))
+    return replace(part, **changed)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from decimal import Decimal
 from typing import assert_never
 
@@ -32,10 +31,12 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
     UpdateValue,
+    WindowValue,
     itself,
     since_trigger,
 )
 from rvmon.spec.checked.operators import PREFIXED, Window
+from rvmon.spec.checked.rewrite import without_spans
 from rvmon.spec.syntax.words import RESERVED
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -113,17 +114,17 @@ def _formula(formula: Formula, level: int) -> str:
 
 def _amount(formula: Amount) -> str:
     limit = format_numeric(formula.limit)
-    if formula.measured is Measured.DURATION and isinstance(formula.limit, Literal):
+    if formula.of.measured is Measured.DURATION and isinstance(formula.limit, Literal):
         limit = format_duration(int(formula.limit.value))
     sign = ">" if formula.strict else ">="
-    return f"{format_measured(formula)} {sign} {limit}"
+    return f"{format_window(formula.of)} {sign} {limit}"
 
 
-def format_measured(formula: Amount) -> str:
-    """What is measured, without what it is compared with.
+def format_window(formula: WindowValue) -> str:
+    """A window in the words of the language.
 
     >>> from rvmon.spec.checked.formula import EventAtom
-    >>> format_measured(Amount(Measured.COUNT, EventAtom("e"), 5 * 10**9, Literal(3)))
+    >>> format_window(WindowValue(Measured.COUNT, EventAtom("e"), 5 * 10**9))
     'count(e, 5 s)'
     """
     word, what = str(formula.measured), ""
@@ -148,9 +149,9 @@ def format_measured(formula: Amount) -> str:
     return f"{word}({what}{window})"
 
 
-def _conditions(formula: Amount) -> list[Formula]:
+def _conditions(formula: WindowValue) -> list[Formula]:
     """Where there is a member, but for that its number is there, and that a signal is updated."""
-    conditions = [_without_span(one) for one in _chain(formula.operand, BinaryOp.AND)]
+    conditions = [without_spans(one) for one in _chain(formula.operand, BinaryOp.AND)]
     if formula.value is not None and not isinstance(formula.value, Literal):
         conditions = [one for one in conditions if one != itself(formula.value)]
         if isinstance(formula.value, SignalValue):
@@ -159,16 +160,6 @@ def _conditions(formula: Amount) -> list[Formula]:
     if formula.value is None and len(conditions) > 1 and since_trigger() not in conditions:
         return [formula.operand]
     return [*conditions, *formula.chosen]
-
-
-def _without_span(formula: Formula) -> Formula:
-    match formula:
-        case Compare() | ProbeAtom():
-            return replace(formula, span=None)
-        case Passed():
-            return replace(formula, span=None, known=replace(formula.known, span=None))
-        case _:
-            return formula
 
 
 def _unary(formula: Unary) -> str:
@@ -259,6 +250,8 @@ def _numeric(numeric: Numeric, level: int) -> str:
             return _name(name)
         case FieldValue(event=event, field=field):
             return _name(f"{event}.{field}")
+        case WindowValue():
+            return format_window(numeric)
         case UpdateValue(function=function, name=name):
             return f"{function}({_name(name)})"
         case Arithmetic():

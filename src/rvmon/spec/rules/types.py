@@ -58,10 +58,22 @@ now_alone = Breach(
     "with `let t0 = now` write `now - t0 <= x` or `now <= t0 + x`; the time since an event is "
     "its age: `age(e) > 3 s`",
 )
-amount_alone = Breach(
+moves_beside = Breach(
     WRONG_TYPE,
-    "`{}` can only be compared, with what does not move between samples",
-    "write `count(e, 5 s) >= 3`, `duration(φ, 60 s) <= 4 s`, `mean(x, 1 h) >= x / 1.2`",
+    "`{}` moves between samples along more than one window, or through more than `+ - * /` and "
+    "constants: the tick at which it flips is not worked out",
+    "bring one window alone to one side; `mean(x, D) - mean(y, D)` is `mean(x - y, D)`; "
+    "on a clock, `time sampled every 10 ms`, any expression is looked at each time",
+)
+captured_moving = Breach(
+    WRONG_TYPE,
+    "`{}` moves between samples, and is not captured",
+    "compare with it where it is owed, or judge on a clock: `time sampled every 10 ms`",
+)
+window_in_window = Breach(
+    WRONG_TYPE,
+    "`{}` has a window of its own, and a window is of what is read",
+    "compare it, and measure that: `duration(mean(x, 1 s) > 2, 10 s)`",
 )
 limit_of_event = Breach(
     WRONG_TYPE,
@@ -117,13 +129,6 @@ not_added = Breach(
     "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`",
 )
 """Numbers that are not measured by a function: it, and of what it is."""
-
-
-extreme_alone = Breach(
-    WRONG_TYPE,
-    "`{}` can only be compared with a constant, or with a captured value",
-    "write `max(x, 5 s) <= 1`, or capture the other side: `let v = y`",
-)
 
 
 count_of_state = Breach(

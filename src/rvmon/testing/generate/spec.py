@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
-from rvmon.spec.checked.classify import subformulas
+from rvmon.spec.checked.classify import windows_of
 from rvmon.spec.checked.formula import (
-    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -55,6 +55,7 @@ from rvmon.testing.generate.formula import (
     formula,
     past_unary,
 )
+from rvmon.testing.generate.windows import number_of_windows
 from rvmon.testing.law.attempts import is_pulse
 
 
@@ -73,7 +74,8 @@ class Profile:
             computed with.
         numbers: whether comparisons and probes may occur.
         amounts: how often what is measured in windows comes, beside about 120 of all others.
-        form: the only one of these, at least one in each specification: a name (`mean`), which may
+        form: the only one of these, at least one in each specification: a name (`mean`), or
+            `expression` of several, which may
             stand behind `last` (updates), `since` (the trigger) or `each` (several occurrences).
         past: whether past operators may occur.
         future: whether future operators may occur.
@@ -140,7 +142,7 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
 
 def _has_window(requirement: Requirement) -> bool:
     wholes = (requirement.trigger, requirement.consequent)
-    return any(isinstance(part, Amount) for whole in wholes for part in subformulas(whole))
+    return any(True for _ in windows_of(*wholes))
 
 
 def _stale(rng: Rng, profile: Profile) -> dict[str, int]:
@@ -157,7 +159,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
     since = mode == "since"
     captures: tuple[Capture, ...] = ()
     if profile.captures and (since or chance(rng, 12)):
-        captures = _captures(rng, profile)
+        captures = _captures(rng, profile, time)
     for_each = None
     if profile.for_each and (mode == "each" or chance(rng, 12)):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
@@ -220,15 +222,23 @@ def _law(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
     )
 
 
-def _captures(rng: Rng, profile: Profile) -> tuple[Capture, ...]:
+def _captures(rng: Rng, profile: Profile, time: TimeModel) -> tuple[Capture, ...]:
     found: list[Capture] = []
     for name in ("v", "w")[: 2 if chance(rng, 25) else 1]:
         named = tuple(capture.name for capture in found)
         earlier = Shape(captured=named, wide=profile.wide > 0)
         simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
+        if profile.amounts and not profile.wide and chance(rng, 40):
+            held = replace(earlier, step=time is not TimeModel.HELD, longest=4)
+            value = number_of_windows(rng, held, partial(_simple, profile))
         found.append(Capture(name, value))
     return tuple(found)
+
+
+def _simple(profile: Profile, rng: Rng, shape: Shape) -> Formula:
+    """What is counted before anything is captured."""
+    return formula(rng, replace(shape, captured=(), past=profile.past, future=False), 1)
 
 
 def _trigger(rng: Rng, shape: Shape, for_each: ForEach | None) -> Formula:

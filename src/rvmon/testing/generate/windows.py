@@ -22,8 +22,10 @@ from rvmon.spec.checked.formula import (
     Probe,
     ProbeAtom,
     SignalValue,
+    WindowValue,
     itself,
     passed,
+    windows_in,
 )
 from rvmon.spec.checked.measured import Members
 from rvmon.spec.checked.names_read import names_in
@@ -52,11 +54,101 @@ def late(rng: Rng, shape: Shape) -> Formula:
     return passed(since, after, chance(rng, 50))
 
 
+ALONE = tuple(one for one in Measured if not one.recalls)
+"""What stands beside a limit by itself."""
+EXPRESSION = "expression"
+"""The form of windows that are numbers among others."""
+
+
 def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
     """So much of a formula, or of a number, in a window, or since the first instant."""
     mode, _, form = shape.form.rpartition(" ")
-    measured = Measured(form) if form else pick(rng, tuple(Measured))
+    plain = replace(shape, events=False)
+    several = form == EXPRESSION or (not form and chance(rng, 30))
+    if several and shape.numbers and not shape.wide:
+        return _compared(rng, shape, draw, mode)
+    measured = Measured(form) if form and form != EXPRESSION else pick(rng, ALONE)
     if measured.of_numbers and (not shape.numbers or shape.wide):
+        measured = Measured.COUNT
+    of = _window(rng, shape, draw, measured, mode)
+    limit: Numeric = Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
+    if measured is Measured.INTEGRAL:
+        limit = Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
+    if not measured.of_numbers:
+        limit = Literal(rng.randint(1, 4))
+    if chance(rng, 20) and measured is not Measured.DURATION and shape.numbers and not shape.wide:
+        limit = input_number(rng, plain)
+    return _above(of, limit, measured.of_numbers and chance(rng, 50))
+
+
+def _above(of: WindowValue, limit: Numeric, strict: bool) -> Amount:
+    known = None if isinstance(limit, Literal) else itself(limit)
+    return Amount(of, limit, strict, known=known)
+
+
+def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> Formula:
+    """An expression of one window or more, beside another; of what moves one alone at most."""
+
+    def side(most: int) -> Numeric:
+        return number_of_windows(rng, shape, draw, most, mode)
+
+    if chance(rng, 20):
+        alone = _window(rng, shape, draw, pick(rng, ALONE), mode)
+        if alone.measured is Measured.DURATION:
+            alone = replace(alone, measured=Measured.INTEGRAL, value=Literal(1))
+        return _above(alone, side(2), chance(rng, 50))
+    while True:
+        compared = Compare(pick(rng, tuple(CompareOp)), side(3), side(1))
+        if windows_in(compared.left, compared.right):
+            return compared
+
+
+def number_of_windows(rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: str = "") -> Numeric:
+    """An expression of windows, signals and constants; in `time held` none of them moves.
+
+    Args:
+        rng: see `random_spec`.
+        shape: what may occur; without `step` it is of held time.
+        draw: draws what is counted.
+        most: so many operations at most.
+        mode: of windows.
+    """
+
+    def term() -> Numeric:
+        if chance(rng, 30):
+            return Literal(pick(rng, (-1, 1, 2, 0.5)))
+        if chance(rng, 30):
+            return input_number(rng, replace(shape, events=False))
+        of = pick(rng, tuple(Measured))
+        if of is Measured.AGO and shape.step:
+            of = Measured.MAX
+        return _window(rng, shape, draw, of, mode, settled=not shape.step)
+
+    found = term()
+    for _ in range(rng.randint(0, most)):
+        op = pick(rng, _JOINING)
+        found = Arithmetic(op, (found, *(term() for _ in range(op.entry.least - 1))))
+    return found
+
+
+_JOINING = (
+    *(NumericOp.ADD, NumericOp.SUB, NumericOp.ADD, NumericOp.SUB, NumericOp.MUL, NumericOp.DIV),
+    *(NumericOp.ABS, NumericOp.NEG),
+    *(NumericOp.MIN, NumericOp.MAX, NumericOp.MOD, NumericOp.FLOOR),
+)
+
+
+def _window(
+    rng: Rng,
+    shape: Shape,
+    draw: Draw,
+    measured: Measured,
+    mode: str,
+    *,
+    settled: bool = False,
+) -> WindowValue:
+    """A window; `settled`: one that changes by jumps alone, in `time held`."""
+    if settled and measured.of_time:
         measured = Measured.COUNT
     window = None if chance(rng, 15) else rng.randint(1, shape.longest)
     below = replace(shape, future=False)
@@ -66,7 +158,7 @@ def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
     most = None
     chosen: tuple[Compare, ...] = ()
     plain = replace(shape, events=False)
-    may_be_last = not measured.of_time and measured is not Measured.DELTA
+    may_be_last = measured.of is not Members.HELD and measured is not Measured.DURATION
     if may_be_last and (mode == "last" or chance(rng, 25)) and mode not in ("since", "each"):
         most, window = rng.randint(1, 4), None
         name = pick(rng, (*NUMBERS, CARRIER) if shape.events else NUMBERS)
@@ -81,29 +173,21 @@ def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
     else:
         likely = 90 if mode == "each" else 40
         fields = shape.events and measured.of is not Members.HELD and chance(rng, likely)
+        if settled and measured in (Measured.MEAN, Measured.VARIANCE):
+            fields = True
         number = field_value(rng) if fields else _held(rng, plain)
         if measured is Measured.INTEGRAL and chance(rng, 10):
             number = Literal(1)
         value = number
         operand, chosen = _member(rng, below, draw, measured, number)
-        if measured is Measured.DELTA:
+        if measured in (Measured.DELTA, Measured.AGO):
             window = window or shape.longest
     since = mode == "since" or chance(rng, 30)
-    if shape.instants and since and measured is not Measured.DELTA and not most:
+    lone = measured in (Measured.DELTA, Measured.AGO) or most
+    if shape.instants and since and not lone:
         begun = passed(pick(rng, shape.instants), Literal(0), strict=False)
         operand = Binary(BinaryOp.AND, begun, operand)
-    limit: Numeric = Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
-    if measured is Measured.INTEGRAL:
-        limit = Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
-    if not measured.of_numbers:
-        limit = Literal(rng.randint(1, 4))
-    if chance(rng, 20) and measured is not Measured.DURATION and shape.numbers and not shape.wide:
-        limit = input_number(rng, plain)
-    known = None if isinstance(limit, Literal) else itself(limit)
-    strict = measured.of_numbers and chance(rng, 50)
-    return Amount(
-        *(measured, operand, window, limit, strict, None, value, known, most, counted, chosen)
-    )
+    return WindowValue(measured, operand, window, value, most, counted, chosen)
 
 
 def _held(rng: Rng, shape: Shape) -> Numeric:

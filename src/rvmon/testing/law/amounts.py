@@ -4,26 +4,41 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Amount,
+    Arithmetic,
+    Compare,
     Formula,
     Literal,
     Measured,
     Numeric,
     Passed,
+    WindowValue,
     itself,
 )
-from rvmon.testing.law.numbers import compare_at, events_of, is_born, number
-from rvmon.testing.law.syntax import constant_value
+from rvmon.testing.law.numbers import at_edge, compare, compare_at, events_of, is_born, number
+from rvmon.testing.law.syntax import constant_value, parts_of
 from rvmon.testing.law.word import Letter, Truth, conjunction, truth_of
 from rvmon.trace.sample import Scalar
+from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-_OF_SOME = (Measured.MEAN, Measured.VARIANCE, Measured.DELTA)
+_OF_SOME = (
+    *(Measured.MEAN, Measured.VARIANCE, Measured.DELTA),
+    *(Measured.MIN, Measured.MAX, Measured.AGO),
+)
 """What is not of nothing."""
+_WHOLE = (
+    *(Measured.COUNT, Measured.DISTINCT, Measured.SUM),
+    *(Measured.DELTA, Measured.MIN, Measured.MAX, Measured.AGO),
+)
+"""What is whole if its members are."""
+UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
+"""A number that nobody knows."""
 State = Callable[[Formula, int], Truth]
 """The truth of a formula at a position."""
 
@@ -62,25 +77,101 @@ class Past:
 
         Unborn as the limit is, and what is of nothing without signals as these are.
         """
-        asked = [] if formula.known is None else [formula.known]
-        if formula.value is not None and formula.measured in _OF_SOME:
-            asked.append(itself(formula.value))
-        if not all(is_born(part, self.letters[i]) for part in asked):
+        known = formula.known and self.state(formula.known, i)
+        if known is Truth.UNBORN or not self.is_born(formula.of, i):
             return Truth.UNBORN
-        limit = finite(number(formula.limit, self.letters[i], {}, self.captured))
-        members = self.last(formula, i) if formula.most else [*self.window(formula, i)]
+        limit = self.number(formula.limit, i)
+        members = self.members(formula.of, i)
         if limit is None or members is None:
             return Truth.UNKNOWN
-        return compared(formula, members, Fraction(limit))
+        ends = ends_of(formula.of, members)
 
-    def window(self, formula: Amount, i: int) -> Iterator[Member]:
+        def enough(found: Fraction) -> Truth:
+            above = found > Fraction(limit) if formula.strict else found >= Fraction(limit)
+            return truth_of(above)
+
+        if ends is None:
+            return Truth.UNKNOWN
+        least, most = ends
+        found = {enough(least), Truth.TRUE if most is None else enough(most)}
+        return found.pop() if len(found) == 1 else Truth.UNKNOWN
+
+    def compared(self, formula: Compare, i: int) -> Truth:
+        """A comparison of windows as numbers."""
+        parts = [part for side in (formula.left, formula.right) for part in parts_of(side)]
+        plain = [itself(one) for one in parts if not isinstance(one, WindowValue | Arithmetic)]
+        windows = [one for one in parts if isinstance(one, WindowValue)]
+        born = all(is_born(one, self.letters[i]) for one in plain)
+        if not born or not all(self.is_born(one, i) for one in windows):
+            return Truth.UNBORN
+        found = self.settled(formula.left, i), self.settled(formula.right, i)
+        return compare(Compare(formula.op, *found), self.letters[i], self.captured)
+
+    def number(self, expression: Numeric, i: int) -> int | float | None:
+        """An expression over windows at a position; `None` if it is not known."""
+        return finite(number(self.settled(expression, i), self.letters[i], {}, self.captured))
+
+    def settled(self, expression: Numeric, i: int) -> Numeric:
+        """An expression with what its windows come to in place of these."""
+        match expression:
+            case Arithmetic(args=args):
+                return replace(expression, args=tuple(self.settled(arg, i) for arg in args))
+            case WindowValue():
+                found = self.amount(expression, i)
+                return UNKNOWN if found is None else Literal(found)
+            case _:
+                return expression
+
+    def is_born(self, window: WindowValue, i: int) -> bool:
+        """Whether it has all that it asks for; what was D ago, D ago."""
+        if window.value is None or window.measured not in _OF_SOME:
+            return True
+        letter = self.letters[i] if window.measured is not Measured.AGO else self._ago(window, i)
+        return letter is not None and is_born(itself(window.value), letter)
+
+    def _ago(self, window: WindowValue, i: int) -> Letter | None:
+        then = self.letters[i].instant - (window.window or 0)
+        held = [letter for letter in self.letters[: i + 1] if letter.instant <= then]
+        return held[-1] if held else None
+
+    def amount(self, window: WindowValue, i: int) -> int | float | None:
+        """What a window comes to, rounded once; `None` where that is not certain.
+
+        Whole numbers are counts, and what is made of whole numbers alone without a division.
+        """
+        if window.measured is Measured.AGO:
+            letter = self._ago(window, i)
+            return None if letter is None else self._value(window, letter)
+        members = self.members(window, i)
+        ends = None if members is None else ends_of(window, members)
+        if members is None or ends is None or ends[0] != ends[1]:
+            return None
+        seconds = window.measured is Measured.DURATION
+        exact = ends[0] / TICKS_PER_SECOND if seconds else ends[0]
+        if window.measured in _WHOLE and all(isinstance(one.value, int) for one in members):
+            return finite(at_edge(int(exact), Kind.INT))
+        try:
+            return finite(float(exact))
+        except OverflowError:
+            return None
+
+    def _value(self, window: WindowValue, letter: Letter) -> int | float | None:
+        if window.value is None:
+            raise AssertionError("it is of a number")
+        return finite(number(window.value, letter, {}, self.captured))
+
+    def members(self, window: WindowValue, i: int) -> list[Member] | None:
+        """Those of the window of a position; `None` if it is not known which these are."""
+        return self.last(window, i) if window.most else [*self.window(window, i)]
+
+    def window(self, formula: WindowValue, i: int) -> Iterator[Member]:
         """The members of the last D, the first one first."""
         for k in range(self.begin(formula, i), i + 1):
             if size := _size(self.letters, k, i, formula):
                 for value, sure in self.at(formula, k):
                     yield Member(value, sure, size)
 
-    def begin(self, formula: Amount, i: int) -> int:
+    def begin(self, formula: WindowValue, i: int) -> int:
         """The first position that is not before a captured instant, if members are behind one.
 
         Where there may be a position before it, too, that is no member.
@@ -96,7 +187,7 @@ class Past:
             k for k in range(i + 1) if self.letters[k].instant - since >= captured or k == i
         )
 
-    def last(self, formula: Amount, i: int) -> list[Member] | None:
+    def last(self, formula: WindowValue, i: int) -> list[Member] | None:
         """The last so many members; `None` if it is not known which these are."""
         found: list[Member] = []
         for k in range(i, -1, -1):
@@ -111,7 +202,7 @@ class Past:
                 break
         return found[::-1]
 
-    def at(self, formula: Amount, k: int) -> Iterator[tuple[int | float | None, bool]]:
+    def at(self, formula: WindowValue, k: int) -> Iterator[tuple[int | float | None, bool]]:
         """The numbers of the members at a position, and whether they are some.
 
         What is false whatever is read makes none with a number, though there may be a position.
@@ -133,7 +224,7 @@ class Past:
             yield from self._numbers(formula, formula.value, there, k)
 
     def _numbers(
-        self, formula: Amount, value: Numeric, there: Truth, k: int
+        self, formula: WindowValue, value: Numeric, there: Truth, k: int
     ) -> Iterator[tuple[int | float | None, bool]]:
         letter = self.letters[k]
         events = {*events_of(value)}
@@ -162,46 +253,53 @@ def finite(value: Scalar) -> int | float | None:
     return value
 
 
-def compared(formula: Amount, members: Sequence[Member], limit: Fraction) -> Truth:
-    """What members come to beside the limit; where that may be less or more, both."""
-    measured = formula.measured
+Ends = tuple[Fraction, Fraction | None]
+"""The least and the most that something comes to; `None`: no number bounds it."""
 
-    def enough(found: Fraction | int) -> Truth:
-        return truth_of(found > limit if formula.strict else found >= limit)
 
+def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
+    """What members come to; `None`: nobody can say anything of it."""
+    measured = window.measured
     if measured is Measured.DISTINCT:
-        known = {one.value for one in members if one.sure and one.value is not None}
-        sure = enough(len(known))
-        open_ = any(not one.sure or one.value is None for one in members)
-        return Truth.UNKNOWN if open_ and sure is Truth.FALSE else sure
+        known = Fraction(len({one.value for one in members if one.sure and one.value is not None}))
+        return known, None if any(not one.sure or one.value is None for one in members) else known
     if measured is Measured.DELTA:
-        ends = [one.value if one.sure else None for one in (members[0], members[-1])]
-        first, last = ends
-        if first is None or last is None:
-            return Truth.UNKNOWN
-        return enough(Fraction(last) - Fraction(first))
+        members = [*members[:1], *members[-1:]]
     if any(one.value is None for one in members):
-        return Truth.UNKNOWN
+        return None
     numbers = [(Fraction(one.value or 0), one.sure, one.size) for one in members]
-    if measured in (Measured.MEAN, Measured.VARIANCE):
-        count = sum(size for _, _, size in numbers)
-        if count == 0 or not all(sure for _, sure, _ in numbers):
-            return Truth.UNKNOWN
-        mean = Fraction(sum(value * size for value, _, size in numbers), count)
-        if measured is Measured.MEAN:
-            return enough(mean)
-        squares = sum((value - mean) * (value - mean) * size for value, _, size in numbers)
-        return enough(Fraction(squares, count))
+    if measured in _OF_SOME:
+        found = _of_sure(measured, numbers) if all(sure for _, sure, _ in numbers) else None
+        return None if found is None else (found, found)
     divisor = TICKS_PER_SECOND if measured is Measured.INTEGRAL else 1
     least, most = (
         sum(size * (value if sure else end(value, Fraction(0))) for value, sure, size in numbers)
         for end in (min, max)
     )
-    ends_ = {enough(Fraction(least) / divisor), enough(Fraction(most) / divisor)}
-    return ends_.pop() if len(ends_) == 1 else Truth.UNKNOWN
+    return Fraction(least) / divisor, Fraction(most) / divisor
 
 
-def _size(letters: Sequence[Letter], k: int, i: int, formula: Amount) -> int:
+def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) -> Fraction | None:
+    """What is of some members, which are known."""
+    count = sum(size for _, _, size in numbers)
+    if count == 0:
+        return None
+    values = [value for value, _, _ in numbers]
+    match measured:
+        case Measured.MIN:
+            return min(values)
+        case Measured.MAX:
+            return max(values)
+        case Measured.DELTA:
+            return values[-1] - values[0]
+    mean = Fraction(sum(value * size for value, _, size in numbers), count)
+    if measured is Measured.MEAN:
+        return mean
+    squares = sum((value - mean) * (value - mean) * size for value, _, size in numbers)
+    return Fraction(squares, count)
+
+
+def _size(letters: Sequence[Letter], k: int, i: int, formula: WindowValue) -> int:
     """How many positions, or ticks, of the window of `i` a position stands for."""
     begin = letters[k].instant
     first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)

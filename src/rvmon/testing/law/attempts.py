@@ -23,6 +23,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     Unary,
     UnaryOp,
+    windows_in,
 )
 from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
@@ -234,7 +235,10 @@ class View:
         }
         captured: dict[str, Scalar] = dict(self.captured)
         for capture in self.requirement.captures:
-            captured[capture.name] = number(capture.value, letter, payloads, captured)
+            value = capture.value
+            if windows_in(value):
+                value = Truths(self.word, captured).settled(value, position)
+            captured[capture.name] = number(value, letter, payloads, captured)
         return captured
 
     def is_unborn(self, position: int) -> bool:

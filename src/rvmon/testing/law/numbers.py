@@ -20,6 +20,7 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateFunction,
     UpdateValue,
+    WindowValue,
 )
 from rvmon.testing.law.syntax import parts_of
 from rvmon.testing.law.word import (
@@ -130,6 +131,8 @@ def number(
         case Arithmetic(op=op, args=args):
             values = (number(arg, letter, payloads, captured) for arg in args)
             return _calculate(op, list(values))
+        case WindowValue():
+            raise AssertionError("of windows it is worked out by their members")
         case _:
             assert_never(expression)
 

@@ -16,6 +16,7 @@ from rvmon.spec.checked.formula import (
     Interval,
     Unary,
     UnaryOp,
+    windows_in,
 )
 from rvmon.testing.law.numbers import events_of, number
 from rvmon.testing.law.past import is_within
@@ -99,7 +100,7 @@ class Past:
                 return self._binary(formula, i, unborn)
             case _ if state is Truth.UNBORN:
                 return OF_TRUTH[unborn]
-            case Compare():
+            case Compare(left=left, right=right) if not windows_in(left, right):
                 return _compared(formula, self._letters[i], self._captured)
             case _:
                 return OF_TRUTH[state]

@@ -19,6 +19,7 @@ from rvmon.spec.checked.formula import (
     Passed,
     Unary,
     UnaryOp,
+    windows_in,
 )
 from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
@@ -33,6 +34,10 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         case Amount():
             for part in formula.operands:
                 yield from subformulas(part)
+        case Compare(left=left, right=right):
+            for window in windows_in(left, right):
+                for part in window.operands:
+                    yield from subformulas(part)
         case Passed(known=known):
             yield known
         case Binary(left=left, right=right):

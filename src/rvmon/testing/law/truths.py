@@ -20,13 +20,15 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Numeric,
     Passed,
     ProbeAtom,
     SignalAtom,
     Unary,
     UnaryOp,
+    windows_in,
 )
-from rvmon.testing.law.amounts import Past
+from rvmon.testing.law.amounts import UNKNOWN, Past
 from rvmon.testing.law.numbers import as_ticks, compare, number
 from rvmon.testing.law.past import (
     Operand,
@@ -165,6 +167,8 @@ class Truths:
                 return truth_of(bool(state.value))
             case EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
+            case Compare(left=left, right=right) if windows_in(left, right):
+                return Past(self._letters, self._captured, self.state).compared(formula, i)
             case Compare():
                 return compare(formula, letter, self._captured)
             case ProbeAtom(probe=probe, name=name):
@@ -181,6 +185,11 @@ class Truths:
                 return self._passed(formula, i)
             case _:
                 assert_never(formula)
+
+    def settled(self, expression: Numeric, i: int) -> Numeric:
+        """An expression with what its windows come to at a position in place of these."""
+        past = Past(self._letters, self._captured, self.state)
+        return past.settled(expression, i) if self._letters[i].sure else UNKNOWN
 
     def _passed(self, formula: Passed, i: int) -> Truth:
         """A first instant that may have been earlier leaves unknown what is since then."""

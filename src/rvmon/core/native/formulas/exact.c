@@ -3,6 +3,7 @@
  * Source: Kulisch, Computer Arithmetic and Validity, 2008 (the long accumulator). */
 #include "formulas/exact.h"
 
+#include <math.h>
 #include <string.h>
 
 #define LOWEST 1088 /* minus the exponent of the lowest bit of a sum; of squares it is twice that */
@@ -105,34 +106,37 @@ bool exact_is_enough(const uint32_t *sum, bool strict)
     return is_enough(sum, SUM_LIMBS, strict);
 }
 
-/* Its three highest limbs. */
-double exact_roughly(const uint32_t *sum, int32_t *exponent)
+/* The three highest limbs, times 2 to the power of the exponent. */
+static double roughly(const uint32_t *x, int32_t limbs, int32_t *exponent)
 {
-    const uint32_t sign = is_negative(sum, SUM_LIMBS) ? UINT32_MAX : 0;
+    const uint32_t sign = is_negative(x, limbs) ? UINT32_MAX : 0;
     double found = 0.0;
-    int32_t i = SUM_LIMBS - 1;
+    int32_t i = limbs - 1;
     int32_t k;
-    while ((i > 2) && (sum[i] == sign)) {
+    while ((i > 2) && (x[i] == sign)) {
         i--;
     }
     for (k = i; k > i - 3; k--) {
-        found = found * 0x1p32 + (double)(sum[k] ^ sign);
+        found = found * 0x1p32 + (double)(x[k] ^ sign);
     }
     *exponent = 32 * (i - 2);
     return (sign != 0) ? -found : found;
 }
 
-/* n times the sum of squares, less the square of the sum, less n * n times the limit. */
-bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
-                  bool strict)
+double exact_roughly(const uint32_t *sum, int32_t *exponent)
 {
-    const fixed_point p = fixed_of(limit);
-    uint32_t rest[VARIANCE_LIMBS] = {0};
+    return roughly(sum, SUM_LIMBS, exponent);
+}
+
+/* n times the sum of squares, less the square of the sum. */
+static void off_mean(uint32_t *rest, const uint32_t *sum, const uint32_t *squares, int64_t count)
+{
     uint32_t size[SUM_LIMBS];
     const bool turned = is_negative(sum, SUM_LIMBS);
     uint64_t carry = turned ? 1 : 0;
     int32_t i;
     int32_t k;
+    (void)memset(rest, 0, VARIANCE_LIMBS * sizeof *rest);
     for (i = 0; i < SUM_LIMBS; i++) {
         const uint64_t digit = (uint64_t)(turned ? ~sum[i] : sum[i]) + carry;
         size[i] = (uint32_t)digit;
@@ -150,6 +154,115 @@ bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, c
             }
         }
     }
+}
+
+/* Less n * n times the limit. */
+bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
+                  bool strict)
+{
+    const fixed_point p = fixed_of(limit);
+    uint32_t rest[VARIANCE_LIMBS];
+    off_mean(rest, sum, squares, count);
     add_square_product(rest, VARIANCE_LIMBS, p.size, (uint64_t)count, p.bit + LOWEST, !p.negative);
     return is_enough(rest, VARIANCE_LIMBS, strict);
+}
+
+/* ---- as doubles */
+
+/* A number whose lowest bit is worth 2^-lowest, over a whole one, or over the square of that. */
+typedef struct {
+    const uint32_t *limb;
+    int32_t limbs;
+    int32_t lowest;
+    uint64_t by;
+    bool squared;
+} quotient;
+
+/* The sign of what twice a quotient is above two numbers together. */
+static int beside(const quotient *q, double a, double b)
+{
+    const double both[2] = {a, b};
+    uint32_t rest[VARIANCE_LIMBS];
+    uint32_t carry = 0;
+    int32_t i;
+    for (i = 0; i < q->limbs; i++) {
+        rest[i] = (q->limb[i] << 1) | carry;
+        carry = q->limb[i] >> 31;
+    }
+    for (i = 0; i < 2; i++) {
+        const rv_number number = {RV_REAL, {.real = both[i]}};
+        const fixed_point p = fixed_of(&number);
+        const int32_t bit = p.bit + q->lowest - LOWEST;
+        if (q->squared) {
+            add_square_product(rest, q->limbs, p.size, q->by, bit, !p.negative);
+        } else {
+            add_product(rest, q->limbs, p.size, q->by, bit, !p.negative);
+        }
+    }
+    return is_negative(rest, q->limbs) ? -1 : (is_enough(rest, q->limbs, true) ? 1 : 0);
+}
+
+static bool is_odd(double number)
+{
+    uint64_t bits;
+    (void)memcpy(&bits, &number, sizeof bits);
+    return (bits & 1) != 0;
+}
+
+/* The nearest double, of two the even one; infinite beyond all: the one near it that no middle between
+ * two lies before. */
+static double nearest(const quotient *q)
+{
+    const double by = (double)q->by;
+    int32_t exponent;
+    const double rough = roughly(q->limb, q->limbs, &exponent);
+    double found = ldexp(q->squared ? rough / by / by : rough / by, exponent - q->lowest);
+    int32_t steps;
+    found = fmax(-0x1.fffffffffffffp1023, fmin(found, 0x1.fffffffffffffp1023));
+    for (steps = 0; steps < 64; steps++) { /* few; of what no snapshot of ours has, no more */
+        const double above = nextafter(found, HUGE_VAL);
+        const double below = nextafter(found, -HUGE_VAL);
+        const int up = beside(q, found, above);
+        const int down = beside(q, found, below);
+        if ((up > 0) || ((up == 0) && is_odd(found))) {
+            found = above;
+        } else if ((down < 0) || ((down == 0) && is_odd(found))) {
+            found = below;
+        } else {
+            break;
+        }
+        if (found - found != 0.0) {
+            break;
+        }
+    }
+    return found + 0.0;
+}
+
+double exact_nearest(const uint32_t *sum, int64_t by)
+{
+    const quotient q = {sum, SUM_LIMBS, LOWEST, (uint64_t)by, false};
+    return nearest(&q);
+}
+
+double exact_variance(const uint32_t *sum, const uint32_t *squares, int64_t count)
+{
+    uint32_t rest[VARIANCE_LIMBS];
+    const quotient q = {rest, VARIANCE_LIMBS, 2 * LOWEST, (uint64_t)count, true};
+    off_mean(rest, sum, squares, count);
+    return nearest(&q);
+}
+
+bool exact_whole(const uint32_t *sum, int64_t *found)
+{
+    const int32_t low = LOWEST / 32;
+    const uint64_t bits = ((uint64_t)sum[low + 1] << 32) | sum[low];
+    const uint32_t sign = is_negative(sum, SUM_LIMBS) ? UINT32_MAX : 0;
+    int32_t i;
+    for (i = low + 2; i < SUM_LIMBS; i++) {
+        if (sum[i] != sign) {
+            return false;
+        }
+    }
+    (void)memcpy(found, &bits, sizeof bits);
+    return ((bits >> 63) != 0) == (sign != 0);
 }

@@ -16,5 +16,10 @@ double exact_roughly(const uint32_t *sum, int32_t *exponent);
  * much as a limit, or above it. */
 bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
                   bool strict);
+/* The nearest double to a sum over a whole number, halves to even; to the variance. Infinite: there is none. */
+double exact_nearest(const uint32_t *sum, int64_t by);
+double exact_variance(const uint32_t *sum, const uint32_t *squares, int64_t count);
+/* A sum of whole numbers; false: it leaves 64 bits. */
+bool exact_whole(const uint32_t *sum, int64_t *found);
 
 #endif

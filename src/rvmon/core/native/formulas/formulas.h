@@ -29,6 +29,8 @@ void window_begins(run *r, const node_plan *n);
 /* ---- graph.c: the nodes of a part */
 void mark_dirty(run *r, int32_t node);
 void mark_all_dirty(run *r);
+/* Those parents of a node that are of a kind. */
+void mark_parents(run *r, const node_plan *n, int32_t op);
 void work_out(run *r, int64_t t);
 bool has_dirty_nodes(const run *r);
 void remember_unknown(run *r, int64_t t);

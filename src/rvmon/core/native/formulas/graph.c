@@ -22,6 +22,18 @@ void mark_all_dirty(run *r)
     }
 }
 
+void mark_parents(run *r, const node_plan *n, int32_t op)
+{
+    const list parents = n->parents[r->at.phase];
+    const int32_t *parent = LIST(PLAN(r), parents);
+    int32_t i;
+    for (i = 0; i < parents.count; i++) {
+        if (r->part->nodes[parent[i]].op == op) {
+            mark_dirty(r, parent[i]);
+        }
+    }
+}
+
 static uint8_t combined(const run *r, const node_plan *n)
 {
     const int32_t *operands = LIST(PLAN(r), n->operands);
@@ -124,6 +136,10 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
     case NODE_WINDOW: return node_window(r, n, t, r->truth[operands[0]], false);
     case NODE_PASSED: return passed(r, n, t, r->truth[operands[0]]);
+    case NODE_COMPARED:
+        reread(r, n->a, false);
+        mark_parents(r, n, NODE_WINDOW); /* of which it is about the limit: that may be another though it is known */
+        return r->atom[n->a];
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }

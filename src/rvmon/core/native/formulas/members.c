@@ -72,6 +72,7 @@ static void add_number(window *w, const rv_number *number, bool maybe, int64_t c
     if (maybe) {
         part_sums(w);
     }
+    w->s->left = w->s->left && (number->kind == RV_WHOLE);
     w->s[1].right = w->s[1].right || is_below_zero(number);
     exact_add(w->x->limb, &worse, count, off);
     if (w->fold == FOLD_VARIANCE) {
@@ -96,13 +97,13 @@ static void add_members(window *w, const stretch *kept, int64_t count, bool off)
     const bool maybe = (kept->begin & MEMBER_MAYBE) != 0;
     const int64_t more = off ? -count : count;
     stretches *s = w->s;
-    add_count(&s->members, more);
+    add_count(&s->members, keeps_extremes(w) ? 0 : more);
     if (!off && (w->n->most > 0)) {
         s[1].lost -= least(s[1].lost, count);
     }
     if ((w->fold == FOLD_COUNT) || (w->fold == FOLD_DURATION)) {
         add_count(&s[maybe ? 1 : 0].total, (kept->end != 0) ? more : 0);
-    } else if (w->fold == FOLD_DELTA) {
+    } else if ((w->fold == FOLD_DELTA) || (w->fold >= FOLD_MIN)) {
         /* The first and the last of them are looked at. */
     } else {
         const rv_number number = number_of(kept);
@@ -153,6 +154,9 @@ static bool keeps_member(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     const bool ever = (w->n->high == NEVER) && (w->n->most == 0);
+    if (keeps_extremes(w)) {
+        return is_extreme(w, number);
+    }
     if (w->fold == FOLD_DISTINCT) {
         const int32_t same = (number->kind == RV_UNKNOWN) ? -1 : latest_with(w, number);
         if (ever && (number->kind == RV_UNKNOWN)) {
@@ -175,6 +179,10 @@ bool member_comes(window *w, const rv_number *number, bool maybe)
 {
     stretches *s = w->s;
     stretch kept = {number->kind, 0};
+    if (keeps_extremes(w) && (w->n->most > 0)) {
+        w->t = s->total;
+        s->total++;
+    }
     if (number->kind == RV_REAL) {
         (void)memcpy(&kept.end, &number->as.real, sizeof kept.end);
     } else if (number->kind == RV_WHOLE) {
@@ -234,7 +242,9 @@ static void take_off(window *w, int64_t gone)
 void members_leave(window *w)
 {
     stretches *s = w->s;
-    const int64_t from = (w->n->high < NEVER) ? w->t - w->n->high : INT64_MIN;
+    const bool counts = keeps_extremes(w) && (w->n->most > 0); /* instants are the numbers of members */
+    const int64_t high = counts ? w->n->most - 1 : w->n->high;
+    const int64_t from = (high < NEVER) ? w->t - high : INT64_MIN;
     while ((w->n->most > 0) && (s->count > 0) && (s->members > w->n->most)) {
         const stretch *first = stretch_of(s, 0);
         take_off(w, least(s->members - w->n->most, (first->end - first->begin) / w->unit + 1));

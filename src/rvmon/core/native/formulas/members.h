@@ -21,6 +21,11 @@ typedef struct {
 /* What stands of a member beside the kind of its number: it may be none; a later one has the same. */
 enum { MEMBER_KIND = 3, MEMBER_MAYBE = 4, MEMBER_OLDER = 8 };
 
+static inline bool keeps_extremes(const window *w)
+{
+    return (w->fold == FOLD_MIN) || (w->fold == FOLD_MAX);
+}
+
 static inline stretch *stretch_of(const stretches *s, int32_t i)
 {
     return &s->at[(s->head + i) & (s->room - 1)];
@@ -40,7 +45,13 @@ void forget_members(window *w);
 int32_t latest_with(window *w, const rv_number *number);
 void note_latest(window *w);
 
+/* Whether a number is the least, or greatest, that matters; it lets go of those that do not any more. */
+bool is_extreme(window *w, const rv_number *number);
+
 /* ---- folds.c */
 uint8_t folded(window *w, int64_t *due);
+
+/* ---- amounts.c: what the members come to as a number */
+rv_number amount_of(const window *w, int64_t *due);
 
 #endif

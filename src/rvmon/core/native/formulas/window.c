@@ -121,16 +121,36 @@ static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
            && (t - r->at.begun < r->captured[n->since].as.whole);
 }
 
+/* Leave the number where others read it; they are to be worked out if it is another. */
+static uint8_t left_number(run *r, const node_plan *n, const rv_number *number, bool blank)
+{
+    rv_number *place = &r->amounts[n->low];
+    if (blank) {
+        *place = UNKNOWN_NUMBER;
+    } else if (!same_number(place, number)) {
+        *place = *number;
+        mark_parents(r, n, NODE_COMPARED);
+    } else {
+        /* It stays. */
+    }
+    return (place->kind == RV_UNKNOWN) ? IS_UNKNOWN : IS_TRUE;
+}
+
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
     const bool of_ticks = (fold == FOLD_DURATION) || (fold == FOLD_INTEGRAL);
+    const bool counts = (fold >= FOLD_MIN) && (n->most > 0);
     window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], t,
                 of_ticks ? 1 : step_of(r), fold, of_ticks, -1};
     int64_t due;
     uint8_t found;
+    if (counts) {
+        w.t = w.s->total - 1; /* that of the last one: each is a step behind the one before it */
+        w.unit = 1;
+    }
     w.s->apart = true; /* there is a second ring */
-    if (w.s->growing && (w.s->count > 0)) {
+    if (w.s->growing && (w.s->count > 0) && !counts) {
         members_go_on(&w, of_ticks ? t - 1 : r->at.before);
     }
     w.s->growing = false;
@@ -138,7 +158,12 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
         members_come(&w, operand, blank);
     }
     members_leave(&w);
-    found = folded(&w, &due);
+    if ((n->b & WINDOW_NUMBER) != 0) {
+        const rv_number number = amount_of(&w, &due);
+        found = left_number(r, n, &number, blank);
+    } else {
+        found = folded(&w, &due);
+    }
     if (n->most > 0) {
         due = w.s->growing ? t + w.unit : NEVER; /* the next position may have one, too */
     }

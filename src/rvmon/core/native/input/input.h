@@ -8,6 +8,7 @@
 /* ---- numbers.c */
 int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* a truth */
 bool same_number(const rv_number *a, const rv_number *b);
+rv_number difference(const rv_number *a, const rv_number *b);
 int64_t seconds_in_ticks(const rv_number *seconds);
 rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);

@@ -272,6 +272,12 @@ static rv_number calculated(int32_t op, const rv_number *args, int32_t count)
     }
 }
 
+rv_number difference(const rv_number *a, const rv_number *b)
+{
+    const rv_number both[2] = {*a, *b};
+    return calculated(CODE_SUB, both, 2);
+}
+
 /* What is asked of the last two updates of a signal; `now` is its value. */
 static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
 {
@@ -339,6 +345,7 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
             n++;
             break;
         case CODE_NOW: stack[n++] = time_now(r); break;
+        case CODE_WINDOW: stack[n++] = r->amounts[arg]; break;
         case CODE_SIGNAL: stack[n++] = r->value[arg]; break;
         case CODE_CAPTURED: stack[n++] = r->captured[arg]; break;
         case CODE_FIELD:

@@ -108,6 +108,7 @@ typedef struct {
     list watches;              /* records of SEC_WATCHES; so with what follows */
     list groups;
     int32_t sums;              /* so many tallies of windows */
+    int32_t amounts;           /* and numbers that they come to */
 } part_plan;
 
 /* Lists for the two phases: until all is born and determined, and from then on. */
@@ -181,15 +182,16 @@ enum {
     NODE_STRETCH,              /* since in bounds */
     NODE_WINDOW,               /* what the members of a window come to: window.c */
     NODE_PASSED,               /* so long has passed as a number says */
+    NODE_COMPARED,             /* an atom that reads what windows come to */
     NODES
 };
 
 typedef struct {
     int64_t low;               /* of a `since`; of ELAPSED, how long; of WINDOW, the program of its
-                                * limit; of PASSED, that of the instant, in ticks */
+                                * limit, or the place of its number; of PASSED, that of the instant, in ticks */
     int64_t high;              /* RV_NEVER: none */
     int32_t op;
-    int32_t a;                 /* of a leaf or PASSED, the atom; of WINDOW, that of the numbers, -1: none;
+    int32_t a;                 /* of a leaf, COMPARED or PASSED, the atom; of WINDOW, that of the numbers, -1: none;
                                 * of a constant, the truth; DOUBT: pulse */
     int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of WINDOW,
                                 * a fold with marks; of PASSED, a tick more */
@@ -207,13 +209,16 @@ typedef struct {
 } node_plan;
 
 /* What members of a window come to: how many they are; as ticks; together; that by how many; times ticks;
- * how far they spread; how far the last is from the first; how many there are of different ones. */
+ * how far they spread; how far the last is from the first; how many there are of different ones; the least
+ * and the greatest; the first. */
 enum {
     FOLD_COUNT, FOLD_DURATION, FOLD_SUM, FOLD_MEAN, FOLD_INTEGRAL, FOLD_VARIANCE, FOLD_DELTA, FOLD_DISTINCT,
+    FOLD_MIN, FOLD_MAX, FOLD_AGO,
     FOLDS
 };
-/* The limit is not enough; the second operand says whether a member counts. */
-enum { WINDOW_FOLD = 15, WINDOW_STRICT = 16, WINDOW_COUNTED = 32 };
+/* The limit is not enough; the second operand says whether a member counts; there is no limit, but a number
+ * that others read. */
+enum { WINDOW_FOLD = 15, WINDOW_STRICT = 16, WINDOW_COUNTED = 32, WINDOW_NUMBER = 64 };
 
 /* WATCH alone: the number is that of a watch, and weights mean nothing. */
 enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };
@@ -368,6 +373,7 @@ enum {
     CODE_POW, CODE_ANGLE_BETWEEN, CODE_DISTANCE_ON_EARTH,
     CODE_BIT_AND, CODE_BIT_OR, CODE_BIT_XOR, CODE_SHIFT_LEFT, CODE_SHIFT_RIGHT, CODE_BIT,
     CODE_NOW,                  /* ticks since the first position */
+    CODE_WINDOW,               /* what a window comes to */
     CODES
 };
 #define PROGRAM_DEPTH 32

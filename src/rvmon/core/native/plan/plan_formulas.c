@@ -60,6 +60,12 @@ static bool check_program(const plan *p, const part_plan *x, int64_t place)
             depth++;
             break;
         case CODE_NOW: depth++; break;
+        case CODE_WINDOW:
+            if (!is_within(arg, 0, x->amounts)) {
+                return false;
+            }
+            depth++;
+            break;
         case CODE_CAPTURED:
             if (!is_within(arg, 0, x->captured)) {
                 return false;
@@ -127,7 +133,8 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
     case NODE_LAPSED:
     case NODE_ELAPSED: return n->operands.count == 0;
     case NODE_AND:
-    case NODE_OR: return (n->operands.count >= 1) && lists(p, n->operands, 0, place);
+    case NODE_OR:
+    case NODE_COMPARED: return (n->operands.count >= 1) && lists(p, n->operands, 0, place);
     case NODE_EVER:
     case NODE_EDGE:
     case NODE_STRETCH: return (n->operands.count == 2) && lists(p, n->operands, 0, place);
@@ -155,7 +162,7 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
     case NODE_PASSED: break;
     default: timed = false; break;
     }
-    if ((slots > 0) ? !is_within(n->slot, 0, slots) : (n->op >= NODE_DOUBT) && (n->op != NODE_PASSED)) {
+    if ((slots > 0) ? !is_within(n->slot, 0, slots) : is_within(n->op, NODE_DOUBT, NODE_PASSED)) {
         return false;
     }
     if (!timed) {
@@ -219,10 +226,13 @@ static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
     const bool tallied = is_within(fold, FOLD_SUM, FOLD_VARIANCE + 1);
+    const bool alone = (n->b & WINDOW_NUMBER) == 0;
     const int32_t *operands = &p->lists[n->operands.first];
     int32_t i;
-    if (!is_within(fold, 0, FOLDS) || !is_within(n->b, 0, 2 * WINDOW_COUNTED) || (n->most < 0)
-        || (n->most > MOST) || !check_program(p, x, n->low) || !is_within(n->chosen, 1, n->operands.count + 1)
+    if (!is_within(fold, 0, FOLDS) || !is_within(n->b, 0, 2 * WINDOW_NUMBER) || (n->most < 0)
+        || (n->most > MOST) || (alone ? !check_program(p, x, n->low) : !is_within(n->low, 0, x->amounts))
+        || (alone && (fold > FOLD_DISTINCT)) || ((fold == FOLD_AGO) && (n->high >= LIMIT))
+        || !is_within(n->chosen, 1, n->operands.count + 1)
         || !is_within(n->since, -1, x->captured)
         || (tallied ? !is_within(n->sum, 0, x->sums) : (n->sum != -1))) {
         return false;
@@ -253,6 +263,7 @@ bool check_nodes(const plan *p, const part_plan *x)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
             || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))
             || ((n->op == NODE_PASSED) && !check_passed(p, x, n))
+            || ((n->op == NODE_COMPARED) && !check_read(p, x, n->a))
             || ((n->op == NODE_WINDOW) && !check_window(p, x, n))) {
             return false;
         }

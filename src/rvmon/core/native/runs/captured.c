@@ -169,6 +169,7 @@ static void capture(run *r, rv_number *values)
     int32_t i;
     if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
         r->value = r->home->nothing;
+        (void)memset(r->amounts, 0, (size_t)r->part->plan->amounts * sizeof *r->amounts);
     }
     r->captured = values; /* one may be made of those before it */
     for (i = 0; i < captures.count; i++) {

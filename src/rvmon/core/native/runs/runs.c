@@ -46,6 +46,7 @@ static size_t cut_block(cutter *c, run *r)
     r->history = piece(c, signals, sizeof *r->history);
     r->edges = piece(c, 2 * (int64_t)p->edges, sizeof *r->edges);
     r->tallies = piece(c, p->sums, sizeof *r->tallies);
+    r->amounts = piece(c, p->amounts, sizeof *r->amounts);
     cut_timers(c, &r->wake, p->timers + p->perishable);
     r->dirty = piece(c, words, sizeof *r->dirty);
     r->dirty_words = piece(c, (words + 63) / 64, sizeof *r->dirty_words);
@@ -208,6 +209,7 @@ void clear_run(run *r)
     (void)memset(r->seen, 0, (size_t)p->seen);
     (void)memset(r->edges, 0, 2 * (size_t)p->edges * sizeof *r->edges);
     (void)memset(r->tallies, 0, (size_t)p->sums * sizeof *r->tallies);
+    (void)memset(r->amounts, 0, (size_t)p->amounts * sizeof *r->amounts);
     for (i = 0; i < p->atoms.count; i++) {
         r->atom[i] = IS_UNKNOWN;
         r->momentary[i] = (uint8_t)r->part->atoms[i].momentary;

@@ -184,6 +184,9 @@ static void carry_past(carrier *c, run *r)
     for (i = 0; (i < p->sums) && !is_lost(c); i++) {
         carry_tally(c, &r->tallies[i]);
     }
+    for (i = 0; (i < p->amounts) && !is_lost(c); i++) {
+        carry_number(c, &r->amounts[i]);
+    }
     for (i = 0; (i < p->stretches) && !is_lost(c); i++) {
         carry_stretches(c, &r->past[2 * i]);
         if (r->past[2 * i].apart) {
