@@ -26,7 +26,7 @@ from tests.rvmon.core.plan_reader import (
 
 import rvmon
 from rvmon.core import amalgamate, sections
-from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, AtomOp, Code
+from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp, Code
 from rvmon.core.forms import Measure, Operator
 from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import pack
@@ -179,7 +179,7 @@ def test_packing_is_deterministic():
 
 
 CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPERATIONS.items()]
-BEHIND = [SimpleNamespace(name="NOW", value=NOW)]
+BEHIND = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW", value=WINDOW)]
 
 
 @pytest.mark.parametrize(
