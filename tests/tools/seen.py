@@ -20,7 +20,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print import format_formula, format_numeric
 from rvmon.testing.law.attempts import Start
-from rvmon.testing.law.syntax import parts_of, subformulas
+from rvmon.testing.law.syntax import constant_value, parts_of, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Scalar
@@ -90,8 +90,11 @@ class _Values:
     def __init__(self, requirement: Requirement, start: Start) -> None:
         self.truths = Truths(start.word, start.captured)
         parts = [*subformulas(requirement.trigger), *subformulas(requirement.consequent)]
-        # A `known` that is asked for is shown, not that of a number beside it with the same text.
-        parts.sort(key=lambda part: isinstance(part, ProbeAtom))
+        # A `known` that is asked for is shown, not that of a number beside it with the same text,
+        # unless a constant decides what it stands in.
+        settled = [one for one in parts if constant_value(one) is not Truth.UNKNOWN]
+        idle = {id(part) for one in settled for part in subformulas(one)}
+        parts.sort(key=lambda part: (id(part) not in idle, isinstance(part, ProbeAtom)))
         self.atoms: dict[str, Formula] = {
             _shown(part): part
             for part in parts

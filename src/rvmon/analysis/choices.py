@@ -20,9 +20,11 @@ from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     Compare,
+    CompareOp,
     EventAtom,
     FieldValue,
     Literal,
+    Measured,
     NowValue,
     Numeric,
     Probe,
@@ -31,10 +33,14 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateValue,
     WindowValue,
+    itself,
+    windows_in,
 )
+from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, calculated
 from rvmon.trace.schema import Kind
+from rvmon.trace.time import TICKS_PER_SECOND
 
 Variable = SignalValue | FieldValue
 
@@ -58,7 +64,7 @@ def turning_values(
     [0.6, 0.5, 0.4]
     """
     roots = {
-        root for leaf in comparisons if _reads(leaf, variable) for root in _roots(leaf, variable)
+        root for leaf in comparisons if _reads(leaf, variable) for root in _turning(leaf, variable)
     }
     if whole:
         near = {round(root) for root in roots}
@@ -92,19 +98,38 @@ def _tidy(value: float) -> float:
 
 
 def _reads(leaf: Compare, variable: Variable) -> bool:
-    return any(
-        part == variable
-        or (
-            isinstance(part, UpdateValue)
-            and isinstance(variable, SignalValue)
-            and part.name == variable.name
-        )
-        for side in (leaf.left, leaf.right)
-        for part in operands(side)
+    parts = (*operands(leaf.left), *operands(leaf.right))
+    windows = [part for part in parts if isinstance(part, WindowValue) and _adds(part, variable)]
+    same = (
+        part.name
+        for part in parts
+        if isinstance(part, UpdateValue) and isinstance(variable, SignalValue)
     )
+    return variable in parts or bool(windows) or getattr(variable, "name", "") in same
 
 
-def _roots(leaf: Compare, variable: Variable) -> Iterator[float]:
+def _adds(window: WindowValue, variable: Variable) -> bool:
+    return window.value is not None and _reads(itself(window.value), variable)
+
+
+def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
+    """Where a comparison turns, of what is read now, and of what a window is full of."""
+    yield from _roots(leaf, variable)
+    for window in windows_in(leaf.left, leaf.right):
+        if window.value is not None and _adds(window, variable):
+            for root in _roots(leaf, window):
+                full = Compare(CompareOp.EQ, window.value, Literal(_full(window, root)))
+                yield from _roots(full, variable)
+
+
+def _full(window: WindowValue, comes_to: float) -> float:
+    """The number that a window is full of if it comes to so much; of a variance, every other one."""
+    if window.measured.of_time:
+        return comes_to * TICKS_PER_SECOND / (window.window or TICKS_PER_SECOND)
+    return 2 * abs(comes_to) ** 0.5 if window.measured is Measured.VARIANCE else comes_to
+
+
+def _roots(leaf: Compare, variable: Variable | WindowValue) -> Iterator[float]:
     """Where both sides are equal; exact where they are straight on each side of 0."""
     for first, second in ((1.0, 2.0), (-1.0, -2.0)):
         one, two = _difference(leaf, variable, first), _difference(leaf, variable, second)
@@ -115,14 +140,14 @@ def _roots(leaf: Compare, variable: Variable) -> Iterator[float]:
             yield _tidy(root)
 
 
-def _difference(leaf: Compare, variable: Variable, value: float) -> float | None:
+def _difference(leaf: Compare, variable: Variable | WindowValue, value: float) -> float | None:
     left, right = (_with(side, variable, value) for side in (leaf.left, leaf.right))
     if isinstance(left, int | float) and isinstance(right, int | float):
         return float(left) - float(right)
     return None
 
 
-def _with(numeric: Numeric, variable: Variable, value: float) -> Scalar:
+def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> Scalar:
     """An expression with the variable at a value, and all others at 0; `None`: there is none."""
     match numeric:
         case Literal(value=constant):
@@ -219,12 +244,14 @@ def choices_of(
     leaves: Sequence[Leaf],
     read: Collection[str],
     captured: Sequence[Numeric] = (),
+    windows: Sequence[Compare] = (),
 ) -> Choices:
-    """The samples worth trying."""
+    """The samples worth trying; beside leaves some comparisons of windows, of which none is all."""
     names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
-    options = _Options(spec, leaves, captured, remembered)
-    seen = _Seen(spec, leaves, remembered)
+    options = _Options(spec, leaves, captured, remembered, windows)
+    added = {name for one in windows for name in names_read(one) if name in read}
+    seen = _Seen(spec, leaves, remembered | added)
     found: dict[tuple[object, ...], Valuation] = {}
     waiting = _defaults_first([options.of(name) for name in names])
     for _ in range(MOST_TRIED // MOST_VALUATIONS):
@@ -235,7 +262,7 @@ def choices_of(
             if key not in found and len(found) == MOST_VALUATIONS:
                 return Choices(names, tuple(found.values()), remembered, False)
             found.setdefault(key, valuation)
-    complete = next(waiting, None) is None
+    complete = next(waiting, None) is None and not windows
     return Choices(names, tuple(found.values()), remembered, complete)
 
 
@@ -264,11 +291,12 @@ class _Options:
         leaves: Sequence[Leaf],
         captured: Sequence[Numeric],
         remembered: frozenset[str],
+        windows: Sequence[Compare] = (),
     ) -> None:
         self.spec = spec
         self.leaves = leaves
         self.remembered = remembered
-        self.compared = [leaf for leaf in leaves if isinstance(leaf, Compare)]
+        self.compared = [leaf for leaf in leaves if isinstance(leaf, Compare)] + [*windows]
         # A captured value is compared with what the others are.
         self.compared += [
             Compare(leaf.op, numeric, leaf.right) for leaf in self.compared for numeric in captured

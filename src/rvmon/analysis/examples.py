@@ -21,7 +21,9 @@ from rvmon.monitor.compiled_spec import CompiledSpec, Kept
 from rvmon.monitor.planned import planned_as
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.records import report_of_run
-from rvmon.spec.checked.specification import CheckedSpec, TimeModel
+from rvmon.spec.checked.classify import subformulas
+from rvmon.spec.checked.formula import Amount, Compare, CompareOp, windows_in
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdict import Verdict
@@ -257,7 +259,20 @@ def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> 
         one.requirement.for_each.value.event for one in requirements if one.requirement.for_each
     }
     captured = [capture.value for one in requirements for capture in one.requirement.captures]
-    return choices_of(spec, list(leaves), names, captured)
+    windows = [limit for one in requirements for limit in _windows(one.requirement)]
+    return choices_of(spec, list(leaves), names, captured, windows)
+
+
+def _windows(requirement: Requirement) -> Iterator[Compare]:
+    """The windows of numbers that a requirement compares, with what it compares them."""
+    for part in (*subformulas(requirement.trigger), *subformulas(requirement.consequent)):
+        found = part
+        if isinstance(part, Amount):
+            found = Compare(CompareOp.GE, part.of, part.limit)
+        if isinstance(found, Compare) and any(
+            one.value is not None for one in windows_in(found.left, found.right)
+        ):
+            yield found
 
 
 CONFLICT_RUNS = 400

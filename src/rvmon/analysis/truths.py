@@ -361,7 +361,8 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     match formula:
         case (
             Amount(of=WindowValue(value=None, operand=operand))
-            | Unary(operand=Unary() | Binary() | Amount() as operand)
+            | Unary(op=UnaryOp.NOT, operand=Amount(of=WindowValue(value=None, operand=operand)))
+            | Unary(operand=Unary() | Binary() as operand)
         ):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:

@@ -156,9 +156,10 @@ def _amount(formula: Amount, positive: bool) -> str:
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
     if isinstance(least, int) and of.value is None:
-        if of.measured is Measured.COUNT:
-            return f"{known}{least} times or more {back}, {what}"
-        return f"for {known}{format_duration(least)} or more {back}, {what}"
+        often = f"{least} times" if of.measured is Measured.COUNT else format_duration(least)
+        often = f"more than {often}" if formula.strict else f"{often} or more"
+        often = f"{known}{often}" if of.measured is Measured.COUNT else f"for {known}{often}"
+        return f"{often} {back}, {what}"
     op = CompareOp.GT if formula.strict else CompareOp.GE
     verb = (op if positive else op.denied).said
     if of.value is None or isinstance(of.value, NumericLiteral):  # so many times 1

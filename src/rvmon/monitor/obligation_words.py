@@ -21,7 +21,7 @@ from rvmon.monitor.cause import (
     Turned,
 )
 from rvmon.spec.checked.classify import has_future, is_pulse
-from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.formula import Amount, EventAtom, Formula, Unary, UnaryOp
 from rvmon.spec.print import format_formula
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Blame
@@ -199,6 +199,8 @@ class Words:
         formula, positive = origin.formula, origin.positive
         while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
             formula, positive = formula.operand, not positive
+        if isinstance(formula, Amount) and not positive:
+            formula, positive = Unary(UnaryOp.NOT, formula), True  # another comparison
         quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
         return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil
 
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.spec.check.moving import above, brought_alone, by_limits
@@ -148,7 +148,7 @@ def _amount(lone: Lone, unit: Unit, op: CompareOp, limit: Placed, span: Span) ->
 
 
 def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
-    """A count or duration beside a constant, in whole numbers: `> c` is `>= floor(c) + 1`."""
+    """A count or duration beside a constant, in whole numbers."""
     value, place = limit
     exact = (value.constant or 0) * value.unit.factor
     if lone.share or lone.of.measured is Measured.COUNT:
@@ -157,8 +157,10 @@ def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
         exact *= lone.of.window or 1 if lone.share else 1
     else:
         exact = Fraction(ticks_of(value, place))
-    least = floor(exact) + 1 if strict else ceil(exact)
-    return Constant(True, span) if least <= 0 else Amount(lone.of, Literal(least), span=span)
+    if exact.denominator > 1:
+        exact, strict = Fraction(ceil(exact)), False
+    always = exact < 0 if strict else exact <= 0
+    return Constant(True, span) if always else Amount(lone.of, Literal(int(exact)), strict, span)
 
 
 def _bound(lone: Lone, unit: Unit, limit: Placed, span: Span) -> Numeric:

@@ -93,19 +93,33 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
         case WindowValue():
             return by_limits(op, lambda strict: above(moving, other, strict, span), span)
         case Arithmetic(op=NumericOp.NEG, args=(inner,)):
-            return _alone(op.mirrored, inner, Arithmetic(NumericOp.NEG, (other,)), span)
+            return _alone(op.mirrored, inner, _negative(other), span)
         case Arithmetic(op=NumericOp.ABS, args=(inner,)):
             return _magnitude(op, inner, other, span)
         case Arithmetic(op=how, args=(first, second)) if how in _INVERSE:
             if _moves(first) and _may_go(how, second):
                 turned = op if _is_upward(how, second) else op.mirrored
-                return _alone(turned, first, Arithmetic(_INVERSE[how], (other, second)), span)
+                return _alone(turned, first, _joined(_INVERSE[how], other, second), span)
             if how is not NumericOp.DIV and _moves(second) and _may_go(how, first):
                 turned = op if _is_upward(how, first) else op.mirrored
                 if how is NumericOp.SUB:
-                    return _alone(op.mirrored, second, Arithmetic(how, (first, other)), span)
-                return _alone(turned, second, Arithmetic(_INVERSE[how], (other, first)), span)
+                    return _alone(op.mirrored, second, _joined(how, first, other), span)
+                return _alone(turned, second, _joined(_INVERSE[how], other, first), span)
     raise Refusal(rules.moves_beside(span))
+
+
+def _negative(number: Numeric) -> Numeric:
+    if isinstance(number, Literal) and not isinstance(number.value, str) and number.value != 0:
+        return replace(number, value=-number.value)
+    return Arithmetic(NumericOp.NEG, (number,))
+
+
+def _joined(how: NumericOp, left: Numeric, right: Numeric) -> Numeric:
+    """The same number as people write it: `+ 3` for `- -3`."""
+    below = isinstance(right, Literal) and not isinstance(right.value, str) and right.value < 0
+    if below and how in (NumericOp.ADD, NumericOp.SUB):
+        how, right = _INVERSE[how], _negative(right)
+    return Arithmetic(how, (left, right))
 
 
 def _may_go(how: NumericOp, beside: Numeric) -> bool:
@@ -127,7 +141,7 @@ def _magnitude(op: CompareOp, inner: Numeric, other: Numeric, span: Span) -> For
 
     def within(how: CompareOp) -> Formula:
         less = _alone(how, inner, other, span)
-        more = _alone(how.mirrored, inner, Arithmetic(NumericOp.NEG, (other,)), span)
+        more = _alone(how.mirrored, inner, _negative(other), span)
         return Binary(BinaryOp.AND, less, more, None, span)
 
     if op in (CompareOp.LT, CompareOp.LE):

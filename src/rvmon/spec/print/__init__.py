@@ -14,6 +14,7 @@ from rvmon.spec.checked.formula import (
     BoundAtom,
     Captured,
     Compare,
+    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
@@ -98,10 +99,12 @@ def _formula(formula: Formula, level: int) -> str:
             return format_numeric(left)
         case Compare(op=op, left=left, right=right):
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
+        case Amount():
+            return _amount(formula, denied=False)
+        case Unary(op=UnaryOp.NOT, operand=Amount() as denied):
+            return _amount(denied, denied=True)
         case Unary():
             return _unary(formula)
-        case Amount():
-            return _amount(formula)
         case Passed(since=since, after=after, strict=strict):
             begin = "" if since is None else f" - {_name(since)}"
             return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
@@ -112,12 +115,12 @@ def _formula(formula: Formula, level: int) -> str:
             assert_never(formula)
 
 
-def _amount(formula: Amount) -> str:
+def _amount(formula: Amount, *, denied: bool) -> str:
     limit = format_numeric(formula.limit)
     if formula.of.measured is Measured.DURATION and isinstance(formula.limit, Literal):
         limit = format_duration(int(formula.limit.value))
-    sign = ">" if formula.strict else ">="
-    return f"{format_window(formula.of)} {sign} {limit}"
+    op = CompareOp.GT if formula.strict else CompareOp.GE
+    return f"{format_window(formula.of)} {op.denied if denied else op} {limit}"
 
 
 def format_window(formula: WindowValue) -> str:

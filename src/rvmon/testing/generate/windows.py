@@ -78,7 +78,7 @@ def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
         limit = Literal(rng.randint(1, 4))
     if chance(rng, 20) and measured is not Measured.DURATION and shape.numbers and not shape.wide:
         limit = input_number(rng, plain)
-    return _above(of, limit, measured.of_numbers and chance(rng, 50))
+    return _above(of, limit, chance(rng, 50))
 
 
 def _above(of: WindowValue, limit: Numeric, strict: bool) -> Amount:
