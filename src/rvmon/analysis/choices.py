@@ -123,7 +123,7 @@ def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
 
 
 def _full(window: WindowValue, comes_to: float) -> float:
-    """The number that a window is full of if it comes to so much; of a variance, every other one."""
+    """What a window is full of that comes to so much; of a variance, every other number."""
     if window.measured.of_time:
         return comes_to * TICKS_PER_SECOND / (window.window or TICKS_PER_SECOND)
     return 2 * abs(comes_to) ** 0.5 if window.measured is Measured.VARIANCE else comes_to

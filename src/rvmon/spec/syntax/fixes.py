@@ -40,6 +40,8 @@ _CLAUSE = re.compile(
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
     r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
 )
+_BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
+"""Before what a formula begins."""
 _TYPES = {
     "float": "real",
     "double": "real",
@@ -66,6 +68,7 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
         or _sign_fix(found, accepted, before.text)
         or _unit_fix(found, before.text)
         or _held_fix(found, before)
+        or _range_fix(found, before)
         or _number_fix(found, before)
         or _never_fix(found, before.text)
         or _name_fix(found, before.text)
@@ -104,11 +107,20 @@ def _unit_fix(found: str, before: str) -> str:
     return f"`{written[2]}` is an operator here: write `{written[1]} {SPOKEN[written[2]]}`"
 
 
+def _range_fix(found: str, before: Span) -> str:
+    """What fixes `x in [a, b]`, where labels in braces are expected."""
+    said = re.search(rf".*(?:{_BEGINNINGS})\s*(.*\S)\s+in\s*\Z", before.text, re.DOTALL)
+    ends = re.compile(r"\s*\[([^],]+),([^]]+)\]").match(before.source.text, before.end)
+    if found != "[" or said is None or ends is None:
+        return ""
+    low, high = (end.strip() for end in ends.groups())
+    return f"`in` is of labels: write `({said[1]} >= {low} and {said[1]} <= {high})`"
+
+
 def _held_fix(found: str, before: Span) -> str:
     """What fixes `φ for 1 s`, said of what has been."""
     text = before.text
-    words = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->|\("
-    said = re.search(rf".*(?:{words})\s*([^()]*\S)\s*\Z", text, re.DOTALL)
+    said = re.search(rf".*(?:{_BEGINNINGS}|\()\s*([^()]*\S)\s*\Z", text, re.DOTALL)
     length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
     if found != "for" or said is None or length is None:
         return ""

@@ -34,6 +34,8 @@ def first_finding(text):
         ("within 3 s, released", "no comma stands behind a duration"),
         ("speed <= 40 A", "`A` is an operator here: write `40 ampere`"),
         ("speed <= 40 W and gaze_ok", "`W` is an operator here: write `40 watt`"),
+        ("speed in [-1 m/s, 2 m/s]", "write `(speed >= -1 m/s and speed <= 2 m/s)`"),
+        ("delta(speed, 1 s) in [0, 2 m/s]", "write `(delta(speed, 1 s) >= 0 and delta(speed, 1 s)"),
         ("not gaze_ok for 1 s", "write `held(not gaze_ok, 1 s)` for what has held so long"),
         ("within T + 1 s released", "a duration that is computed stands in brackets"),
         ("within 3 sec released", "did you mean `s`?"),
