@@ -69,7 +69,7 @@ static inline uint64_t noted_margins(rv_monitor *m, uint64_t sum)
     const int64_t count = rv_margins(m, &margins);
     uint64_t found = sum;
     int64_t i;
-    for (i = 0; i < count; i++) {
+    for (i = 0; !rv_spoilt(m) && (i < count); i++) { /* where memory was short they mean nothing */
         (void)note_margin(&found, &margins[i]);
     }
     rv_forget_margins(m);

@@ -83,7 +83,7 @@ def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
     """Two windows of a century lead there; a clock's first position lies before its first stamp."""
     far = "always[900000 h, 1000000 h] (eventually[600000 h, 700000 h] q)"
     twins = Twins(planned(f"requirement R\n  upon rise(q)\n  then p until ({far})\n", time), ALL)
-    for t in range(begin, begin + 190, 5):
+    for t in range(begin, begin + 190, 19):
         twins.tell(Sample(t, {"q": t % 2 == 0, "p": True, "x": 1.0}))
     twins.finish(None)
 
