@@ -4,6 +4,8 @@ import ast
 import re
 from pathlib import Path
 
+import pytest
+
 SOURCES = Path(__file__).parents[1] / "src"
 TEXTS = {
     path.relative_to(SOURCES).as_posix(): path.read_text(encoding="utf-8")
@@ -20,6 +22,7 @@ def test_no_file_is_long():
     assert not {name: n for name, n in lines.items() if n > MOST_LINES}
 
 
+@pytest.mark.slow
 def test_what_is_let_pass_has_a_reason():
     """What lint or types are not to look at says why; an assert says why it holds."""
     unsaid = [name for name, text in TEXTS.items() if MARK.search(text)]

@@ -63,6 +63,7 @@ def test_import_loads_nothing_heavy():
     assert shown.stdout.strip() == "[]"
 
 
+@pytest.mark.process
 def test_what_was_compiled_runs_without_the_grammar(tmp_path):
     """From the second run on: reading a specification takes as long as starting."""
     spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))

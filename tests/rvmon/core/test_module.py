@@ -391,6 +391,7 @@ def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
     ring.append(planned.monitor(frozenset(), lambda *_: ring, closer))
 
 
+@pytest.mark.slow
 def test_nothing_is_left_behind(planned):
     """However often everything is done, right and wrong, no block of memory more is in use."""
     wrong = list(damaged(planned))

@@ -167,6 +167,7 @@ def test_each_row_is_an_update(required):
     assert any(one.verdict == "F" for one in report.attempts)
 
 
+@pytest.mark.law
 def test_rows_equal_steps():
     """Blocks of rows are judged as the samples that they hold, one by one."""
     compiler = Compiler()

@@ -131,6 +131,7 @@ def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
     return twins
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 def test_changed_bytes_are_refused(time):
     """Each byte that is another, each end that is missing, and what is behind it, is found."""
@@ -146,6 +147,7 @@ def test_changed_bytes_are_refused(time):
     assert other.save() == data
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 def test_forged_bytes_do_no_harm(time):
     """Bytes with a hash that fits are refused, or give a run that can be led to its end."""

@@ -45,6 +45,7 @@ def test_it_comes_back_as_it_was(file):
         assert len(packed.read("SHA256SUMS").splitlines()) == len(ENTRIES)
 
 
+@pytest.mark.slow
 def test_every_byte_counts(file):
     """Each byte that is changed is told, wherever in the file it stands."""
     data = pack({"é": b"1"})

@@ -32,6 +32,7 @@ def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
     return whole, replace(whole, actions=judged), late
 
 
+@pytest.mark.law
 @FEW
 @given(late_cases(Profile()))
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
@@ -60,6 +61,7 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
     assert kept[0] == kept[1]
 
 
+@pytest.mark.law
 @FEW
 @given(late_cases(Profile(requirements=1)))
 def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
@@ -84,6 +86,7 @@ def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
             assert states[0] == states[1]
 
 
+@pytest.mark.law
 @FEW
 @given(late_cases(Profile(requirements=1, past=False, for_each=False)))
 def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:

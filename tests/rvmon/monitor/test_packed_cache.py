@@ -123,6 +123,7 @@ def damages(path, other):
         yield content[: len(content) - len(data)] + changed
 
 
+@pytest.mark.slow
 def test_a_damaged_file_is_of_no_account(folder):
     """Whatever stands there, with a right checksum or without, the plan is made anew."""
     decided, report, _ = judged()
@@ -163,6 +164,7 @@ def test_it_can_be_switched_off(folder, monkeypatch):
     assert not kept_in(folder)
 
 
+@pytest.mark.process
 def test_all_processes_share_it(folder, tmp_path):
     """Whatever the order of their sets is."""
     spec = tmp_path / "spec.rv"

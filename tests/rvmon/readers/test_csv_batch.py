@@ -127,6 +127,7 @@ def test_numbers_are_the_nearest(tmp_path):
     assert list(map(repr, found)) == [repr(float(text)) for text in texts]
 
 
+@pytest.mark.slow
 def test_dates_are_exact(tmp_path):
     """Each date is read as one by one, whether it is written as most are or otherwise."""
     rng = random.Random(2)

@@ -65,6 +65,7 @@ def limited(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
     """Each choice of tests kills at least as much as a smaller one, and what is held out counts."""
     closed = close(limited, "machine", jobs=1, budget=Budget(tests=40))
