@@ -4,10 +4,10 @@
     python -m benchmarks.testbench closing --seeds 3
     python -m benchmarks.testbench shrinking --failures 20
 
-`faults`: thirty, each what somebody may write who reads `handover.robot.handover` alone: a line
-forgotten, two in the wrong order, a rule misunderstood. Directed and disturbed tests are played on
-each until a requirement fails. Prints what sees it: a requirement, a signal that nobody judges, or
-nothing.
+`faults`: sixty, each what somebody may write who reads `handover.robot.handover` alone: a line
+forgotten, two in the wrong order, a rule misunderstood, or a change that is meant well. Directed
+and disturbed tests are played on each until a requirement fails. Prints what sees it: a
+requirement, a signal that nobody judges, or nothing.
 
 `closing`: tests that it takes to close the holes of two campaigns, those after which each share of
 the goals was met, the size of the suite, and CPU seconds of all processes. With `--random DB`, a
@@ -32,6 +32,7 @@ from itertools import chain, islice
 from pathlib import Path
 from statistics import median
 
+from benchmarks.planted_faults import FAULTS
 from msgspec import structs
 
 from handover.campaign.campaign import handover_campaign
@@ -54,79 +55,6 @@ from rvmon.coverage.questions import Answers
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
 LOOKED_AT = (25, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest")
-
-GIVE_UP = 'self.node.publish("timed_out")\n        return "done"'
-INFORMED = 'self.node.publish("informed", latched=True)'
-ARRIVED = """if not arrived:
-            return self.give_up("no_path_to_person")"""
-MISSING = "missing = None in (reading.gaze, reading.pressure, reading.location)"
-CLOSE = "self.gripper.close()\n        yield self.behaviour.grip_pause_s"
-READY = "all((reading.gaze, reading.pressure, reading.location))"
-RELEASE = """self.gripper.open()
-        yield self.behaviour.open_s
-        self.node.publish("pressure_e1", False)"""
-
-FAULTS = {
-    "start pose first, then the zero pose": (
-        '(("zero_pose", 0.2), ("start_pose", 0.8))',
-        '(("start_pose", 0.2), ("zero_pose", 0.8))',
-    ),
-    "the handover point's coordinates swapped": ("(0.20, 0.22)", "(0.22, 0.20)"),
-    "one approach height left out": ("(0.18, 0.06, 0.0)", "(0.18, 0.0)"),
-    "a single attempt to plan": ("PLAN_ATTEMPTS = 3", "PLAN_ATTEMPTS = 1"),
-    "the piece may be anywhere": ("PIECE_TOLERANCE = 0.05", "PIECE_TOLERANCE = 0.5"),
-    "a hand has to be nearer to count": ("HAND_CLEARANCE = 0.06", "HAND_CLEARANCE = 0.02"),
-    "old signals count": ("message.stamp < self.entered", "message.stamp < 0"),
-    "closes where it is": ("in APPROACH_HEIGHTS:", "in APPROACH_HEIGHTS[:2]:"),
-    "closes again as it counts as closed": (CLOSE, f"{CLOSE}\n        self.gripper.close()"),
-    "goes on without a path to the person": (ARRIVED, "pass"),
-    "does not settle": ("yield self.behaviour.settle_s", "yield 0.0"),
-    "informs before it fetches": (
-        "found = self.sensors.piece()\n        if found is None:\n            return self.give_up",
-        f"{INFORMED}\n        found = self.sensors.piece()\n        if found is None:\n"
-        "            return self.give_up",
-    ),
-    "its message is not latched": (INFORMED, 'self.node.publish("informed")'),
-    "any signal means ready": ("if signal in self.behaviour.readiness:", "if signal is not None:"),
-    "says sensed at each look": (
-        MISSING,
-        f'self.node.publish("sensed")\n        {MISSING}',
-    ),
-    "decides by a new reading": ("reading = self.reading\n", "reading = self.sensors.sense()\n"),
-    "waits for pressure alone": (MISSING, "missing = reading.pressure is None"),
-    "one good reading is enough": (READY, READY.replace("all", "any")),
-    "gaze is forgotten": (READY, "all((reading.pressure, reading.location))"),
-    "away and empty mixed up": ('publish("hand_away")', 'publish("hand_empty")'),
-    "says released before it opens": (
-        RELEASE,
-        f'self.node.publish("released")\n        {RELEASE}',
-    ),
-    "gives no time to take the piece": ("yield self.behaviour.release_s", "yield 0.0"),
-    "closes when the piece is gone": (
-        "yield self.behaviour.release_s",
-        "yield self.behaviour.release_s\n        self.gripper.close()",
-    ),
-    "ends without a word when it gives up": (GIVE_UP, GIVE_UP.replace('"done"', "END")),
-    "opens when it gives up": (GIVE_UP, f"self.gripper.open()\n        {GIVE_UP}"),
-    "gives up twice": (GIVE_UP, f'self.node.publish("timed_out")\n        {GIVE_UP}'),
-    "looks for the piece at the right side only": (
-        "math.hypot(found[0] - x, found[1] + GRIP_ABOVE_CENTRE - z)",
-        "abs(found[0] - x)",
-    ),
-    "a dead sensor means a hand": (
-        "distance is not None and distance < HAND_CLEARANCE",
-        "distance is None or distance < HAND_CLEARANCE",
-    ),
-    "does not wait until it has arrived": (
-        "yield from self.arm.follow(path)\n                return True",
-        "next(self.arm.follow(path))\n                return True",
-    ),
-    "counts no polls of the second wait": (
-        "return self.give_up(\"never_ready\")",
-        "self.polls = 0",
-    ),
-}  # fmt: skip
-"""What is written instead of what."""
 
 
 def faults(options: argparse.Namespace) -> int:

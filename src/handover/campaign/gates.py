@@ -13,17 +13,19 @@ _NEEDS = {
     "a release": ("R1", "T1", "T2", "T3", "T4", "T5", "T6", "T31", "T45", "T46"),
     "a reading": ("R2", "T7", "T9", "T10", "T11", "T17", "T43", "T44", "T47", "T57"),
     "a scene that surprises": ("T36", "T38", "T52", "T53", "T54", "T55", "T56"),
+    "a person beside the way": ("T63", "T65"),
     "a human who does not come": ("T22", "T24", "T49", "T50"),
     "a robot that gives up": ("T1", "T26", "T48", "T51"),
 }
 """Requirements that only some tests trigger, by what these have to show."""
 
+_SURPRISES = ("a scene that surprises", "a person beside the way")
+
 _LACKS: Mapping[str, Collection[str]] = {
-    "pseudorandom": ("a release", "a reading", "a scene that surprises"),
-    "constrained": ("a release", "a scene that surprises", "a human who does not come"),
+    "pseudorandom": ("a release", "a reading", *_SURPRISES),
+    "constrained": ("a release", "a human who does not come", *_SURPRISES),
     **dict.fromkeys(
-        _MODEL_BASED,
-        ("a scene that surprises", "a human who does not come", "a robot that gives up"),
+        _MODEL_BASED, ("a human who does not come", "a robot that gives up", *_SURPRISES)
     ),
 }
 """By strategy, what its tests show by chance if at all."""
@@ -37,7 +39,7 @@ _COVERAGE = {
 }
 """Percent of the correct robot's coverage model that a hundred tests cover whatever the seed."""
 
-_SELDOM = ("T54", "T55", *_NEEDS["a human who does not come"])
+_SELDOM = ("T54", "T55", "T65", *_NEEDS["a human who does not come"])
 """What disturbed tests trigger in one or two of a hundred, or none."""
 
 

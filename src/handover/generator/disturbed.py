@@ -161,6 +161,13 @@ EARLY_S: Final = (0.0, 3.0)
 P_IN_PLANE: Final = 0.5
 """The hand beside the gripper as often as in front of it: the plane says neither."""
 
+P_BESIDE: Final = 0.12
+BESIDE_M: Final = (0.35, 0.8)
+"""Where a person stands beside the robot's way: from in it to well beside it."""
+
+P_FAR_HAND: Final = 0.5
+"""That person takes the piece with either hand."""
+
 P_AT_LIMITS: Final = 0.2
 """Postures at the ends of the seed's ranges: its authors' corner cases of gaze and location."""
 
@@ -182,6 +189,9 @@ FREE: Final = (
     "P_EARLY",
     "EARLY_S",
     "P_IN_PLANE",
+    "P_BESIDE",
+    "BESIDE_M",
+    "P_FAR_HAND",
     "P_AT_LIMITS",
 )
 """What no source gives: a count of disturbed tests says nothing of how often anything happens."""
@@ -224,10 +234,13 @@ def _sensor_faults(rng: random.Random) -> SensorFaults:
 
 def _scene_faults(rng: random.Random) -> SceneFaults:
     slippery, planner = rng.random() < P_SLIPPERY, rng.random() < P_PLANNER
+    is_beside = rng.random() < P_BESIDE
     return SceneFaults(
         friction=GREASY if slippery else SceneFaults().friction,
         plan_failure=round(rng.uniform(*PLAN_FAILURE), 2) if planner else 0.0,
         hand_in_plane=rng.random() < P_IN_PLANE,
         hidden=round(rng.uniform(*HIDDEN), 2) if rng.random() < P_HIDDEN else 0.0,
         raised_m=round(rng.uniform(*RAISED_M), 3) if rng.random() < P_RAISED else 0.0,
+        beside_m=round(rng.uniform(*BESIDE_M), 2) if is_beside else None,
+        far_hand=is_beside and rng.random() < P_FAR_HAND,
     )

@@ -18,7 +18,8 @@ class Behaviour:
         activation: signals that activate the robot.
         readiness: signals that say that the human is ready.
         only_fresh: whether signals from before the state was entered are ignored.
-        minds_hand: whether it closes the gripper only where no hand is seen.
+        minds_hand: whether it closes the gripper only where no hand is seen, and stops on its way
+            where a person is.
         grip_pause_s: seconds from the command to close until the gripper counts as closed.
         announce_pause_s: seconds between the messages about the closed gripper.
         settle_s: seconds at the handover pose before the human is informed.

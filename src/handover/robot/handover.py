@@ -75,6 +75,7 @@ class HandoverRobot:
         self.entered = 0.0
         self.polls = 0
         self.informed_at = 0.0
+        self.is_stopped = False
         self.reading: Reading
 
     def run(self) -> Steps[None]:
@@ -234,6 +235,8 @@ class HandoverRobot:
 
     def give_up(self, reason: str) -> str:
         """End the task without a decision, and tell why."""
+        if self.is_stopped:
+            reason = "person_in_way"
         self.node.publish(reason)
         self.node.publish("timed_out")
         return "done"
@@ -257,6 +260,7 @@ class HandoverRobot:
         for _ in range(PLAN_ATTEMPTS):
             path = yield from self.arm.plan(x, z)
             if path is not None:
-                yield from self.arm.follow(path)
-                return True
+                arrived = yield from self.arm.follow(path, minds_people=self.behaviour.minds_hand)
+                self.is_stopped = not arrived
+                return arrived
         return False

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from handover.robot.handover import END, HandoverRobot
+from handover.robot.handover import END, HANDOVER_POINT, HandoverRobot
 from handover.robot.ports import Steps
+
+FAR_OUT = (0.0, -0.42, -1.15)
+"""rad: the grip at (0.32, 0.20) m."""
+
+FAR_OUT_S = 4.0
 
 
 class MindsNoHand(HandoverRobot):
@@ -102,6 +107,16 @@ class Hurries(HandoverRobot):
         return (yield from super().reset())
 
 
+class SwingsBlindly(HandoverRobot):
+    """Swings the piece out to a fixed posture first, and minds nobody on that way."""
+
+    def go_to(self, x: float, z: float) -> Steps[bool]:
+        """Reach far out before the handover point, without a plan."""
+        if (x, z) == HANDOVER_POINT:
+            yield from self.arm.follow(self.arm.interpolate(FAR_OUT, FAR_OUT_S))
+        return (yield from super().go_to(x, z))
+
+
 class Crashes(HandoverRobot):
     """Divides by zero when it should sense."""
 
@@ -122,6 +137,7 @@ MUTATIONS: dict[str, type[HandoverRobot]] = {
     "never-decides": NeverDecides,
     "releases-anyway": ReleasesAnyway,
     "releases-late": ReleasesLate,
+    "swings-blindly": SwingsBlindly,
     "waits-for-ever": WaitsForEver,
 }
 """The mutated robots by name."""

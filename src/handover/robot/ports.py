@@ -51,13 +51,19 @@ class Arm(Protocol[Path]):
     """Plans and follows paths of the gripper."""
 
     def plan(self, x: float, z: float) -> Steps[Path | None]:
-        """Find a path of the grip to a point (metres), gripper down; `None`: there is none."""
+        """Find a path of the grip to a point (metres), gripper down and clear of people.
+
+        `None`: there is none.
+        """
 
     def interpolate(self, joints: tuple[float, float, float], duration: float) -> Path:
         """A path to joint angles (rad) that takes so many seconds."""
 
-    def follow(self, path: Path) -> Steps[None]:
-        """Move along a path; returns when it is over."""
+    def follow(self, path: Path, *, minds_people: bool = False) -> Steps[bool]:
+        """Move along a path; returns when it is over, and whether the arm got to its end.
+
+        It stops where a person comes close, if it minds people.
+        """
 
 
 class Gripper(Protocol):

@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator
 from itertools import pairwise
 
 from handover.world import parameters as p
+from handover.world.building import person_ahead
 from handover.world.motion import Joints, Trajectory, grip_point, joints_for, min_jerk
 from handover.world.scene import Scene
 
@@ -39,6 +40,8 @@ class Arm:
         self._goal = self.joints()
         self._path: Trajectory | None = None
         self._path_s = 0.0
+        self._minds_people = False
+        self._stopped = False
         self._rates = [0.0, 0.0, 0.0]
 
     def joints(self) -> Joints:
@@ -48,7 +51,9 @@ class Arm:
         return first, second - first, third - second
 
     def plan(self, x: float, z: float) -> Generator[float, None, Trajectory | None]:
-        """Find a path for the grip to a point, gripper down; takes the planner's time.
+        """Find a path for the grip to a point, gripper down and clear of who stands beside it.
+
+        It takes the planner's time.
 
         Returns:
             `None` if there is no path.
@@ -56,27 +61,44 @@ class Arm:
         yield self._rng.uniform(*p.PLAN_LATENCY_S)
         goal = joints_for(x, z)
         fails = self._plan_failure > 0 and self._rng.random() < self._plan_failure
-        if goal is None or fails:
+        path = None if goal is None or fails else self._path_to(goal)
+        if path is None:
             self._note("plan_failed")
-            return None
-        return self._path_to(goal)
+        return path
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
         """A path to joint angles, in a given time and without planning."""
         return Trajectory(self._start(), joints, duration)
 
-    def follow(self, path: Trajectory) -> Generator[float, None, None]:
-        """Move along a path; returns when it is over."""
+    def follow(
+        self, path: Trajectory, *, minds_people: bool = False
+    ) -> Generator[float, None, bool]:
+        """Move along a path; returns when it is over.
+
+        Args:
+            path: where to.
+            minds_people: stop, for good, where a part of a person comes close.
+
+        Returns:
+            Whether the arm got to its end.
+        """
         self._path, self._path_s = path, 0.0
         self._goal = path.goal
+        self._minds_people, self._stopped = minds_people, False
         self._note("arm_commanded")
         self._wake(path.duration)
         yield path.duration
+        if self._stopped:
+            self._note("arm_stopped")
+        return not self._stopped
 
     def control(self) -> None:
         """Set the motors so that the next control step ends on the path."""
-        wanted = self._goal
         path = self._path
+        if path is not None and self._minds_people and self._is_blocked():
+            self._goal, self._stopped = self.joints(), True
+            path = self._path = None
+        wanted = self._goal
         if path is not None:
             self._path_s += p.CONTROL_S
             share = min_jerk(self._path_s / path.duration)
@@ -97,11 +119,14 @@ class Arm:
                 self._rates[index] = rate
                 motor.rate = rate
 
+    def _is_blocked(self) -> bool:
+        return person_ahead(self._scene, *grip_point(self.joints()), p.CLEARANCE[1])
+
     def _start(self) -> Joints:
         """Where the arm was sent to last; where it is, if it is still on its way."""
         return self._goal if self._path is None else self.joints()
 
-    def _path_to(self, goal: Joints) -> Trajectory:
+    def _path_to(self, goal: Joints) -> Trajectory | None:
         start = self._start()
         steps = 40
         points = [
@@ -114,6 +139,8 @@ class Arm:
             )
             for share in (min_jerk(i / steps) for i in range(steps + 1))
         ]
+        if any(person_ahead(self._scene, *point, p.CLEARANCE[0]) for point in points):
+            return None
         fastest = max(math.dist(a, b) for a, b in pairwise(points)) * steps
         return Trajectory(start, goal, max(p.SHORTEST_MOTION_S, fastest / p.TOOL_SPEED_LIMIT))
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import pymunk
 
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults
 from handover.world.motion import Joints
-from handover.world.scene import Scene
+from handover.world.scene import Beside, Scene
 
 AS_PLANNED = SceneFaults()
 
@@ -17,6 +18,7 @@ _SCENERY = 1
 _PIECE = 2
 _GRIPPER = 4
 _HAND = 8
+_BESIDE = 16
 _FINGER_X = p.PALM_LENGTH / 2
 _FINGER_OFFSET = (p.PIECE_SIZE[0] + p.FINGER_THICKNESS) / 2
 
@@ -27,7 +29,8 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     Collisions: the piece with everything; gripper and hand also with table and floor. Hand and
     gripper pass each other, since the plane is a projection and the hand may be in front (how
     close they come is what requirement 5 measures), unless the faults have the hand in the
-    plane. The arm's links touch nothing.
+    plane. What else a person has there who is beside the way meets gripper, piece and table.
+    The arm's links touch nothing.
     """
     space = pymunk.Space()
     space.gravity = (0.0, -p.GRAVITY)
@@ -37,11 +40,15 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     links, joint_motors = _add_arm(space, pose)
     fingers, finger_motors = _add_fingers(space, links[2])
     piece = _add_piece(space, faults.friction, faults.raised_m)
-    hand, hand_target, hand_pull = _add_hand(space)
+    own, other = _arms(faults)
+    rest = p.HAND_REST if own is None else _from(own, p.BESIDE_REST)
+    hand, hand_target, hand_pull = _add_hand(space, rest, _HAND, _SCENERY, _PIECE)
+    beside = None if own is None or other is None else _add_beside(space, hand, own, other)
     if faults.hand_in_plane:
-        for part in (links[2], *fingers):
-            _touch(part, _HAND)
-        _touch(hand, _GRIPPER)
+        _meet((*links[2:], *fingers), _HAND)
+        _meet((hand,), _GRIPPER)
+    if beside is not None:
+        _meet((*links[2:], *fingers, piece), _BESIDE)
     head = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     head.position = p.HEAD_REST
     head.angle = p.HEAD_REST_ANGLE
@@ -54,21 +61,54 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
         finger_motors,
         piece,
         hand,
+        rest,
         hand_target,
         hand_pull,
         head,
+        beside,
     )
+
+
+def person_ahead(scene: Scene, x: float, z: float, clearance: float) -> bool:
+    """Whether forearm or other hand of a person is where the gripper would be, or close to it.
+
+    Args:
+        scene: where the bodies are.
+        x: of the grip, m.
+        z: of the grip, m.
+        clearance: from the gripper's axis, m.
+    """
+    if scene.beside is None:
+        return False
+    low, high = p.GRIPPER_REACH
+    return any(
+        scene.space.point_query_nearest((x, at), clearance, pymunk.ShapeFilter(mask=_BESIDE))
+        for at in (z - low, z, z + high)
+    )
+
+
+def _arms(faults: SceneFaults) -> tuple[float, float] | tuple[None, None]:
+    """Where along x the arm that takes and the other one are, of a person beside the way."""
+    if faults.beside_m is None:
+        return None, None
+    near, far = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
+    return (far, near) if faults.far_hand else (near, far)
+
+
+def _from(x: float, place: tuple[float, float]) -> tuple[float, float]:
+    return x + place[0], place[1]
 
 
 def _filter(category: int, *collides_with: int) -> pymunk.ShapeFilter:
     return pymunk.ShapeFilter(categories=category, mask=sum(collides_with))
 
 
-def _touch(body: pymunk.Body, category: int) -> None:
-    """Let a body also collide with a category."""
-    for shape in body.shapes:
-        own = shape.filter
-        shape.filter = pymunk.ShapeFilter(categories=own.categories, mask=own.mask | category)
+def _meet(bodies: Iterable[pymunk.Body], category: int) -> None:
+    """Let bodies also collide with a category."""
+    for body in bodies:
+        for shape in body.shapes:
+            own = shape.filter
+            shape.filter = pymunk.ShapeFilter(categories=own.categories, mask=own.mask | category)
 
 
 def table_corners() -> tuple[tuple[float, float], ...]:
@@ -187,16 +227,50 @@ def _add_piece(space: pymunk.Space, friction: float, raised_m: float) -> pymunk.
 
 
 def _add_hand(
-    space: pymunk.Space,
+    space: pymunk.Space, place: tuple[float, float], category: int, *meets: int
 ) -> tuple[pymunk.Body, pymunk.Body, pymunk.PivotJoint]:
     hand = pymunk.Body(p.HAND_MASS, math.inf)
-    hand.position = p.HAND_REST
+    hand.position = place
     shape = pymunk.Circle(hand, p.HAND_RADIUS)
     shape.friction = p.FRICTION
-    shape.filter = _filter(_HAND, _SCENERY, _PIECE)
-    target = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    target.position = p.HAND_REST
-    pull = pymunk.PivotJoint(target, hand, (0.0, 0.0), (0.0, 0.0))
-    pull.max_force = p.HAND_FORCE
-    space.add(hand, shape, target, pull)
+    shape.filter = _filter(category, *meets)
+    space.add(hand, shape)
+    target, pull = _pulled(space, hand, (0.0, 0.0), p.HAND_FORCE)
     return hand, target, pull
+
+
+def _pulled(
+    space: pymunk.Space, body: pymunk.Body, at: tuple[float, float], force: float
+) -> tuple[pymunk.Body, pymunk.PivotJoint]:
+    """A target that pulls a point of a body with no more than a force."""
+    target = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    target.position = body.local_to_world(at)
+    pull = pymunk.PivotJoint(target, body, (0.0, 0.0), at)
+    pull.max_force = force
+    space.add(target, pull)
+    return target, pull
+
+
+def _add_beside(space: pymunk.Space, hand: pymunk.Body, own_x: float, other_x: float) -> Beside:
+    """Forearm and other hand. The shoulder carries the forearm, so that it weighs nothing."""
+    wrist, elbow = p.LOWER_ARM
+    elbow_rest = _from(own_x, p.BESIDE_ELBOW)
+    size = (elbow - wrist, 2 * p.LOWER_ARM_RADIUS)
+    forearm = pymunk.Body(p.LOWER_ARM_MASS, pymunk.moment_for_box(p.LOWER_ARM_MASS, size))
+    along = (hand.position - elbow_rest).normalized()
+    forearm.position = hand.position - along * ((wrist + elbow) / 2)
+    forearm.angle = along.angle
+    forearm.velocity_func = _carried
+    half = size[0] / 2 - p.LOWER_ARM_RADIUS
+    shape = pymunk.Segment(forearm, (-half, 0.0), (half, 0.0), p.LOWER_ARM_RADIUS)
+    shape.friction = p.FRICTION
+    meets = (_SCENERY, _PIECE, _GRIPPER)
+    shape.filter = _filter(_BESIDE, *meets)
+    space.add(forearm, shape, _hinge(hand, forearm, hand.position))
+    target, _ = _pulled(space, forearm, ((wrist - elbow) / 2, 0.0), p.ELBOW_FORCE)
+    other, _, _ = _add_hand(space, _from(other_x, p.BESIDE_OTHER), _BESIDE, *meets)
+    return Beside(forearm, target, elbow_rest, other)
+
+
+def _carried(body: pymunk.Body, _: tuple[float, float], damping: float, dt: float) -> None:
+    pymunk.Body.update_velocity(body, (0.0, 0.0), damping, dt)

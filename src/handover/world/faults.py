@@ -37,6 +37,9 @@ class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
         raised_m: height of a block that the piece stands on, metres.
         hand_in_plane: whether the hand is beside the gripper, so that they collide, and not in
             front of it.
+        beside_m: where along x a person stands who is beside the robot's way and not at its end,
+            metres: the whole arm and the other hand are then in the plane.
+        far_hand: whether that person takes the piece with the hand away from the robot.
     """
 
     friction: Annotated[float, msgspec.Meta(ge=0.01, le=2)] = FRICTION
@@ -44,3 +47,5 @@ class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
     hidden: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     raised_m: Annotated[float, msgspec.Meta(ge=0, le=0.1)] = 0.0
     hand_in_plane: bool = False
+    beside_m: Annotated[float, msgspec.Meta(ge=0.3, le=1)] | None = None
+    far_hand: bool = False

@@ -19,6 +19,8 @@ BODIES = (
     "hand",
     "head",
 )
+BESIDE = ("lower_arm", "other_hand")
+"""What a person beside the robot's way has there besides."""
 
 VIEW = (-0.62, -0.1, 1.18, 0.95)
 """Metres: from behind the robot's shoulder to behind the human's head, the table below."""
@@ -31,8 +33,10 @@ class Film:
     """Takes frames of a scene."""
 
     def __init__(self, scene: Scene) -> None:
-        # In the order of `BODIES`.
-        self._bodies = (*scene.links, *scene.fingers, scene.piece, scene.hand, scene.head)
+        # In the order of `BODIES` and `BESIDE`.
+        beside = scene.beside
+        more = () if beside is None else (beside.forearm, beside.other_hand)
+        self._bodies = (*scene.links, *scene.fingers, scene.piece, scene.hand, scene.head, *more)
         self._frames: list[tuple[int, tuple[float, ...]]] = []
 
     def take(self, t_ns: int) -> None:
@@ -45,11 +49,14 @@ class Film:
 
     def scene(self) -> shown.Scene:
         """All frames, with what to draw."""
-        return shown.Scene(BODIES, outlines(), tuple(self._frames), VIEW)
+        bodies = (*BODIES, *BESIDE)[: len(self._bodies)]
+        drawn = tuple(one for one in outlines() if one.body not in BESIDE or one.body in bodies)
+        return shown.Scene(bodies, drawn, tuple(self._frames), VIEW)
 
 
 def outlines() -> tuple[shown.Outline, ...]:
-    """What to draw for each body of `BODIES` and the ground, and the cone of the human's gaze."""
+    """What to draw for each body and the ground, and the cone of the human's gaze."""
+    half = (p.LOWER_ARM[1] - p.LOWER_ARM[0]) / 2 - p.LOWER_ARM_RADIUS
     length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
     finger = ((-length, -width), (length, -width), (length, width), (-length, width))
     half_x, half_z = p.PIECE_SIZE[0] / 2, p.PIECE_SIZE[1] / 2
@@ -63,6 +70,8 @@ def outlines() -> tuple[shown.Outline, ...]:
         shown.Outline("right_finger", finger, 0.0, "gripper"),
         shown.Outline("piece", piece, 0.0, "piece"),
         shown.Outline("hand", ((0.0, 0.0),), p.HAND_RADIUS, "person"),
+        shown.Outline("lower_arm", ((-half, 0.0), (half, 0.0)), p.LOWER_ARM_RADIUS, "person"),
+        shown.Outline("other_hand", ((0.0, 0.0),), p.HAND_RADIUS, "person"),
         shown.Outline("head", ((0.0, 0.0),), p.HEAD_RADIUS, "person"),
         shown.Outline("ground", table_corners(), 0.0, "ground"),
         shown.Outline("ground", ((-2.0, p.FLOOR_Z), (3.0, p.FLOOR_Z)), 0.0, "ground"),

@@ -14,7 +14,7 @@ from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, sl
 from handover.world.scene import Scene
 
 _HAND = 1
-"""The hand's type of collision in pymunk; all other shapes have 0."""
+"""The type of collision in pymunk of hands and forearm; all other shapes have 0."""
 
 
 @dataclass(slots=True)
@@ -142,8 +142,11 @@ class Human:
         self._closed = False
         self._grasp: Grasp | None = None
         self._touches = 0
-        for shape in scene.hand.shapes:
-            shape.collision_type = _HAND
+        beside = scene.beside
+        more = () if beside is None else (beside.forearm, beside.other_hand)
+        for body in (scene.hand, *more):
+            for shape in body.shapes:
+                shape.collision_type = _HAND
         scene.space.on_collision(_HAND, None, begin=self._touch, separate=self._part)
 
     def look(self, offset: float, distance: float, angle: float) -> None:
@@ -178,6 +181,7 @@ class Human:
         """Move head and arm on; take hold where the closed hand touches the piece."""
         self._head.control()
         self._arm.control()
+        self._move_elbow()
         if self._grasp is not None:
             if self._grasp.has_slipped():
                 self._let_go()
@@ -198,12 +202,16 @@ class Human:
 
         Fingers that clamp it press from both sides, each as hard as the other: that is no more.
         """
-        forces = self._contact_forces()
-        if not forces and self._grasp is None:
+        if not self._touches and self._grasp is None:
             return 0.0
-        parts = (self._scene.links[2], *self._scene.fingers)
-        by_piece = self._grasp_force() + forces.get(self._scene.piece, 0.0)
-        return max(by_piece, *(forces.get(part, 0.0) for part in parts))
+        return self._pressed(self._scene.hand, self._grasp_force())
+
+    def forces_beside(self) -> tuple[float, float]:
+        """The same of forearm and other hand of a human who stands beside the way."""
+        beside = self._scene.beside
+        if not self._touches or beside is None:
+            return 0.0, 0.0
+        return self._pressed(beside.forearm), self._pressed(beside.other_hand)
 
     def holds(self) -> bool:
         """Whether the hand has taken hold of the piece."""
@@ -223,6 +231,12 @@ class Human:
     def _contact_forces(self) -> dict[pymunk.Body, float]:
         # Asked at each step of the physics: most of the time nothing touches the hand.
         return contact_forces(self._scene.hand) if self._touches else {}
+
+    def _pressed(self, body: pymunk.Body, by_grasp: float = 0.0) -> float:
+        forces = contact_forces(body) if self._touches else {}
+        by_piece = by_grasp + forces.get(self._scene.piece, 0.0)
+        parts = (self._scene.links[2], *self._scene.fingers)
+        return max(by_piece, *(forces.get(part, 0.0) for part in parts))
 
     def _touch_force(self) -> float:
         return self._contact_forces().get(self._scene.piece, 0.0)
@@ -250,7 +264,7 @@ class Human:
         self._place, self._near, self._closed, self.hand_is_slack = None, False, False, True
         self._let_go()
         self._wake(self._head.start((*p.HEAD_REST, p.HEAD_REST_ANGLE)))
-        self._wake(self._arm.start(p.HAND_REST))
+        self._wake(self._arm.start(self._scene.hand_rest))
 
     def _wants_hold(self) -> bool:
         return self._closed and self._near
@@ -261,6 +275,14 @@ class Human:
         if self._place is not None and self._grasp is None:
             goal = self._hold_point() if self._wants_hold() else self._beside(*self._place)
             self._wake(self._arm.start(goal))
+
+    def _move_elbow(self) -> None:
+        """Pull the elbow behind the hand, towards where it is when the arm hangs."""
+        beside, target = self._scene.beside, self._scene.hand_target
+        if beside is not None:
+            hand = target.position + target.velocity * p.CONTROL_S
+            elbow = hand + (beside.elbow - hand).normalized() * p.LOWER_ARM[1]
+            beside.elbow_target.velocity = (elbow - beside.elbow_target.position) / p.CONTROL_S
 
     def _let_go(self) -> None:
         if self._grasp is not None:

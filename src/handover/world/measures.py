@@ -67,7 +67,7 @@ def face_is_seen(scene: Scene) -> bool:
 
 def hand_is_seen(scene: Scene) -> bool:
     """Whether a tracker can tell the hand from the chest."""
-    return (scene.hand.position - p.HAND_REST).length > p.HAND_MIN_OFFSET
+    return (scene.hand.position - scene.hand_rest).length > p.HAND_MIN_OFFSET
 
 
 def _turn_from_piece(scene: Scene) -> float:
@@ -100,10 +100,21 @@ def gripper_opening(scene: Scene) -> float:
 
 
 def hand_offset(scene: Scene) -> tuple[float, float]:
-    """Metres between the mass centres of hand and gripper on each axis, without sign."""
+    """Metres between the mass centres of gripper and nearest hand on each axis, without sign."""
     x, z = gripper_centre(scene)
-    hand = scene.hand.position
-    return abs(hand.x - x), abs(hand.y - z)
+    hands = [scene.hand] if scene.beside is None else [scene.hand, scene.beside.other_hand]
+    offsets = [(abs(hand.position.x - x), abs(hand.position.y - z)) for hand in hands]
+    return min(offsets, key=lambda offset: math.hypot(*offset))
+
+
+def person_distance(scene: Scene) -> float:
+    """Metres from the gripper's mass centre to the nearest of hands, head and forearm's axis."""
+    centre = pymunk.Vec2d(*gripper_centre(scene))
+    parts = [math.hypot(*hand_offset(scene)), (scene.head.position - centre).length]
+    if scene.beside is not None:
+        (bone,) = scene.beside.forearm.shapes
+        parts.append(bone.point_query(centre).distance + p.LOWER_ARM_RADIUS)
+    return min(parts)
 
 
 def tool_speed(scene: Scene) -> float:

@@ -69,6 +69,9 @@ AT_STOP: Final = 1e-3
 PALM_LENGTH: Final = 0.05
 PALM_WIDTH: Final = 0.08
 
+GRIPPER_REACH: Final = (0.07, 0.11)
+"""m below the grip and above it that gripper and piece take up; to the sides it is 0.08 m."""
+
 PIECE_SIZE: Final = (0.03, 0.10)
 PIECE_MASS: Final = 0.3
 PIECE_X: Final = 0.0
@@ -94,6 +97,10 @@ TOOL_SPEED_LIMIT: Final = 0.23
 """m/s at a path's fastest point: below the 0.25 m/s of collaborative operation."""
 
 SHORTEST_MOTION_S: Final = 0.5
+CLEARANCE: Final = (0.10, 0.09)
+"""m around the gripper's axis: a path is planned so wide past people, and the arm stops where
+one comes nearer; the open gripper reaches 0.08 m to its sides."""
+
 START_POSE_RANGE: Final = 0.5
 """rad: the start pose is the zero pose with each joint off by U(−0.5, 0.5) (testbench)."""
 
@@ -136,6 +143,24 @@ HEAD_REST_ANGLE: Final = 1.2
 """The human stands one metre away, hand at the chest, looking elsewhere (rad, 0 is along +x)."""
 
 HEAD_RADIUS: Final = 0.09
+
+LOWER_ARM: Final = (0.06, 0.31)
+"""m behind the middle of the hand at which wrist and elbow are."""
+
+ELBOW_FORCE: Final = 8.0
+"""N: the upper arm guides the elbow no harder than this; what pulls is the hand."""
+
+LOWER_ARM_RADIUS: Final = 0.04
+LOWER_ARM_MASS: Final = 2.0
+"""kg that move with a struck lower arm (ISO/TS 15066:2016, table A.3: effective mass)."""
+
+BESIDE_ARMS: Final = (-0.15, 0.15)
+"""m along x from the middle of a person beside the robot's way to the near arm and the far one."""
+
+BESIDE_REST: Final = (0.0, 0.25)
+BESIDE_ELBOW: Final = (0.02, 0.0)
+BESIDE_OTHER: Final = (0.0, 0.20)
+"""Hand and elbow of the arm that takes, at rest, and the other hand: x from their arm, z."""
 
 LOCATION_OK: Final = (0.10, -0.05)
 LOCATION_BAD: Final = (0.5, 1.0)
@@ -203,5 +228,12 @@ FREE: Final = (
     "HEAD_REST",
     "HEAD_REST_ANGLE",
     "HEAD_RADIUS",
+    "LOWER_ARM",
+    "LOWER_ARM_RADIUS",
+    "ELBOW_FORCE",
+    "BESIDE_ARMS",
+    "BESIDE_REST",
+    "BESIDE_ELBOW",
+    "BESIDE_OTHER",
 )
 """Chosen within what people's bodies can do."""

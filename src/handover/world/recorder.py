@@ -13,6 +13,7 @@ from handover.world.measures import (
     gripper_opening,
     hand_offset,
     location_is_ok,
+    person_distance,
     tool_point,
     tool_speed,
 )
@@ -65,25 +66,38 @@ class Recorder:
         return self._values
 
 
+Forces = tuple[float, float, float]
+"""N on the hand that takes, the forearm and the other hand."""
+
+_NO_FORCE: Forces = (0.0, 0.0, 0.0)
+
+
+def _greatest(one: Forces, other: Forces) -> Forces:
+    return max(one[0], other[0]), max(one[1], other[1]), max(one[2], other[2])
+
+
 class Truth:
     """Measures the bodies without error, for requirements and people, never for the robot."""
 
     def __init__(self, scene: Scene, human: Human) -> None:
         self._scene = scene
         self._human = human
-        self._peak = 0.0
-        self._shown = (-1, 0.0)
+        self._peaks = _NO_FORCE
+        self._shown = (-1, _NO_FORCE)
 
     def step(self) -> None:
-        """Keep the greatest force on the hand between two measurements."""
-        self._peak = max(self._peak, self._human.hand_force())
+        """Keep the greatest forces on the human between two measurements."""
+        now = self._human.hand_force(), *self._human.forces_beside()
+        if now != _NO_FORCE:
+            self._peaks = _greatest(self._peaks, now)
 
     def measure(self, t_ns: int) -> dict[str, SampleValue]:
         """All signals at an instant: lengths in m, to 1 mm, forces in N, speeds in m/s."""
         self.step()
         shown_ns, shown = self._shown
-        peak = max(self._peak, shown if shown_ns == t_ns else 0.0)
-        self._shown, self._peak = (t_ns, peak), 0.0
+        peaks = _greatest(self._peaks, shown) if shown_ns == t_ns else self._peaks
+        self._shown, self._peaks = (t_ns, peaks), _NO_FORCE
+        hand, forearm, other_hand = peaks
         scene = self._scene
         grip = gripper_force(scene)
         return {
@@ -91,8 +105,11 @@ class Truth:
             "gripper_holds": grip >= p.PRESSURE_MIN,
             "person_holds": self._human.holds(),
             "gripper_opening": round(gripper_opening(scene), 3),
-            "hand_force": round(peak),
+            "hand_force": round(max(hand, other_hand)),
+            "other_hand_force": round(other_hand),
+            "forearm_force": round(forearm),
             "true_distance": round(math.hypot(*hand_offset(scene)), 3),
+            "person_distance": round(person_distance(scene), 3),
             "true_gaze": gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
             "true_location": location_is_ok(scene),

@@ -8,6 +8,23 @@ import pymunk
 
 
 @dataclass(frozen=True, slots=True)
+class Beside:
+    """What a person beside the robot's way has in its plane, besides the hand that takes.
+
+    Attributes:
+        forearm: from the wrist to the elbow; its x axis points to the wrist.
+        elbow_target: where the elbow is pulled to.
+        elbow: where that is when the arm hangs, (x, z) in metres.
+        other_hand: keeps where it is.
+    """
+
+    forearm: pymunk.Body
+    elbow_target: pymunk.Body
+    elbow: tuple[float, float]
+    other_hand: pymunk.Body
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
     """All bodies, with the motors that controllers write to.
 
@@ -18,10 +35,12 @@ class Scene:
         fingers: left and right.
         finger_motors: a positive `rate` times the side (+1, −1) closes.
         piece: the thing that is handed over.
-        hand: of the human; never turns.
+        hand: of the human, the one that takes; never turns.
+        hand_rest: where it is at rest, (x, z) in metres.
         hand_target: where the human's arm pulls the hand to.
         hand_pull: the pull itself, with its largest force.
         head: of the human; its angle is the direction of gaze.
+        beside: the rest of a human who stands beside the way.
     """
 
     space: pymunk.Space
@@ -31,6 +50,8 @@ class Scene:
     finger_motors: tuple[pymunk.SimpleMotor, pymunk.SimpleMotor]
     piece: pymunk.Body
     hand: pymunk.Body
+    hand_rest: tuple[float, float]
     hand_target: pymunk.Body
     hand_pull: pymunk.PivotJoint
     head: pymunk.Body
+    beside: Beside | None

@@ -75,6 +75,7 @@ class World:
         self.bus.tap(self._record)
         self._wake(0.0)
         self.recorder.signal(0, "sensors_disturbed", faults != PERFECT)
+        self.recorder.signal(0, "person_beside", scene_faults.beside_m is not None)
         self._watch()
 
     def run(self, horizon_ns: int) -> None:

@@ -187,8 +187,8 @@ class GivesAllReasons(HandoverRobot):
         return super().give_up(reason)
 
 
-REASONS = """nobody_came no_piece no_path_to_piece no_path_to_person hand_in_grip piece_left_behind
-never_ready never_sensed"""
+REASONS = """nobody_came no_piece no_path_to_piece no_path_to_person hand_in_grip person_in_way
+piece_left_behind never_ready never_sensed"""
 
 PLANTED = {
     "senses-one-poll-longer": (other(sense_limit_s=5.5), "no-posture", "T25 T26"),
@@ -205,6 +205,8 @@ PLANTED = {
     "starts-at-any-signal": (other(activation=EITHER), "ready-first", "T18"),
     "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13 T37"),
     "minds-no-hand": (mutants.MindsNoHand, "hand-in-the-grip", "R5 T33 T39 T58"),
+    "strikes-a-forearm": (mutants.SwingsBlindly, "passes-a-forearm", "T63"),
+    "strikes-a-hand": (mutants.SwingsBlindly, "passes-another-hand", "T63"),
     "resets-fast": (other(reset_s=0.9), "released", "T14"),
     "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
     "says-released": (SaysReleased, "released", "T5 T6"),
@@ -227,7 +229,7 @@ PLANTED = {
     "decides-sooner": (other(decide_s=0.05), "released", "T43"),
     "opens-longer": (other(open_s=0.4), "released", "T45"),
     "gives-no-reason": (GivesNoReason, "no-posture", "T48"),
-    "gives-all-reasons": (GivesAllReasons, "hand-in-the-grip", "T49 T50 T51 T52 T53 T54 T56"),
+    "gives-all-reasons": (GivesAllReasons, "hand-in-the-grip", "T49 T50 T51 T52 T53 T54 T56 T65"),
     "sees-a-hand": (GivesAllReasons, "nobody-comes", "T55"),
     "opens-twice": (OpensTwice, "released", "T61"),
     "informs-twice": (InformsTwice, "never-ready", "T62"),
@@ -245,6 +247,11 @@ BY_SAMPLES = {
     "T15": [(0, {**FREE, "sensors_disturbed": False}), (1, {"hand_force": 281.0})],
     "T16": [(0, {**FREE, "sensors_disturbed": False}), *CLAMPED],
     "T59": [(0, {**FREE, "sensors_disturbed": True}), *CLAMPED],
+    "T64": [
+        (0, {"forearm_force": 0.0}),
+        (1, {"forearm_force": 161.0}),
+        (1.6, {"forearm_force": 0.0}),
+    ],
     "T17": [
         (0, {"sensors_disturbed": False, "true_pressure": False, "true_location": True}),
         (0.5, {"true_gaze": True, "gaze_ok": True, "location_ok": True}),

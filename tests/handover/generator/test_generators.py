@@ -6,17 +6,14 @@ import re
 from collections import Counter
 from pathlib import Path
 
-import pymunk
 import pytest
 
-from handover.driver import run_test
 from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.generator import disturbed as generator
 from handover.generator.disturbed import PERSON, disturbed
 from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults, SensorFaults
-from handover.world.film import outlines
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
@@ -71,6 +68,7 @@ def test_disturbed_tests_show_each_deviation() -> None:
     assert sum(test.scene.friction < 0.1 for test in tests) > 10
     assert sum(test.scene.plan_failure > 0 for test in tests) > 10
     assert sum(test.scene.hidden > 0 for test in tests) > 10
+    assert {test.scene.far_hand for test in tests if test.scene.beside_m} == {False, True}
     assert {test.postures for test in tests} == {"in_range", "at_limits"}
     ways = Counter(what for test in tests for what in deviations(test.actions))
     assert set(ways) == {"wrong signal", "ready early", "reaches early", "withdraws", "as it is"}
@@ -98,40 +96,15 @@ def test_probabilities_of_the_person_add_up() -> None:
 
 
 def test_numbers_of_the_person_have_a_source_or_are_called_free() -> None:
-    """Of a body each is in `FREE` or has the paper below it; of the rates all but two are there."""
+    """Of a body each is in `FREE` or has its source below; of the rates all but two are there."""
     text = Path(p.__file__).read_text("utf-8")
     section = text.partition("# --- human")[2].partition("# --- sensing")[0]
     line = r"([A-Z_]+): Final = .*\n"
-    of_the_paper = re.findall(rf'^{line}(?:{line})?"""[^"]*\(paper', section, re.MULTILINE)
-    sourced = {name for names in of_the_paper for name in names if name}
+    told = re.findall(rf'^{line}(?:{line})?"""[^"]*\((?:paper|ISO)', section, re.MULTILINE)
+    sourced = {name for names in told for name in names if name}
     assert sourced | {*p.FREE} == {*re.findall(f"^{line}", section, re.MULTILINE)}
     numbers = {name for name in vars(generator) if name.isupper()} - {"FREE"}
     assert numbers - {*generator.FREE} == {"OK", "NOISE_M"}
-
-
-def test_a_forearm_behind_the_hand_is_out_of_reach() -> None:
-    """In the plane the gripper meets the hand first: no force on a forearm could be judged."""
-    elbow = pymunk.Vec2d(0.85, 0.15)
-    parts = {one.body: one.corners for one in outlines() if one.role == "gripper"}
-    tests = [one for one in disturbed(40, seed=1) if one.scene.hand_in_plane][:8]
-    from_hand, from_forearm = [], []
-    for test in tests:
-        scene = run_test(test, robot="correct", films=True).scene
-        assert scene is not None
-        for _, frame in scene.frames:
-            places = {body: frame[3 * at : 3 * at + 3] for at, body in enumerate(scene.bodies)}
-            hand = pymunk.Vec2d(*places["hand"][:2])
-            along = (elbow - hand).normalized()
-            bones = [hand + along * (0.06 + 0.025 * part) for part in range(9)]
-            for part, corners in parts.items():
-                body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-                body.position, body.angle = places[part][:2], places[part][2]
-                shape = pymunk.Poly(body, corners)
-                shape.cache_bb()
-                from_hand.append(shape.point_query(hand).distance - p.HAND_RADIUS)
-                from_forearm += [shape.point_query(bone).distance - 0.04 for bone in bones]
-    assert len(tests) == 8
-    assert min(from_hand) < 0.005 < min(from_forearm)
 
 
 @pytest.mark.parametrize("make", [pseudorandom, constrained, disturbed])

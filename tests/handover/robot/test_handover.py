@@ -43,6 +43,7 @@ class AttemptJudge:
     reading: Callable[[float], Reading] = lambda _: ALL_OK
     piece_seen: Callable[[float], tuple[float, float] | None] = lambda _: (0.2, 0.2)
     reachable: bool = True
+    person_in_way: bool = False
     hand: float | None = 0.5
     timeout_time: int = 50
     time: float = 0.0
@@ -75,8 +76,9 @@ class AttemptJudge:
     def interpolate(self, _joints: tuple[float, float, float], duration: float) -> Path:
         return Path(duration)
 
-    def follow(self, path: Path) -> Generator[float, None, None]:
+    def follow(self, path: Path, *, minds_people: bool = False) -> Generator[float, None, bool]:
         yield path.duration
+        return not (minds_people and self.person_in_way)
 
     def open(self) -> None:
         self.commands.append("open")
@@ -324,6 +326,18 @@ def test_mutants_differ_from_the_robot(name: str) -> None:
         mutated.play(robot=MUTATIONS[name], until=100.0)
         differs |= (original.log, original.commands) != (mutated.log, mutated.commands)
     assert differs
+
+
+@pytest.mark.parametrize(("behaviour", "ends"), [(CORRECT, True), (LEGACY, False)])
+def test_an_arm_that_stopped_before_a_person_ends_the_task(
+    behaviour: Behaviour, *, ends: bool
+) -> None:
+    """The correct robot says that somebody is in the way; the other one minds nobody."""
+    bench = AttemptJudge(protocol(), person_in_way=True)
+    bench.play(behaviour)
+    assert bool(bench.times("person_in_way")) is ends
+    assert bool(bench.times("decided")) is not ends
+    assert "close" not in bench.commands or not ends
 
 
 def test_crashing_mutant_crashes() -> None:
