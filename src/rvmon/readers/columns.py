@@ -192,12 +192,32 @@ def _rounded(
 ) -> NDArray[np.int64]:
     """Instants in units of so many ticks as ticks."""
     _refuse(values, most + 1, stamps)
-    whole = np.floor(values)
-    parts = (values - whole) * float(scale)
-    ticks = whole.astype(np.int64) * scale + np.rint(parts).astype(np.int64)
-    for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
+    whole = np.trunc(values)
+    parts = values - whole
+    found = np.rint(parts * float(scale))
+    sizes = np.spacing(np.abs(values))
+    if (sizes * scale > 1).any():
+        found = np.where(sizes * scale > 1, _of_fewest_digits(parts, sizes / 2, scale), found)
+    ticks = whole.astype(np.int64) * scale + found.astype(np.int64)
+    unsure = np.abs(np.abs(parts * scale - np.trunc(parts * scale)) - 0.5) < 1e-5
+    for row in np.flatnonzero(unsure & (sizes * scale <= 1)):
         ticks[row] = ticks_of_stamp(float(values[row]), stamps)
     return ticks
+
+
+def _of_fewest_digits(
+    parts: NDArray[np.float64], halves: NDArray[np.float64], scale: int
+) -> NDArray[np.float64]:
+    """What stands behind the point as ticks: as many digits as tell floats apart, see `exact`."""
+    power, found = float(scale), np.rint(parts * float(scale))
+    while power > 1:
+        power /= 10
+        fewer = np.rint(parts * power)
+        fits = np.abs(fewer - parts * power) <= halves * power
+        if not fits.any():
+            break
+        found = np.where(fits, fewer * (scale / power), found)
+    return found
 
 
 def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:

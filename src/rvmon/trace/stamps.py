@@ -18,6 +18,7 @@ from rvmon.trace.time import (
     TICKS_PER_UNIT,
     TIME_LIMIT,
     UNIT_WORDS,
+    exact,
     ticks_of_seconds,
     ticks_of_text,
     whole_ticks,
@@ -139,7 +140,7 @@ def _rounded(stamp: float | Fraction | Decimal, unit: str) -> int:
 
 
 def _seconds(stamp: float | Fraction | Decimal, unit: str) -> Fraction:
-    return Fraction(stamp) * TICKS_PER_UNIT[unit] / TICKS_PER_SECOND
+    return Fraction(exact(stamp, unit)) * TICKS_PER_UNIT[unit] / TICKS_PER_SECOND
 
 
 def ticks_of_iso(text: str) -> int:

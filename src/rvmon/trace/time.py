@@ -36,6 +36,9 @@ UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": 
 _DATES_FROM = 946_684_800 * TICKS_PER_SECOND
 """The year 2000: stamps from it on are counted from 1970, for no clock of a robot runs so long."""
 
+_COARSE = 2.0**23
+"""From so many seconds on the next float is more than a tick away."""
+
 _FAR = 4e9
 """Seconds within `TIME_LIMIT`."""
 
@@ -47,19 +50,23 @@ _SURE = 0.4999
 
 
 def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
-    """Round seconds to the nearest tick, once.
+    """Seconds as ticks, rounded to the nearest once.
 
     Args:
         seconds: a finite number, NumPy's too; an `int`, `Fraction` or `Decimal` is
-            converted exactly.
+            converted exactly. A float whose neighbours are more than a tick away, as that of an
+            instant since 1970, stands for the shortest decimal that reads as it, which Python
+            prints: what was written with a few digits is exact.
 
     Raises:
         TraceError: it is no number, not finite or beyond `TIME_LIMIT` ticks.
 
-    >>> ticks_of_seconds(0.1)
-    100000000
+    >>> ticks_of_seconds(0.1), ticks_of_seconds(1700000015.95)
+    (100000000, 1700000015950000000)
     """
-    if seconds.__class__ is float and -_FAR < seconds < _FAR:
+    if seconds.__class__ is float and _COARSE <= seconds < _FAR:
+        return ticks_of_text(repr(seconds))
+    if seconds.__class__ is float and -_COARSE < seconds < _COARSE:
         whole = int(seconds)
         part = (seconds - whole) * 1e9  # the difference is exact, the product nearly
         rest = round(part)
@@ -69,12 +76,17 @@ def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
         seconds = _plain(seconds)
     if isinstance(seconds, float) and not math.isfinite(seconds):
         raise TraceError(f"time {seconds} is not finite: give seconds as a finite number")
-    # The float product is within half a tick of the exact one only up to 2**22 s, hence Fraction.
-    ticks = round(Fraction(seconds) * TICKS_PER_SECOND)
+    ticks = round(Fraction(exact(seconds, "s")) * TICKS_PER_SECOND)
     if abs(ticks) >= TIME_LIMIT:
         shown = round(seconds) if isinstance(seconds, Fraction) else seconds
         raise TraceError(f"time {_shown(shown)} s is out of range: at most 2**62 ns (146 years)")
     return ticks
+
+
+def exact(number: float | Fraction | Decimal, unit: str) -> float | Fraction | Decimal:
+    """The number that a stamp in a unit stands for: of a coarse float its shortest decimal."""
+    coarse = isinstance(number, float) and math.ulp(number) * TICKS_PER_UNIT[unit] > 1
+    return Decimal(repr(number)) if coarse else number
 
 
 def whole_ticks(t: Any) -> int:

@@ -1,12 +1,16 @@
 """Conversions of time refuse what is out of range, in words that show the number."""
 
+import math
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rvmon
 from rvmon.errors import TraceError
+from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import (
     TICKS_PER_UNIT,
     TIME_LIMIT,
@@ -50,8 +54,44 @@ def test_very_many_digits_are_refused(read):
     )
 )
 def test_seconds_are_rounded_once(seconds):
-    """Floats give the tick nearest to what they stand for exactly, the even one of two."""
-    assert ticks_of_seconds(seconds) == round(Fraction(seconds) * 1_000_000_000)
+    """Floats give the tick nearest to what they stand for, the even one of two."""
+    is_coarse = math.ulp(seconds) > 1e-9
+    stands_for = Fraction(repr(seconds) if is_coarse else seconds)
+    assert ticks_of_seconds(seconds) == round(stands_for * 1_000_000_000)
+
+
+DOOR = """spec door
+signal knock : bool
+requirement Told
+  upon updated(knock)
+  then immediately knock
+"""
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 3_999_999_999), st.integers(0, 10**9 - 1), st.integers(0, 6)),
+        min_size=1,
+        unique_by=lambda one: one[0],
+    )
+)
+def test_a_stamp_of_few_digits_is_exact_by_all_doors(stamps):
+    """As text, as a float of a live stream, of a message or of a column, in each unit."""
+    texts = [f"{s}.{part // 10 ** (9 - digits):0{digits}d}" for s, part, digits in sorted(stamps)]
+    exact = [ticks_of_text(text.rstrip(".")) for text in texts]
+    floats = [float(text) for text in texts]
+    spec = rvmon.loads(DOOR)
+    monitor = spec.monitor()
+    stepped = [one.triggered for t in floats for one in monitor.step(t, {"knock": True})]
+    assert stepped == exact
+    for unit, ticks in (("s", 10**9), ("ms", 10**6), ("us", 10**3)):
+        column = np.array([float(Fraction(t, ticks)) for t in exact])
+        columns = {"t": column, "knock": np.ones(len(column), bool)}
+        report = spec.evaluate(columns, time=f"t:{unit}")
+        assert [one.triggered for one in report.attempts] == exact
+        named = stamps_of(f"t:{unit}")
+        assert [ticks_of_stamp(one, named) for one in column.tolist()] == exact
 
 
 @settings(deadline=None)

@@ -91,26 +91,39 @@ static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize
     return looked_closer(c->look_closer_ns, args, count, names);
 }
 
-/* The same in seconds, where it is certain what the nearest nanosecond is; the difference is exact,
- * the product nearly. */
+/* From so many seconds on, 97 days, a nanosecond is less than what the next double is away. */
+#define COARSE_FROM 8388608.0
+
+/* The nanoseconds that a float of seconds stands for, as `ticks_of_seconds` has it; false: that is not
+ * certain here. The part behind the point is exact, its products nearly. */
+static bool ticks_of_float(double seconds, int64_t *t)
+{
+    const int64_t whole = (seconds > -4e9) && (seconds < 4e9) ? (int64_t)seconds : 0;
+    const double part = seconds - (double)whole;
+    const double size = fabs(seconds);
+    const double half = (size < COARSE_FROM) ? 0.4999e-9 : (nextafter(size, INFINITY) - size) / 2.0;
+    double power = (size < COARSE_FROM) ? 1e9 : 1.0;
+    if (!(fabs(part) < 1.0)) {
+        return false;
+    }
+    while ((fabs(part * power - rint(part * power)) > half * power) && (power < 1e9)) {
+        power *= 10.0; /* the fewest digits that read as this float */
+    }
+    *t = whole * INT64_C(1000000000) + (int64_t)(rint(part * power) * (1e9 / power));
+    return fabs(part * power - rint(part * power)) <= half * power;
+}
+
+/* The same in seconds. */
 static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t count,
                               PyObject *names)
 {
     monitor *c = (monitor *)self;
-    if ((count == 2) && (names == NULL) && PyFloat_CheckExact(args[0])) {
-        const double seconds = PyFloat_AsDouble(args[0]);
-        if ((seconds > -4e9) && (seconds < 4e9)) {
-            const int64_t whole = (int64_t)seconds;
-            const double part = (seconds - (double)whole) * 1e9;
-            const int64_t rest = (int64_t)(part + ((part < 0.0) ? -0.5 : 0.5));
-            const double off = part - (double)rest;
-            if ((off > -0.4999) && (off < 0.4999)) {
-                const int64_t t = whole * INT64_C(1000000000) + rest;
-                PyObject *made = step_quickly(c, t, args[1]);
-                if ((made != NULL) || (PyErr_Occurred() != NULL)) {
-                    return made;
-                }
-            }
+    int64_t t;
+    if ((count == 2) && (names == NULL) && PyFloat_CheckExact(args[0])
+        && ticks_of_float(PyFloat_AsDouble(args[0]), &t)) {
+        PyObject *made = step_quickly(c, t, args[1]);
+        if ((made != NULL) || (PyErr_Occurred() != NULL)) {
+            return made;
         }
     }
     return looked_closer(c->look_closer, args, count, names);
