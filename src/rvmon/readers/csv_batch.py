@@ -143,6 +143,7 @@ class _Reader:
         self._absent = None if no_update is None else str(no_update).encode()
         self._odd = np.empty((max(_ODD, len(kinds)), 4), np.int64)
         self._labels = np.empty((max(_LABELS, len(kinds)), 3), np.int64)
+        self._row_bytes = 2.0 * len(layout.header)
 
     def batch(self, text: _Text) -> Generator[Batch, None, tuple[int, int]]:
         """Take what can be read at once.
@@ -155,7 +156,7 @@ class _Reader:
         """
         if text.start == len(text.rest):
             return _ALL, 0
-        room = max(1, text.rest.count(b"\n", text.start) + text.rest.count(b"\r", text.start))
+        room = self._room_for(len(text.rest) - text.start)
         numbers = np.empty((len(self._kinds), room), np.int64)
         says = np.empty((len(self._kinds), room), np.uint8)
         lines = np.empty(room, np.int64)
@@ -184,9 +185,15 @@ class _Reader:
             yield replace(batch, first=int(lines[0]), lines=None if is_plain else lines[:rows])
         if fault is not None:
             raise fault
+        if rows:
+            self._row_bytes = (at - text.start) / rows
         text.start = at
         text.line += count
         return ended, end
+
+    def _room_for(self, size: int) -> int:
+        """Rows of so many bytes, if they are as those before; for more, there is a second call."""
+        return int(1.1 * size / self._row_bytes) + 16
 
     def _read_odd(
         self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]

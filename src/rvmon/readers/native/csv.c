@@ -15,6 +15,12 @@ static bool is_space(char c)
     return (c == ' ') || ((c >= '\t') && (c <= '\r')) || ((c >= 28) && (c <= 31));
 }
 
+/* What digits are above. */
+static bool ends_cell(char c)
+{
+    return ((uint8_t)c <= ',') && ((c == ',') || (c == '\n') || (c == '\r'));
+}
+
 static cell trimmed(cell c)
 {
     while ((c.from < c.to) && is_space(*c.from)) {
@@ -171,7 +177,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
                 }
             }
         } else {
-            while ((at < end) && (*at != ',') && (*at != '\n') && (*at != '\r')) {
+            while ((at < end) && !ends_cell(*at)) {
                 at++;
             }
             c.to = at;

@@ -32,29 +32,37 @@ static bool is_digit(char c)
     return (c >= '0') && (c <= '9');
 }
 
-/* Digits and a point, perhaps; gives where they end, NULL if there is no digit. */
-static const char *digits_of(const char *at, const char *to, decimal *d)
+/* How many digits there are from the first that is not zero on. */
+static int32_t held_digits(const char *at, const char *to)
 {
-    int32_t digits = 0;
     int32_t held = 0;
-    bool pointed = false;
     for (; at < to; at++) {
-        if (is_digit(*at)) {
-            digits++;
-            if ((held > 0) || (*at != '0')) {
-                held++;
-            }
-            if (held <= MOST_DIGITS) {
-                d->mantissa = d->mantissa * 10 + (uint64_t)(*at - '0');
-            }
-            d->behind += pointed ? 1 : 0;
-        } else if ((*at == '.') && !pointed) {
-            pointed = true;
+        held += (is_digit(*at) && ((held > 0) || (*at != '0'))) ? 1 : 0;
+    }
+    return held;
+}
+
+/* Digits and a point, perhaps; gives where they end, NULL if there is no digit. */
+static const char *digits_of(const char *from, const char *to, decimal *d)
+{
+    const char *at = from;
+    const char *point = NULL;
+    uint64_t mantissa = 0;
+    int64_t digits;
+    for (; at < to; at++) {
+        const uint32_t digit = (uint32_t)(uint8_t)*at - '0';
+        if (digit <= 9) {
+            mantissa = mantissa * 10 + digit; /* of too many, nobody looks at it */
+        } else if ((*at == '.') && (point == NULL)) {
+            point = at;
         } else {
             break;
         }
     }
-    d->is_long = held > MOST_DIGITS;
+    digits = (at - from) - ((point != NULL) ? 1 : 0);
+    d->mantissa = mantissa;
+    d->behind = (point != NULL) ? (int32_t)(at - point) - 1 : 0;
+    d->is_long = (digits > MOST_DIGITS) && (held_digits(from, at) > MOST_DIGITS);
     return (digits > 0) ? at : NULL;
 }
 
