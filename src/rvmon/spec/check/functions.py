@@ -41,6 +41,7 @@ _INSTEAD = {
     **dict.fromkeys(
         ("derivative", "slope"), "write `rate(x)`, the change a second between updates"
     ),
+    "rms": "its square is the mean of squares: `mean(x * x, 10 s) <= 0.04`",
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
 """What says nearly the same as functions that there are not."""

@@ -111,6 +111,7 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("derivative(x) <= 2", "write `rate(x)`"),
         ("variance(x, 5 s) <= 2", "moves along a curve between samples"),
         ("stddev(x, 5 s) <= 2", "its square is the variance"),
+        ("rms(x, 5 s) <= 2", "its square is the mean of squares"),
         ("variance(x * e.k, 5 s) <= 2", "`variance` is of signals, or fields of an event"),
         ("delta(e.k, 5 s) <= 2", "`delta` is of signals"),
         ("distinct(x * x, 5 s) <= 2", "`distinct` is of a field of an event, or one signal"),
