@@ -194,7 +194,9 @@ def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -
 
 def _symbol(item: syntax.Named, scope: Scope, parts: Parts, resolver: Resolver) -> Symbol:
     if isinstance(item, syntax.FunctionText):
-        return FunctionSymbol(item, scope)
+        seen = Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
+        seen.symbols[item.name] = symbol = FunctionSymbol(item, seen)
+        return symbol
     kind = resolver.type(item.type, scope)
     extents = (*resolver.extents(item.sizes, scope), *kind.extents)
     if isinstance(item, syntax.TypeDefinition):

@@ -18,7 +18,7 @@ from rvmon.timed.language.layout import refuse_double
 from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
-from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.resolve import INT32, Resolver
 from rvmon.timed.model.expressions import FALSE, TRUE, Expression
 from rvmon.timed.model.guards import is_discrete, is_plain, refuse_changes
 from rvmon.timed.model.network import (
@@ -35,8 +35,17 @@ from rvmon.timed.model.network import (
     Simulation,
     Term,
 )
+from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import finding, left_out, model_error
-from rvmon.timed.model.scope import AutomatonKey, AutomatonSymbol, Names, Scope
+from rvmon.timed.model.scope import (
+    AutomatonKey,
+    AutomatonSymbol,
+    ConstantSymbol,
+    Names,
+    ResolvedType,
+    Scope,
+    TypeSymbol,
+)
 
 MAX_EDGES = 100_000
 """The most edges that a network may have once templates and selections are unrolled."""
@@ -57,7 +66,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     functions = Functions(parts.variables)
     diagonals = Diagonals(parts.clocks, parts.variables)
     resolver = Resolver(functions, open_ints=document.open_ints, diagonals=diagonals)
-    top = Scope()
+    top = Scope(_known() if document.open_ints else None)
     declare(document.declarations, top, parts, resolver, findings)
     automata, ranks, edges = list[Automaton](), list[int](), 0
     symbols: dict[AutomatonKey, AutomatonSymbol] = {}
@@ -110,6 +119,20 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         _priorities(parts, ranks),
         has_split_edges=bool(diagonals.places) or parts.are_split,
     )
+
+
+def _known() -> Scope:
+    """What UPPAAL declares by itself."""
+    scope = Scope()
+    for bits in (8, 16, 32):
+        high = (1 << bits - 1) - 1
+        ranges = {f"int{bits}": (-high - 1, high), f"uint{bits}": (0, 2 * high + 1)}
+        for name, (low, high) in ranges.items():
+            if high <= INT32[1]:
+                scope.symbols[f"{name}_t"] = TypeSymbol(ResolvedType(BaseType.INT, low, high))
+                scope.symbols[f"{name.upper()}_MIN"] = ConstantSymbol(low)
+                scope.symbols[f"{name.upper()}_MAX"] = ConstantSymbol(high)
+    return scope
 
 
 def _priorities(parts: Parts, automata: Sequence[int]) -> Priorities | None:

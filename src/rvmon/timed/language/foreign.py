@@ -100,9 +100,14 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
     return None
 
 
+def without_comments(text: str) -> str:
+    """A text with nothing where comments stood."""
+    return _COMMENT.sub(" ", text)
+
+
 def _clause(text: str, rule: str) -> str:
     """The last statement of a text, without comments; in a `.ta` file its last line."""
-    plain = _COMMENT.sub(" ", text)
+    plain = without_comments(text)
     if rule == "document":
         return plain.rpartition("\n")[2]
     return re.split(r"[;}]", plain)[-1]

@@ -126,8 +126,10 @@ class Functions:
                 message = f"`{text.name}` calls itself"
                 raise model_error("TA016", message, written.span, fix)
             self.open.add(key)
-            function = self.made[key] = _make(text, symbol.scope, bound, resolver)
-            self.open.discard(key)
+            try:
+                function = self.made[key] = _make(text, symbol.scope, bound, resolver)
+            finally:
+                self.open.discard(key)
         return Invoke(function, (*values, *chosen), written.span)
 
 

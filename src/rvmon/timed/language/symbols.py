@@ -60,10 +60,9 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
     """
     match symbol:
         case ConstantSymbol(tuple() as values, (extent, *inner)):
-            if not isinstance(index, Constant):
+            if not isinstance(index, Constant) or index.value not in extent:
                 slot = Slot(0, (extent, *inner), (index,), span)
                 return ChosenSymbol(tuple(flat(values)), slot)
-            check_index(index.value, extent, span)
             return ConstantSymbol(values[index.value - extent.start], tuple(inner))
         case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
             return replace(symbol, slot=_deeper(slot, index, span))
@@ -123,8 +122,6 @@ def leaves(symbol: Symbol) -> list[Symbol]:
 def _deeper(slot: Slot, index: Expression, span: Span) -> Slot:
     if len(slot.indices) == len(slot.extents):
         raise model_error("TA004", "more indices than the array has dimensions", span)
-    if isinstance(index, Constant):
-        check_index(index.value, slot.extents[len(slot.indices)], span)
     return settle(Slot(slot.first, slot.extents, (*slot.indices, index), span))
 
 
@@ -134,8 +131,8 @@ def settle(slot: Slot) -> Slot:
         return slot
     offset = 0
     for extent, index in zip(slot.extents, slot.indices, strict=True):
-        if not isinstance(index, Constant):
-            return slot
+        if not isinstance(index, Constant) or index.value not in extent:
+            return slot  # a run that comes to an index outside the array has no meaning
         offset = offset * len(extent) + index.value - extent.start
     return Slot(slot.first + offset, (), (), slot.span)
 
@@ -146,6 +143,9 @@ def clock_of(slot: Slot, span: Span) -> int:
     Raises:
         ModelError: the variables would have to choose it, or it is an array.
     """
+    for extent, index in zip(slot.extents, slot.indices, strict=False):
+        if isinstance(index, Constant):
+            check_index(index.value, extent, span)
     if slot.extents:
         missing = len(slot.indices) < len(slot.extents)
         message = "an array of clocks" if missing else "the index of a clock is not constant"

@@ -23,6 +23,7 @@ from rvmon.errors import ModelError
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.declare import Findings
+from rvmon.timed.language.foreign import without_comments
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.language.xml_tree import Element, read_xml
 from rvmon.timed.model.operators import LocationKind
@@ -207,7 +208,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[automaton_sy
     queries = root.first("queries")
     for element in [] if queries is None else queries.all("query"):
         formula = element.first("formula")
-        if formula is None or not formula.text.strip():
+        if formula is None or not without_comments(formula.text).strip():
             continue
         comment = _text(element.first("comment"))
         named = _QUERY.match(comment)

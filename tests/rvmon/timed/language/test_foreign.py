@@ -121,7 +121,7 @@ def test_constants_are_computed_and_copied():
         ("int f() { while (true) { } return 2; } const int N = f();", "TA019"),
         ("int f(int n) { return 1 / n; } const int N = f(0);", "TA007"),
         ("int v[2]; const int w[2] = v;", "TA004"),
-        ("const int v[2] = {1, 2}; const int w[3] = v;", "TA007"),
+        ("const int v[2] = {1, 2}; const int w[3] = v;", "TA004"),
         ("typedef struct { int a; } p; const int v[2] = {1, 2}; p w = v;", "TA004"),
         ("const int v = 1; const int w[2] = v;", "TA004"),
     ],
@@ -148,3 +148,45 @@ def test_the_price_of_a_run_changes_no_run():
         loads_network(text.format("", "cost >= 5"))
     with pytest.raises(ModelError, match="no name `x0`"):
         loads_network(text.format("int cost, reward;", "x >= 5"))
+
+
+def test_what_uppaal_declares_is_known():
+    """Integers of a number of bits, and their least and largest values."""
+    network = loads_network(model("int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c;"))
+    ranges = [(v.low, v.high, v.initial) for v in network.variables]
+    assert ranges == [(-128, 127, -128), (0, 65535, 65535), (-(1 << 31), (1 << 31) - 1, 0)]
+    with pytest.raises(ModelError, match="no type named `int8_t`"):
+        loads_network("int8_t a automaton A { location l start l }")
+
+
+def test_a_function_sees_what_is_declared_before_it():
+    """A local name that comes later does not hide one from outside."""
+    local = "int f() { return a; } int a = 2; int g() { return a; }"
+    network = loads_network(model("const int a = 1;", local, guard="f() == 1 and g() == 2"))
+    assert verify(network, "A[] not deadlock").holds
+
+
+def test_a_function_that_is_wrong_is_told_once():
+    """Calls of it are no mistakes of their own."""
+    with pytest.raises(ModelError) as raised:
+        loads_network(model("int f() { return missing; }", guard="f() == f()"))
+    assert [one.code for one in raised.value.diagnostics] == ["TA002"]
+
+
+def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
+    """What a guard keeps runs from need not have a meaning."""
+    declared = "int a[2]; const int b[2] = {1, 2}; const int N = -1;"
+    network = loads_network(model(declared, guard="N &gt;= 0 and b[N] == a[N]"))
+    assert verify(network, "E<> deadlock").holds
+    network = loads_network(model(declared, assignment="a[0] = b[N + 3]"))
+    with pytest.raises(ModelError, match="index 2 is outside the array") as raised:
+        verify(network, "E<> deadlock")
+    assert raised.value.diagnostics[0].spans[0].span.text == "b[N + 3]"
+    with pytest.raises(ModelError, match="index 2 is outside the array"):
+        loads_network(model("clock x[2];", guard="x[2] &gt; 0"))
+
+
+def test_a_query_that_is_a_comment_asks_nothing():
+    """It is no query that is left out."""
+    queries = "<query><formula>// later: A[] true</formula></query>"
+    assert not loads_network(model(queries=queries)).warnings
