@@ -145,7 +145,7 @@ def _robustness_differs(way: str, case: Case) -> list[str]:
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     judgement = Judgement(case)
-    expected = margins(judgement.followings, judgement.outcomes)
+    expected = margins(judgement.followings, judgement.outcomes, case.spec.time)
     return [
         f"{key}: {found.get(key)}, expected {expected.get(key)}"
         for key in sorted({*expected, *found})

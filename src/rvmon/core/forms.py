@@ -21,8 +21,10 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateFunction,
     UpdateValue,
+    WindowValue,
 )
 from rvmon.spec.checked.formula import Literal as Number
+from rvmon.spec.checked.measured import Dimension
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit
@@ -179,7 +181,7 @@ def _measure(
     if core.sense is Sense.KNOWN_FALSE:
         return 1.0, Measure.DENIED, False, node
     turned = core.sense is not Sense.TRUE
-    leaf = state.leaf
+    leaf = state.leaf or state.compared
     if not isinstance(leaf, Compare) or _compares_labels(leaf, spec, requirement):
         return 1.0, Measure.TRUTH, turned, node
     return base_factor(leaf, spec), Measure.DISTANCE, turned, node
@@ -241,6 +243,8 @@ def _unit(expression: Numeric, spec: CheckedSpec) -> str:
             return spec.signals[name].type.unit
         case FieldValue(event=event, field=field):
             return spec.events[event].fields[field].unit
+        case WindowValue(measured=measured, value=value) if value is not None:
+            return _unit(value, spec) if measured.dimension is Dimension.SAME else ""
         case Arithmetic(op=op, args=args) if op.entry.unit in (UnitRule.SAME, UnitRule.TURN):
             return next((unit for arg in args if (unit := _unit(arg, spec))), "")
         case _:

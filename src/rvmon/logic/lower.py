@@ -101,15 +101,17 @@ def lower(
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
     begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
+    in_truth = begin(measured=False).reader
     of_windows = [itself(one.value) for one in requirement.captures if windows_in(one.value)]
-    caught = tuple(lowering.reader.four(one).read(UNKNOWN) for one in of_windows)
+    caught = tuple(in_truth.four(one).read(UNKNOWN) for one in of_windows)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             required = lowering.core(requirement.consequent, True)
             return Obligation(None, required, lowering.origins, caught=caught)
         case formula if has_future(formula):
             raise UnmonitorableError("its trigger speaks of the future")
-    four = lowering.reader.four(requirement.trigger)
+    reader = lowering.reader if requirement.mode is Mode.WHENEVER else in_truth
+    four = reader.four(requirement.trigger)  # an episode owes its trigger, too: that is measured
     trigger = four.read(FALSE)
     determined = _determined(four, factory)
     if requirement.mode is Mode.WHENEVER:

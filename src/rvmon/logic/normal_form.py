@@ -75,7 +75,8 @@ class Lowering:
         opened: bool = False,
     ) -> None:
         self.factory = factory
-        self.reader = Reader(factory, period, measured=measured)
+        held = period is None and not sampled
+        self.reader = Reader(factory, period, measured=measured, held=held)
         self.favour = favour
         self._meets_blanks = sampled
         self._opened = opened

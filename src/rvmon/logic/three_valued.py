@@ -111,10 +111,19 @@ class Reader(Reading[Four]):
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
-    def __init__(self, factory: Factory, period: int | None, *, measured: bool = False) -> None:
+    def __init__(
+        self,
+        factory: Factory,
+        period: int | None,
+        *,
+        measured: bool = False,
+        held: bool = False,
+    ) -> None:
         self.factory = factory
         self.period = period
         self.measured = measured
+        self.held = held
+        self._in_truth = Reader(factory, period) if measured else self
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
@@ -154,6 +163,8 @@ class Reader(Reading[Four]):
                 return self._held(self.four(operand), interval)
             case Unary() | Binary():
                 return read(formula, self.four, self)
+            case Amount() if self.measured and formula.has_distance(held=self.held):
+                return self._compared(formula.comparison)
             case Amount():
                 return self._amount(formula)
             case Compare(left=left, right=right) if windows_in(left, right):
@@ -169,7 +180,7 @@ class Reader(Reading[Four]):
     def _amount(self, formula: Amount) -> Four:
         """What is not born adds nothing; a limit, and what a mean is of, are born first."""
         states = [
-            self.four(part).read(UNKNOWN if part is formula.known else FALSE)
+            self._in_truth.four(part).read(UNKNOWN if part is formula.known else FALSE)
             for part in formula.operands
         ]
         value = self.factory.amount(formula, *states)
@@ -182,7 +193,7 @@ class Reader(Reading[Four]):
         known = [itself(part) for part in parts if isinstance(part, Read)]
         states, asked = [self.four(one).read(UNKNOWN) for one in known], [*map(self._unborn, known)]
         for window in windows_in(leaf.left, leaf.right):
-            own = (self.four(part).read(FALSE) for part in window.operands)
+            own = (self._in_truth.four(part).read(FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
             for unborn in map(self._unborn, window.born_with):
                 if window.measured is Measured.AGO:  # it was not, so long ago

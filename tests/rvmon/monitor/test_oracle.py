@@ -74,7 +74,7 @@ def test_engine_and_oracle_agree(time):
     for number in range(PAIRS):
         case = case_of(f"margins {number}", Profile(time=time), TraceProfile())
         judgement = Judgement(case)
-        expected = margins(judgement.followings, judgement.outcomes)
+        expected = margins(judgement.followings, judgement.outcomes, case.spec.time)
         found, settled = measured(case)
         assert found == expected, show_case(case)
         early += settled
@@ -98,7 +98,7 @@ def test_equal_infinities_are_nothing_apart(time, compare, value):
     case = Case(spec.checked, (Sample(0, values), Sample(1, {"x": 1.0, "y": 2.0})))
     judgement = Judgement(case)
     of_steps, _ = measured(case)
-    of_oracle = margins(judgement.followings, judgement.outcomes)
+    of_oracle = margins(judgement.followings, judgement.outcomes, case.spec.time)
     columns = {"t": [0, 1], "x": [value, 1.0], "y": [value, 2.0], "q": [1, 0]}
     of_rows = [(one.low, one.high, one.kept) for one in spec.robustness(columns).attempts.values()]
     figures = [*of_rows, *of_steps.values(), *of_oracle.values()]

@@ -349,3 +349,24 @@ def test_the_end_of_a_clock_is_measured_at_its_last_tick():
     monitor.step_ns(5, {"x": 3.0})
     [found] = monitor.finish()
     assert (found.t, found.robustness.low, found.robustness.high) == (5, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("time", "required", "low"),
+    [
+        ("held", "count(e, 3 s) <= 2", -2),
+        ("held", "max(x, 3 s) - min(x, 3 s) <= 4 cm", -0.02),
+        ("held", "abs(delta(x, 3 s)) <= 10 cm", 0.04),
+        ("held", "x >= mean(last(2, x))", 0.01),
+        ("held", "integral(x, 3 s) / 1 s >= -1 cm", INFINITE),
+        ("sampled", "mean(x, 3 s) >= 3 cm", 0.02),
+        ("sampled every 1 s", "duration(p, 3 s) <= 1 s", -1),
+    ],
+)
+def test_what_windows_come_to_is_at_a_distance(time, required, low):
+    """Where it moves between samples, none is worked out."""
+    head = HEAD.replace("spec s", f"spec s\ntime {time}")
+    text = f"{head}upon end then {required}"
+    samples = [(t, {"x": 2.0 * t + 2, "e": True, "p": t > 0}) for t in range(4)]
+    found = rvmon.loads(text).robustness(samples).attempts["R1", 1]
+    assert found.low == found.high == pytest.approx(low)

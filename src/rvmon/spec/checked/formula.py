@@ -19,6 +19,7 @@ from rvmon.spec.checked.measured import Measured as Measured
 from rvmon.spec.checked.operators import BinaryOp as BinaryOp
 from rvmon.spec.checked.operators import Interval as Interval
 from rvmon.spec.checked.operators import UnaryOp as UnaryOp
+from rvmon.trace.time import TICKS_PER_SECOND
 
 # Numeric (and label) expressions, evaluated in Python floats, ints or strings.
 
@@ -318,6 +319,18 @@ class Amount:
         own = self.of.operands
         chosen = len(own) - len(self.of.chosen)
         return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
+
+    @property
+    def comparison(self) -> Compare:
+        """The same of numbers, that of a duration in seconds: by how much it holds."""
+        of, limit = self.of, self.limit
+        if of.measured is Measured.DURATION and isinstance(limit, Literal):
+            limit = Literal(int(limit.value) / TICKS_PER_SECOND, "s")
+        return Compare(CompareOp.GT if self.strict else CompareOp.GE, of, limit, self.span)
+
+    def has_distance(self, *, held: bool) -> bool:
+        """Whether by how much it holds is worked out: not where it moves between samples."""
+        return not (held and self.of.moves)
 
     @property
     def born_with(self) -> tuple[Compare, ...]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Container, Mapping
 from typing import assert_never
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
-from rvmon.spec.checked.specification import Mode
+from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.law.attempts import Start, counts_in_favour
 from rvmon.testing.law.decisions import Followings
 from rvmon.testing.law.past import is_within
@@ -19,20 +19,20 @@ from rvmon.testing.law.ranges import ANY, BOTTOM, TOP, Past, Range, least, most,
 from rvmon.testing.law.syntax import is_proposition, is_upon_end
 from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.word import Truth, Word, truth_of
-from rvmon.trace.sample import Scalar
 
 Key = tuple[str, bool, int]
 """Requirement, whether in doubt, and number."""
 
 
 def margins(
-    followings: Mapping[str, Followings], recorded: Container[Key]
+    followings: Mapping[str, Followings], recorded: Container[Key], time: TimeModel
 ) -> dict[Key, tuple[float, float, float]]:
     """The robustness of attempts.
 
     Args:
         followings: by requirement, its attempts.
         recorded: those that have a record, by which the others are left out.
+        time: the model of it.
 
     Returns:
         The least it can be, the greatest, and the least if all is well behind the end that has
@@ -41,14 +41,15 @@ def margins(
 
     Source: SEMANTICS, sections 1 (Birth), 2, 3 and 5.
     """
+    held = time is TimeModel.HELD
     found = {}
     for name, own in followings.items():
         for one in own.attempts:
             in_doubt = one.start.sure is None
             key = (name, in_doubt, one.doubtful_number if in_doubt else one.number)
             if key in recorded:
-                low, high = _required(one.start, kept=False)
-                kept, _ = _required(one.start, kept=True)
+                low, high = _required(one.start, kept=False, held=held)
+                kept, _ = _required(one.start, kept=True, held=held)
                 found[key] = (low, TOP[1] if in_doubt else high, kept)
     return found
 
@@ -63,7 +64,7 @@ def _piece(word: Word, position: int) -> tuple[Word, int]:
     return Word(letters[:last], None, letters[last].instant), first
 
 
-def _required(start: Start, *, kept: bool) -> Range:
+def _required(start: Start, *, kept: bool, held: bool) -> Range:
     requirement = start.view.requirement
     favour = counts_in_favour(requirement)
     if not start.word.letters[start.position].sure:
@@ -71,21 +72,21 @@ def _required(start: Start, *, kept: bool) -> Range:
     word, first = _piece(start.word, start.position)
     owes = [k for k in start.owes if k < len(word.letters)]
     over = start.stop is not None and start.stop < len(word.letters)
-    ranges = _Ranges(word, start.captured, first, favour=favour, kept=kept)
+    past = Past(word, start.captured, first, held=held)
+    ranges = _Ranges(word, past, first, favour=favour, kept=kept)
 
     def consequent(k: int) -> Range:
         return ranges.range(requirement.consequent, k)
 
     if is_upon_end(requirement) or (requirement.mode is Mode.UPON and start.sure is not None):
         return consequent(start.position)
-    trigger = Past(word, start.captured, first)
 
     def required(k: int) -> Range:
         if start.blurred is not None and k >= start.blurred:
             return ANY
         if requirement.mode is Mode.UPON:
             return most([ANY, consequent(k)])
-        excused = negated(trigger.range(requirement.trigger, k, Truth.FALSE))
+        excused = negated(past.range(requirement.trigger, k, Truth.FALSE))
         return most([excused, consequent(k)])
 
     end = over or (kept and len(word.letters) == len(start.word.letters))
@@ -93,16 +94,14 @@ def _required(start: Start, *, kept: bool) -> Range:
 
 
 class _Ranges:
-    def __init__(
-        self, word: Word, captured: Mapping[str, Scalar], first: int, *, favour: bool, kept: bool
-    ) -> None:
+    def __init__(self, word: Word, past: Past, first: int, *, favour: bool, kept: bool) -> None:
         self.letters = word.letters
         self.end = word.end
         self.reached = word.reached
         self.favour = favour
         self.kept = kept
         self.first = first
-        self.past = Past(word, captured, first)
+        self.past = past
         self.known: dict[tuple[int, int, bool], Range] = {}
 
     def range(self, formula: Formula, i: int, *, positive: bool = True) -> Range:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Compare,
@@ -70,12 +71,16 @@ class Past:
         word: the trace.
         captured: values of `let` and `for each`.
         first: what lies before this position may be anything; nothing lies before the first one.
+        held: whether time is held: what moves between samples has no distance.
 
     Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
     """
 
-    def __init__(self, word: Word, captured: Mapping[str, Scalar], first: int = 0) -> None:
+    def __init__(
+        self, word: Word, captured: Mapping[str, Scalar], first: int, *, held: bool
+    ) -> None:
         self._letters = word.letters
+        self._held_time = held
         self._first = first
         self._captured = captured
         self._truths = Truths(word, captured)
@@ -100,10 +105,19 @@ class Past:
                 return self._binary(formula, i, unborn)
             case _ if state is Truth.UNBORN:
                 return OF_TRUTH[unborn]
-            case Compare(left=left, right=right) if not windows_in(left, right):
+            case Amount() if formula.has_distance(held=self._held_time):
+                return self._of_windows(formula.comparison, i)
+            case Compare(left=left, right=right) if windows_in(left, right):
+                return self._of_windows(formula, i)
+            case Compare():
                 return _compared(formula, self._letters[i], self._captured)
             case _:
                 return OF_TRUTH[state]
+
+    def _of_windows(self, formula: Compare, i: int) -> Range:
+        left, right = (self._truths.settled(side, i) for side in (formula.left, formula.right))
+        settled = Compare(formula.op, left, right)
+        return _compared(settled, self._letters[i], self._captured)
 
     def _unary(self, formula: Unary, i: int, unborn: Truth) -> Range:
         operand, window = formula.operand, formula.interval or EVER

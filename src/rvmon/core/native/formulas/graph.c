@@ -139,6 +139,9 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_COMPARED:
         reread(r, n->a, false);
         mark_parents(r, n, NODE_WINDOW); /* of which it is about the limit: that may be another though it is known */
+        if (r->margins != NULL) {
+            margins_mark_changed(r, names_to_lose(r) + place); /* so may the distance */
+        }
         return r->atom[n->a];
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
@@ -152,7 +155,7 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
     const link_plan *l = &PLAN(r)->links[n->links.first];
     const link_plan *end = l + n->links.count;
     if (r->margins != NULL) {
-        margins_mark_changed(r, r->part->plan->signals.count + r->part->plan->events.count + place);
+        margins_mark_changed(r, names_to_lose(r) + place);
     }
     r->truth[place] = value;
     if (r->truth_log != NULL) {

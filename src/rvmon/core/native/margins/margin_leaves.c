@@ -141,7 +141,8 @@ double measured_real(const atom_plan *a, const measure_plan *m, double value)
 /* The distance of the comparison that a leaf shows. */
 static margin_range distance_of(const run *r, const measure_plan *m)
 {
-    const atom_plan *a = &r->part->atoms[r->part->nodes[m->node].a];
+    const node_plan *n = &r->part->nodes[m->node];
+    const atom_plan *a = &r->part->atoms[n->a];
     margin_range found = ANYTHING;
     if (a->op == ATOM_REAL) {
         const rv_number *x = &r->value[a->input];
@@ -155,7 +156,7 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     }
     /* What is not born is what it is taken for. Once all is, nobody follows the truth of what has a
      * distance. */
-    if (is_anything(&found) && ((r->at.phase == 0) || (a->op == ATOM_PAYLOAD))) {
+    if (is_anything(&found) && ((r->at.phase == 0) || (a->op == ATOM_PAYLOAD) || (n->op == NODE_COMPARED))) {
         found = of_truth(r->truth[m->node]);
     }
     return found;

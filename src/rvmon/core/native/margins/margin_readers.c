@@ -64,9 +64,11 @@ static void find_readers(finding *f)
             const measure_plan *m = &f->plan->measures[i];
             bool by_truth = m->kind != MEASURE_CONSTANT;
             if (m->kind == MEASURE_DISTANCE) {
-                const atom_plan *a = &f->of->atoms[f->of->nodes[m->node].a];
+                const node_plan *n = &f->of->nodes[m->node];
+                const atom_plan *a = &f->of->atoms[n->a];
                 find_in_atom(f, a, judge_number);
-                by_truth = (f->phase == 0) || (a->op == ATOM_PAYLOAD); /* until all is born */
+                /* Until all is born; what windows come to, whenever it is another. */
+                by_truth = (f->phase == 0) || (a->op == ATOM_PAYLOAD) || (n->op == NODE_COMPARED);
             }
             if (by_truth) {
                 found_reader(f, p->signals.count + p->events.count + m->node, judge_number);

@@ -231,7 +231,8 @@ static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
     int32_t i;
     if (!is_within(fold, 0, FOLDS) || !is_within(n->b, 0, 2 * WINDOW_NUMBER) || (n->most < 0)
         || (n->most > MOST) || (alone ? !check_program(p, x, n->low) : !is_within(n->low, 0, x->amounts))
-        || (alone && (fold > FOLD_DISTINCT)) || ((fold == FOLD_AGO) && (n->high >= LIMIT))
+        || (alone && (fold > FOLD_DISTINCT))
+        || ((fold == FOLD_AGO) && ((n->high >= LIMIT) || (n->most > 0)))
         || !is_within(n->chosen, 1, n->operands.count + 1)
         || !is_within(n->since, -1, x->captured)
         || (tallied ? !is_within(n->sum, 0, x->sums) : (n->sum != -1))) {
@@ -296,7 +297,7 @@ static bool check_measure(const plan *p, const part_plan *x, const measure_plan 
     if (m->kind != MEASURE_DISTANCE) {
         return true;
     }
-    if ((n->op != NODE_LEAF) || !(m->factor > 0.0) || isinf(m->factor)) {
+    if (((n->op != NODE_LEAF) && (n->op != NODE_COMPARED)) || !(m->factor > 0.0) || isinf(m->factor)) {
         return false;
     }
     op = p->atoms[x->atoms.first + n->a].op;
