@@ -147,10 +147,19 @@ def is_plain(formula: Expression) -> bool:
     return not any(isinstance(part, PathFormula | Deadlock) for part in parts_of(formula))
 
 
+def _denied(expression: Expression) -> Expression:
+    """The negation; that of a negation is what was negated."""
+    match expression:
+        case UnaryOperation(UnaryOp.NOT, operand):
+            return operand
+        case _:
+            return UnaryOperation(UnaryOp.NOT, expression)
+
+
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
     """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
     if is_discrete(expression):
-        return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
+        return expression if positive else _denied(expression)
     match expression:
         case ClockCompare(clock, op, bound):
             return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)

@@ -10,7 +10,7 @@ Logic, 1995; Daniele, Giunchiglia, Vardi, Improved Automata Generation for LTL, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
@@ -85,9 +85,7 @@ def ways_of(formula: Expression, span: Span | None = None) -> Ways:
     Raises:
         ModelError: it has too many states.
     """
-    tableau = _Tableau(formula)
-    if len(tableau.promises) > MOST_SETS:
-        raise model_error("TA019", "the formula has too many operators", span)
+    tableau = _Tableau()
     first = tableau.cover(frozenset({formula}))
     number = {key: place for place, key in enumerate(first)}
     pending, arcs = list(first), list[tuple[int, ...]]()
@@ -100,11 +98,15 @@ def ways_of(formula: Expression, span: Span | None = None) -> Ways:
         if len(pending) > MOST_STATES:
             raise model_error("TA019", "the formula has too many cases", span, "split it")
         arcs.append(tuple(number[after] for after in following))
+    # Not those of the formula alone: what frees `G` is the negation of its left side.
+    promises = sorted({promise for key in pending for promise in key.waiting}, key=repr)
+    if len(promises) > MOST_SETS:
+        raise model_error("TA019", "the formula has too many operators", span)
     states = tuple(
-        WayState(tuple(key.label), place < len(first), tableau.sets_of(key), arcs[place])
+        WayState(tuple(key.label), place < len(first), key.sets(promises), arcs[place])
         for place, key in enumerate(pending)
     )
-    return Ways(states, len(tableau.promises))
+    return Ways(states, len(promises))
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,27 +125,16 @@ class _Case:
             and self.waiting <= other.waiting
         )
 
+    def sets(self, promises: Sequence[Expression]) -> int:
+        """The sets of acceptance, as bits: one for each formula `p U q` that does not wait."""
+        return sum(1 << n for n, promise in enumerate(promises) if promise not in self.waiting)
+
 
 class _Tableau:
-    """The cases of formulas.
+    """The cases of formulas."""
 
-    Attributes:
-        promises: the formulas `p U q`.
-    """
-
-    def __init__(self, formula: Expression) -> None:
-        self.promises = list(
-            dict.fromkeys(
-                part
-                for part in parts_of(formula)
-                if isinstance(part, PathFormula) and part.op is PathOp.FINALLY
-            )
-        )
+    def __init__(self) -> None:
         self._covers: dict[frozenset[Expression], list[_Case]] = {}
-
-    def sets_of(self, case: _Case) -> int:
-        """The sets of acceptance of a case: one for each promise that does not wait."""
-        return sum(1 << n for n, p in enumerate(self.promises) if p not in case.waiting)
 
     def cover(self, formulas: frozenset[Expression]) -> list[_Case]:
         """All ways to satisfy some formulas together, without those that others make needless."""

@@ -52,6 +52,8 @@ automaton A {
         ("G (A.failed and x > 2 imply F (A.asked and x < 1))", True),
         ("G (A.failed imply F x > 4)", False),
         ("E (F G (A.failed and x <= 4))", False),
+        ("E (A.asked W F (A.done and x > 2))", True),
+        ("E (not A.failed and x < 4 W F (A.failed and x > 5))", False),
     ],
 )
 def test_known_answers(query, expected):
