@@ -230,7 +230,8 @@ def _captures(rng: Rng, profile: Profile, time: TimeModel) -> tuple[Capture, ...
         simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         if profile.amounts and not profile.wide and chance(rng, 40):
-            held = replace(earlier, step=time is not TimeModel.HELD, longest=4)
+            # A window reads no `let`: the language has the expression there instead.
+            held = Shape(step=time is not TimeModel.HELD, longest=4)
             value = number_of_windows(rng, held, partial(_simple, profile))
         found.append(Capture(name, value))
     return tuple(found)

@@ -31,7 +31,7 @@ class Case:
         actions: what a monitor is given, in order: a sample, or the instant of an `advance`.
         end: what it is given by `finish`, ticks.
         names: the names that have a source; `None`: all.
-        outages: what was lost, in any order; no monitor can be told yet.
+        outages: what was lost, in any order.
     """
 
     spec: CheckedSpec
