@@ -17,6 +17,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Fractional,
     Function,
     If,
     InLocation,
@@ -36,6 +37,7 @@ from rvmon.timed.model.expressions import (
     expressions_of,
     statements_in,
 )
+from rvmon.timed.model.fractions import FUNCTIONS, number_of
 from rvmon.timed.model.guards import parts_of
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
@@ -189,6 +191,15 @@ class Names:
             case Invoke(function, arguments):
                 given = ", ".join(map(self.expression, arguments))
                 return f"{self.function(function)}({given})"
+            case Fractional("=", (Constant(bits),)):
+                text = repr(number_of(bits))
+                return text if bits >= 0 else f"({text})"
+            case Fractional("=" | "double" | "grid", (operand,)):
+                return self.expression(operand)
+            case Fractional(name, operands):
+                texts = [*map(self.expression, operands)]
+                call = f"{name}({', '.join(texts)})"
+                return call if name in FUNCTIONS else f"({texts[0]} {name} {texts[1]})"
             case UnaryOperation(UnaryOp.NOT, operand):
                 return f"!({self.expression(operand)})"
             case UnaryOperation(op, operand):
@@ -243,6 +254,8 @@ def function_lines(names: Names) -> list[str]:
 
 def type_text(variable: Variable) -> str:
     """The type of a variable."""
+    if variable.is_real:
+        return "double"
     return "bool" if variable.is_bool else f"int[{variable.low},{variable.high}]"
 
 

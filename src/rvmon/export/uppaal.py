@@ -16,6 +16,7 @@ from rvmon.analysis.graph import quoted
 from rvmon.export.names import Names, Thing, function_lines, type_text, updates_text
 from rvmon.texts import shown, shown_line
 from rvmon.timed.model.expressions import TRUE, PathFormula, Slot, Variable
+from rvmon.timed.model.fractions import number_of
 from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (
     Automaton,
@@ -104,7 +105,7 @@ def _declarations(network: Network, names: Names) -> str:
 
 
 def _initial(thing: Thing, members: tuple[Variable, ...]) -> str:
-    values = [str(variable.initial) for variable in members]
+    values = [str(number_of(v.initial) if v.is_real else v.initial) for v in members]
     for extent in reversed(thing.extents):
         size = len(extent)
         values = [

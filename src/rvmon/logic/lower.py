@@ -23,9 +23,9 @@ from rvmon.logic.formula import (
     looks_back,
 )
 from rvmon.logic.formula import Constant as CoreConstant
+from rvmon.logic.four_valued import Four
 from rvmon.logic.normal_form import Lowering, Origin, flattened
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, Unborn, signals_of
-from rvmon.logic.three_valued import Four
 from rvmon.spec.checked.classify import has_future, subformulas
 from rvmon.spec.checked.formula import (
     Bound,

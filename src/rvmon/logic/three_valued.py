@@ -6,10 +6,10 @@ that value: where a formula stands says what it is taken for, and the formula is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import cache
+from collections.abc import Iterable, Sequence
 
 from rvmon.logic.formula import Factory
+from rvmon.logic.four_valued import Four, same
 from rvmon.logic.state_formula import (
     FALSE,
     TRUE,
@@ -41,62 +41,6 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.operators import Reading, Tense
 from rvmon.spec.checked.rewrite import read, rewritten, without_spans
-
-
-class Four:
-    """A formula with four values.
-
-    Args:
-        read: gives the state formula with three that is FALSE, UNKNOWN or TRUE where this one is
-            not born.
-        mortal: whether there is a time before its birth.
-        fades: whether it is born for good as soon as it is.
-        unborn: two-valued, that it is not born; default as `read` gives it.
-        parts: of a conjunction, its operands; of anything else, it alone.
-
-    Attributes:
-        negated: what it is the negation of.
-    """
-
-    def __init__(
-        self,
-        factory: Factory,
-        read: Callable[[int], State],
-        *,
-        mortal: bool = True,
-        fades: bool = False,
-        unborn: State | None = None,
-        parts: Sequence[Four] = (),
-    ) -> None:
-        self._factory = factory
-        self.read = cache(read) if mortal else _same(read(UNKNOWN))
-        self.mortal = mortal
-        self.fades = fades
-        self.parts = tuple(parts) or (self,)
-        self.negated: Four | None = None
-        self._unborn = unborn
-
-    @property
-    def unborn(self) -> State:
-        """Two-valued: it is not born."""
-        if not self.mortal:
-            return self._factory.state_false
-        if self._unborn is not None:
-            return self._unborn
-        sure, negation = self._factory.sure, self._factory.negation
-        return self._factory.state_all([sure(self.read(TRUE)), sure(negation(self.read(FALSE)))])
-
-    @property
-    def missing(self) -> State:
-        """TRUE where it is not born, UNKNOWN where it is unknown, else FALSE."""
-        factory = self._factory
-        born = self.read(TRUE)
-        lost = factory.state_all([born, factory.negation(born)])
-        return factory.state_any([self.unborn, lost])
-
-
-def _same(state: State) -> Callable[[int], State]:
-    return lambda _: state
 
 
 class Reader(Reading[Four]):
@@ -215,7 +159,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
-            return Four(factory, _same(value), mortal=False)
+            return Four(factory, same(value), mortal=False)
 
         def read(reading: int) -> State:
             if reading == UNKNOWN:
@@ -244,7 +188,7 @@ class Reader(Reading[Four]):
     def constant(self, value: bool) -> Four:
         """A constant."""
         state = self.factory.state_true if value else self.factory.state_false
-        return Four(self.factory, _same(state), mortal=False)
+        return Four(self.factory, same(state), mortal=False)
 
     def no(self, arg: Four) -> Four:
         """Not born where its operand is not."""
@@ -327,7 +271,7 @@ class Reader(Reading[Four]):
         if low > 0 or right.mortal:
             value = self._or_lost(value, left, right, low, high)
         if not right.mortal:
-            return Four(factory, _same(value), mortal=False)
+            return Four(factory, same(value), mortal=False)
         if right.fades and low == 0:
             # In an outage before the first sample it may be born, or not.
             unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])
@@ -371,12 +315,12 @@ class Reader(Reading[Four]):
         factory = self.factory
         value = factory.previous(arg.read(FALSE))
         if not arg.mortal:
-            return Four(factory, _same(value), mortal=False)
+            return Four(factory, same(value), mortal=False)
         return self._besides(value, factory.previous(arg.unborn))
 
     def _before(self, arg: Four) -> Four:
         """What it was at the position before: false if not born, as what lies before the trace."""
-        return Four(self.factory, _same(self.previous(arg).read(FALSE)), mortal=False)
+        return Four(self.factory, same(self.previous(arg).read(FALSE)), mortal=False)
 
     def _held(self, arg: Four, interval: Interval | None) -> Four:
         """As long as it must have held, it must have been born."""
@@ -386,7 +330,7 @@ class Reader(Reading[Four]):
         missing = self._historically(arg.missing, interval)
         if not arg.mortal:
             lost = factory.state_all([missing, factory.negation(missing)])
-            return Four(factory, _same(factory.state_any([value, lost])), mortal=False)
+            return Four(factory, same(factory.state_any([value, lost])), mortal=False)
 
         def read(unborn: int) -> State:
             if unborn == TRUE:

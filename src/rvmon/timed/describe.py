@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from fractions import Fraction
 from typing import Any
 
 from rvmon.timed.model.expressions import Variable
+from rvmon.timed.model.fractions import number_of
 from rvmon.timed.model.network import Network, Query, Simulation
 from rvmon.timed.observation.observe import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
@@ -44,7 +46,13 @@ def change_text(network: Network, before: Position, after: Position) -> str:
 
 def value_text(variable: Variable, value: int) -> str:
     """A value as the model's text would have it."""
-    return ("false", "true")[value] if variable.is_bool else str(value)
+    return json.dumps(_number(variable, value))
+
+
+def _number(variable: Variable, value: int) -> float:
+    if variable.is_real:
+        return number_of(value)
+    return bool(value) if variable.is_bool else value
 
 
 def time_text(network: Network, units: Fraction | int) -> str:
@@ -103,7 +111,7 @@ def position_data(network: Network, position: Position) -> dict[str, Any]:
             for automaton, place in zip(network.automata, position.locations, strict=True)
         },
         "variables": {
-            variable.name: bool(value) if variable.is_bool else value
+            variable.name: _number(variable, value)
             for variable, value in zip(network.variables, position.values, strict=True)
         },
     }

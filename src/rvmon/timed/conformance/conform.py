@@ -28,11 +28,11 @@ from rvmon.timed.model.expressions import (
     UnaryOperation,
 )
 from rvmon.timed.model.guards import together
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.network import Network, check_clocks
 from rvmon.timed.model.operators import LocationKind, UnaryOp
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.space import check_clocks, check_start
+from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget

@@ -13,6 +13,7 @@ from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
 from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
 from rvmon.timed.language.operations import binary, refuse_clocks
+from rvmon.timed.language.reals import as_real, is_real
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.model.expressions import TRUE, Expression
 from rvmon.timed.model.guards import guards_of, refuse_changes, split_guard
@@ -93,7 +94,10 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
                 clock = resolver.clock(target, inner)
                 if clock is None:
                     raise model_error("TA004", "this is no clock", target.span, "declare it")
-                rates.append(Rate(clock, _number(value, inner, resolver)))
+                rate = _number(value, inner, resolver)
+                if is_real(rate, resolver.functions):
+                    rate = as_real(rate, resolver.functions, value.span)
+                rates.append(Rate(clock, rate))
             case _:
                 condition = binary(
                     BinaryOp.AND, condition, _condition(part, inner, resolver), part.span
@@ -202,9 +206,12 @@ def _weight(written: automaton_syntax.EdgeText, scope: Scope, resolver: Resolver
     """The share of the runs that take an edge: written by itself, or among its branches."""
     if written.shares is None:
         return written.weight
-    own, *every = (resolver.constant(w, scope) for w in (written.shares[0], *written.shares[1]))
+    own, *every = (
+        w.value if isinstance(w, syntax.Decimal) else resolver.constant(w, scope)
+        for w in (written.shares[0], *written.shares[1])
+    )
     if min(every) < 0 or max(every) == 0:
-        fix = "weights are whole numbers, one of them above 0"
+        fix = "weights are numbers, one of them above 0"
         raise model_error("TA017", "the branches of this edge have no share", written.span, fix)
     return own / sum(every)
 

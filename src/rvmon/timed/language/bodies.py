@@ -15,6 +15,7 @@ from rvmon.timed.language.layout import (
     refuse_double,
     values_of,
 )
+from rvmon.timed.language.reals import bound, fitted
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import element_of, is_alike, is_whole, leaves, value_of
 from rvmon.timed.model.expressions import (
@@ -91,7 +92,7 @@ def _update(
         return []
     clock = resolver.clock(written.target, scope)
     if clock is not None:
-        value = number(written.value, scope, resolver)
+        value = bound(number(written.value, scope, resolver), resolver.functions)
         if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return [Reset(clock, value, written.span)]
@@ -113,6 +114,7 @@ def _set(target: Symbol, value: Expression, span: Span, resolver: Resolver) -> S
     match target:
         case PlacedSymbol(BaseType.INT, slot) if target.is_single:
             variable = resolver.functions.variable(slot)
+            value = fitted(value, variable.is_real, resolver.functions, span)
             return Assignment(replace(slot, span=span), value, variable)
         case _:
             fix = "only variables and clocks can be set"
@@ -167,7 +169,9 @@ class Bodies:
             case syntax.ReturnText(value, span) if value is not None:
                 if self.text.type is None:
                     raise model_error("TA004", f"`{self.text.name}` returns no value", span)
-                return [Return(number(value, scope, resolver))], False
+                real = self.text.type.base is BaseType.DOUBLE
+                result = fitted(number(value, scope, resolver), real, resolver.functions, span)
+                return [Return(result)], False
             case syntax.ReturnText():
                 return [Return(Constant(0))], False
             case _:

@@ -261,7 +261,7 @@ def _initial(
     parts = parts_of_initial(written, extents, kind)
     if parts is None:
         assert not isinstance(written, syntax.Values), "it would have parts"
-        value = resolver.constant(written, scope)
+        value = resolver.constant(written, scope, real=kind.base is BaseType.DOUBLE)
         check_range(value, kind, written.span)
         return value
     return tuple(_initial(*part, scope, resolver) for part in parts)

@@ -14,11 +14,12 @@ from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.diagonals import Diagonals
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
-from rvmon.timed.language.layout import refuse_double
+from rvmon.timed.language.layout import INT32, refuse_double
 from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
-from rvmon.timed.language.resolve import INT32, Resolver
+from rvmon.timed.language.reals import as_real, is_real
+from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.model.expressions import FALSE, TRUE, Expression
 from rvmon.timed.model.guards import is_discrete, is_plain, refuse_changes
 from rvmon.timed.model.network import (
@@ -118,6 +119,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         names,
         _priorities(parts, ranks),
         has_split_edges=bool(diagonals.places) or parts.are_split,
+        fraction=resolver.fraction,
     )
 
 
@@ -217,7 +219,7 @@ def _queries(
     resolver, top = Resolver(names.functions, names.automata, diagonals=diagonals), names.top
     queries, ids = [], Scope()
     for query in written:
-        own = Findings()
+        own, resolver.fraction = Findings(), None
         with own.collect() if lenient else findings.collect():
             if query.id:
                 refuse_double(query.id, query.span, ids)
@@ -276,9 +278,20 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> Quer
             if not is_plain(condition):
                 fix = "write a condition on the state: sup{p}: e"
                 raise model_error("TA020", "a condition on runs", written.span, fix)
-            return Extremes(ends, condition, tuple(_term(term, resolver, top) for term in terms))
+            asked = Extremes(ends, condition, tuple(_term(term, resolver, top) for term in terms))
+            _refuse_fraction(resolver)
+            return asked
         case _:
-            return _decided(written, resolver, top)
+            decided = _decided(written, resolver, top)
+            _refuse_fraction(resolver)
+            return decided
+
+
+def _refuse_fraction(resolver: Resolver) -> None:
+    if resolver.fraction is not None:
+        fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
+        message = "a number with a fraction: what is proved has integers only"
+        raise model_error("TA016", message, resolver.fraction, fix)
 
 
 def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
@@ -286,7 +299,8 @@ def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expre
     if not is_discrete(number):
         fix = "use locations and variables only"
         raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
-    return number
+    real = is_real(number, resolver.functions)
+    return as_real(number, resolver.functions, written.span) if real else number
 
 
 def _term(written: syntax.Expression, resolver: Resolver, top: Scope) -> Term:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 
+from rvmon.diagnostics import Span
+from rvmon.timed.model.rules import model_error
+
 Reason = tuple[str, str]
 """What is not supported, and what to do instead."""
 
@@ -27,15 +30,10 @@ _DYNAMIC: Reason = (
     "templates that are started by runs are not supported",
     "declare all instances in the system line",
 )
-_FRACTIONS: Reason = (
-    "numbers are whole: floating point is not supported",
-    "choose a finer unit of time",
-)
 _TEXTS: Reason = ("texts are not supported", "use numbers")
 
 _DECLARING: dict[str, Reason] = {
     "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
-    "double": _FRACTIONS,
     "string": _TEXTS,
     "import": _OUTSIDE,
     "dynamic": _DYNAMIC,
@@ -56,25 +54,27 @@ _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
     **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
 }
-_REAL = (
-    "abs fabs fmod sqrt pow exp log ln floor ceil round sin cos tan random random_normal fint "
-    "hypot isnan"
-)
-REAL_FUNCTIONS = frozenset(_REAL.split())
-"""Of UPPAAL, over numbers with a fraction."""
+_CALLS = "abs random random_normal random_poisson isnan exp2 log2 cbrt asin acos atan atan2"
+"""Functions of UPPAAL, over numbers with a fraction."""
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _OLD_CONSTANT = re.compile(r"\bconst\s+(\w+)\s+(-?\d+)$")
-_FRACTION = re.compile(r"\d*\.\d")
 
 
 def type_reason(name: str) -> Reason | None:
     """Why there is no type of a name, if it is one of UPPAAL's.
 
-    >>> type_reason("double")[1]
-    'choose a finer unit of time'
+    >>> type_reason("string")[1]
+    'use numbers'
     """
     return _DECLARING.get(name)
+
+
+def refuse_foreign(name: str, span: Span) -> None:
+    """Refuse a call of a function of UPPAAL's that is not here."""
+    if name in _CALLS.split():
+        fix = "write it as a function of what there is"
+        raise model_error("TA016", f"`{name}` is not supported", span, fix)
 
 
 def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
@@ -93,8 +93,6 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
             return table[word]
     if old := _OLD_CONSTANT.search(clause):
         return "a constant without a type", f"write const int {old[1]} = {old[2]}"
-    if _FRACTION.match(text, start):
-        return _FRACTIONS
     if found in ("=", ":=") and rule in ("updates", "declarations"):
         return "an assignment is no value", "write one assignment after the other"
     return None

@@ -18,6 +18,7 @@ from rvmon.timed.language.layout import (
     refuse_double,
     variable_of,
 )
+from rvmon.timed.language.reals import fitted
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import leaves, value_of
 from rvmon.timed.model.expressions import (
@@ -108,15 +109,17 @@ class Functions:
             kind, extents = _type_of(parameter, symbol.scope, resolver)
             if _is_bound(parameter, kind, extents):
                 thing = resolver.symbol(argument, scope)
-                _check_fit(thing, kind, extents, parameter, argument.span)
+                _check_fit(thing, kind, extents, parameter, argument.span, self)
                 bound.append(_with_slots(thing, lambda slot: _without_choice(slot, chosen)))
                 continue
             bound.append(None)
             if not (extents or kind.fields):
-                values.append(number(argument, scope, resolver))
+                value = number(argument, scope, resolver)
+                real = kind.base is BaseType.DOUBLE
+                values.append(fitted(value, real, resolver.functions, argument.span))
                 continue
             thing = resolver.symbol(argument, scope)
-            _check_fit(thing, kind, extents, parameter, argument.span)
+            _check_fit(thing, kind, extents, parameter, argument.span, self)
             values += [value_of(leaf, argument.span) for leaf in leaves(thing)]
         key = (id(text), id(symbol.scope), *bound)
         function = self.made.get(key)
@@ -149,11 +152,25 @@ def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents)
 
 
 def _check_fit(
-    thing: Symbol, kind: ResolvedType, extents: Extents, parameter: syntax.Parameter, span: Span
+    thing: Symbol,
+    kind: ResolvedType,
+    extents: Extents,
+    parameter: syntax.Parameter,
+    span: Span,
+    calls: Functions,
 ) -> None:
     single = leaves(thing)
     own = single[0].kind if isinstance(single[0], PlacedSymbol) else BaseType.INT
-    if own is not kind.placed_as or len(single) != count_of(kind, extents):
+    is_real = (
+        isinstance(single[0], PlacedSymbol)
+        and own is BaseType.INT
+        and calls.variable(single[0].slot).is_real
+    )
+    if (
+        own is not kind.placed_as
+        or len(single) != count_of(kind, extents)
+        or (not kind.fields and is_real != (kind.base is BaseType.DOUBLE))
+    ):
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", span, fix)
 
@@ -210,7 +227,7 @@ def _make(
         inner.symbols[parameter.name] = symbol
         parameters += [leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
     result = _NOTHING if text.type is None else resolver.type(text.type, scope)
-    if result.extents or result.base not in (BaseType.INT, BaseType.BOOL):
+    if result.extents or result.base not in (BaseType.INT, BaseType.BOOL, BaseType.DOUBLE):
         fix = "let it set a parameter that is passed by reference"
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)

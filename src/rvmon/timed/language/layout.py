@@ -25,6 +25,12 @@ from rvmon.timed.model.scope import (
 MAX_VALUES = 10_000
 """The most values that a quantifier, a `select`, a parameter or an array may range over."""
 
+INT16 = (-32768, 32767)
+"""UPPAAL's `int` without a range."""
+
+INT32 = (-(1 << 31), (1 << 31) - 1)
+"""What a constant without a range may be."""
+
 Extents = tuple[range, ...]
 """The indices of each dimension of an array, the outermost first."""
 
@@ -68,8 +74,9 @@ def _laid_out(
     """As `laid_out`; the names lack what the last dimensions, `unnamed`, add to them."""
     names = [name + suffix for name in names for suffix in _suffixes(unnamed)]
     if kind.base is not BaseType.RECORD:
-        if kind.const and value is not None:
-            return ConstantSymbol(value, extents)
+        real = kind.base is BaseType.DOUBLE
+        if kind.const and value is not None and not (real and extents):
+            return ConstantSymbol(value, extents, real)
         return placer.place(kind, extents, names, value)
     fields = []
     for place, (field, written) in enumerate(kind.fields):
@@ -100,7 +107,8 @@ def _suffixes(extents: Extents) -> list[str]:
 
 def variable_of(kind: ResolvedType, name: str, initial: int) -> Variable:
     """A variable of a type."""
-    return Variable(name, kind.low, kind.high, initial, kind.base is BaseType.BOOL)
+    is_bool, is_real = kind.base is BaseType.BOOL, kind.base is BaseType.DOUBLE
+    return Variable(name, kind.low, kind.high, initial, is_bool, is_real)
 
 
 def default_of(kind: ResolvedType) -> int:

@@ -9,10 +9,10 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.texts import did_you_mean
-from rvmon.timed.language import syntax
+from rvmon.timed.language import reals, syntax
 from rvmon.timed.language.diagonals import Diagonals, difference, terms_of
-from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
-from rvmon.timed.language.layout import MAX_VALUES, Calls, values_of
+from rvmon.timed.language.foreign import refuse_foreign, type_reason
+from rvmon.timed.language.layout import INT16, INT32, MAX_VALUES, Calls, values_of
 from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
 from rvmon.timed.language.operations import (
     COMPARISONS,
@@ -25,7 +25,7 @@ from rvmon.timed.language.operations import (
     unary,
     whole_compare,
 )
-from rvmon.timed.language.symbols import clock_of, element_of, is_whole, value_of
+from rvmon.timed.language.symbols import automaton_at, clock_of, element_of, is_whole, value_of
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
     MAX_TIME,
@@ -37,6 +37,7 @@ from rvmon.timed.model.expressions import (
     InLocation,
     PathFormula,
 )
+from rvmon.timed.model.fractions import FUNCTIONS, literal
 from rvmon.timed.model.guards import is_fixed
 from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
@@ -56,12 +57,6 @@ from rvmon.timed.model.scope import (
 MAX_UNROLLED = 100_000
 """The most conditions that the quantifiers of a model may stand for together."""
 
-INT16 = (-32768, 32767)
-"""UPPAAL's `int` without a range."""
-
-INT32 = (-(1 << 31), (1 << 31) - 1)
-"""What a constant without a range may be."""
-
 
 @dataclass(slots=True)
 class Resolver:
@@ -73,6 +68,7 @@ class Resolver:
         open_ints: whether `int` without a range is allowed.
         diagonals: what differences of clocks become; `None` where they may not be compared.
         unrolled: conditions that quantifiers stood for so far.
+        fraction: where a number with a fraction stands, if one was met.
     """
 
     functions: Calls
@@ -80,6 +76,7 @@ class Resolver:
     open_ints: bool = False
     diagonals: Diagonals | None = None
     unrolled: int = 0
+    fraction: Span | None = None
 
     def expression(self, written: syntax.Expression, scope: Scope) -> Expression:
         """The expression over the network.
@@ -90,10 +87,17 @@ class Resolver:
         match written:
             case syntax.Number(value):
                 return Constant(value)
+            case syntax.Decimal(value, span):
+                self.fraction = self.fraction or span
+                return literal(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
                 return Deadlock()
             case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
                 return self.functions.call(function, written, scope, self)
+            case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
+                self.fraction = self.fraction or span
+                numbers = [self.expression(one, scope) for one in given]
+                return reals.call(name, numbers, span, self.functions)
             case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
                 return linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
@@ -104,7 +108,8 @@ class Resolver:
                 fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
                 raise model_error("TA009", "the rate of a clock stands here", span, fix)
             case syntax.Unary(op, operand, span):
-                return unary(op, self.expression(operand, scope), span)
+                inner = self.expression(operand, scope)
+                return reals.unary(op, inner, span, self.functions) or unary(op, inner, span)
             case syntax.Binary(op, left, right, span):
                 if op in COMPARISONS and (clocks := self._clock_compare(written, scope)):
                     return clocks
@@ -113,7 +118,9 @@ class Resolver:
                 first = self.expression(left, scope)
                 if first == Constant(0) and op is BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
-                return binary(op, first, self.expression(right, scope), span)
+                second = self.expression(right, scope)
+                joint = reals.binary(op, first, second, span, self.functions)
+                return joint or binary(op, first, second, span)
             case syntax.Conditional(condition, then, otherwise, _):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
@@ -155,13 +162,14 @@ class Resolver:
             message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
             raise model_error("TA019", message, span, "let them range over smaller types")
 
-    def constant(self, written: syntax.Expression, scope: Scope) -> int:
-        """The value of an expression that must not depend on the state.
+    def constant(self, written: syntax.Expression, scope: Scope, *, real: bool = False) -> int:
+        """The value of an expression that must not depend on the state; `real`: its bits.
 
         Raises:
             ModelError: it does, or it has none.
         """
         value = self.expression(written, scope)
+        value = reals.fitted(value, real, self.functions, written.span)
         if not is_fixed(value):
             fix = "use numbers, `const` names, parameters, and functions of them only"
             raise model_error("TA006", "this is not constant", written.span, fix)
@@ -222,7 +230,7 @@ class Resolver:
         if written.base is BaseType.NAMED:
             symbol = scope.find(written.name)
             if not isinstance(symbol, TypeSymbol):
-                if (reason := type_reason(written.name)) is not None:
+                if reason := type_reason(written.name):
                     raise model_error("TA016", reason[0], written.span, reason[1])
                 types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
                 fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
@@ -237,6 +245,8 @@ class Resolver:
                 sizes = self.extents(part.sizes, scope)
                 fields[part.name] = replace(kind, extents=(*sizes, *kind.extents))
             return ResolvedType(BaseType.RECORD, fields=tuple(fields.items()))
+        if written.base is BaseType.DOUBLE:
+            self.fraction = self.fraction or written.span
         if written.base is not BaseType.INT:
             return ResolvedType(written.base, 0, 1)
         if written.low is None or written.high is None:
@@ -263,10 +273,8 @@ class Resolver:
                 if symbol is None and scope.declares(name):
                     raise refusal()  # why its declaration has no meaning is reported there
                 if symbol is None:
-                    candidates = [*scope.names(), *(n for n, _ in self.automata)]
-                    raise model_error(
-                        "TA002", f"no name `{name}`", span, did_you_mean(name, candidates)
-                    )
+                    fix = did_you_mean(name, [*scope.names(), *(n for n, _ in self.automata)])
+                    raise model_error("TA002", f"no name `{name}`", span, fix)
                 return symbol
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
@@ -287,9 +295,7 @@ class Resolver:
             case syntax.Call(name, _, span):
                 if any(name == known for known, _ in self.automata):
                     raise _no_value(span)
-                if name in REAL_FUNCTIONS:
-                    fix = "numbers are whole here: write it as a function over integers"
-                    raise model_error("TA016", f"`{name}` is not supported", span, fix)
+                refuse_foreign(name, span)
                 names = [n for n in scope.names() if isinstance(scope.find(n), FunctionSymbol)]
                 raise model_error("TA002", f"no function `{name}`", span, did_you_mean(name, names))
             case _:
@@ -321,6 +327,7 @@ class Resolver:
                 part in (written.left, written.right) for _, part, its in named if its is not None
             ):
                 bound = self.expression(written.right if sign > 0 else written.left, scope)
+                bound = reals.bound(bound, self.functions)
                 return compare_clock(clock, op if sign > 0 else MIRRORED[op], bound, span)
         number = -sum(
             sign * self.constant(part, scope) for sign, part, clock in named if clock is None
@@ -384,14 +391,7 @@ class Resolver:
             case _:
                 span = written.span
                 key = ("", ())
-        if key not in self.automata:
-            if not self.automata:
-                message = f"edges and invariants do not see the locations of `{span.text}`"
-                fix = "only queries do: set a variable where it is entered and left, and read that"
-                raise model_error("TA002", message, span, fix)
-            fix = did_you_mean(key[0], sorted({name for name, _ in self.automata}))
-            raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
-        return self.automata[key]
+        return automaton_at(self.automata, key, span)
 
 
 def _no_value(span: Span) -> ModelError:

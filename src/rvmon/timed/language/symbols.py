@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.texts import did_you_mean
 from rvmon.timed.model.arithmetic import check_index
-from rvmon.timed.model.expressions import Constant, Expression, Lookup, Slot, VariableValue
+from rvmon.timed.model.expressions import (
+    Constant,
+    Expression,
+    Fractional,
+    Lookup,
+    Slot,
+    VariableValue,
+)
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
+    AutomatonKey,
+    AutomatonSymbol,
     ChosenSymbol,
     ConstantSymbol,
     ConstantValue,
@@ -29,8 +40,8 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
         ModelError: it has none: a clock, an array, a channel or a type.
     """
     match symbol:
-        case ConstantSymbol(int(value), _):
-            return Constant(value)
+        case ConstantSymbol(int(value), _, is_real):
+            return Fractional("=", (Constant(value),)) if is_real else Constant(value)
         case PlacedSymbol(BaseType.INT, slot) if symbol.is_single:
             return VariableValue(replace(slot, span=span))
         case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
@@ -151,3 +162,21 @@ def clock_of(slot: Slot, span: Span) -> int:
         message = "an array of clocks" if missing else "the index of a clock is not constant"
         raise model_error("TA006", message, span, "use a number or a parameter as index")
     return slot.first
+
+
+def automaton_at(
+    automata: Mapping[AutomatonKey, AutomatonSymbol], key: AutomatonKey, span: Span
+) -> AutomatonSymbol:
+    """The automaton of a name and arguments.
+
+    Raises:
+        ModelError: there is none, or none can be seen from where it is named.
+    """
+    if not automata:
+        message = f"edges and invariants do not see the locations of `{span.text}`"
+        fix = "only queries do: set a variable where it is entered and left, and read that"
+        raise model_error("TA002", message, span, fix)
+    if key not in automata:
+        fix = did_you_mean(key[0], sorted({name for name, _ in automata}))
+        raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
+    return automata[key]

@@ -22,6 +22,14 @@ class Number:
 
 
 @dataclass(frozen=True, slots=True)
+class Decimal:
+    """A number with a fraction."""
+
+    value: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Name:
     """Anything that has a name."""
 
@@ -180,6 +188,7 @@ class Extremes:
 
 Expression = (
     Number
+    | Decimal
     | Name
     | Index
     | Member

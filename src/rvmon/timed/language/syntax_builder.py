@@ -281,6 +281,9 @@ class SyntaxBuilder(QueryBuilder):
     def number(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
         return syntax.Number(self._whole(items[0]), self._span(meta))
 
+    def decimal(self, meta: Meta, items: Sequence[Token]) -> syntax.Decimal:
+        return syntax.Decimal(float(items[0]), self._span(meta))
+
     def _whole(self, token: Token) -> int:
         # Python itself refuses to read a few thousand digits.
         if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
@@ -305,15 +308,13 @@ class SyntaxBuilder(QueryBuilder):
 
     def leaving(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
         shares = [*items, syntax.Number(1, self._span(meta))][:2]
-        if not any(isinstance(share, str) for share in shares):
+        if not any(isinstance(share, syntax.Decimal) for share in shares):
             return shares[0], shares[1]
         span = self._span(meta)
-        if not all(isinstance(share, str | syntax.Number) for share in shares):
+        if not all(isinstance(share, syntax.Decimal | syntax.Number) for share in shares):
             fix = "write whole numbers as a share, such as 1:20"
             raise model_error("TA017", "this is no rate", span, fix)
-        one, other = (
-            Fraction(share if isinstance(share, str) else share.value) for share in shares
-        )
+        one, other = (Fraction(str(share.value)) for share in shares)
         rate = one / other if other else Fraction(0)
         return syntax.Number(rate.numerator, span), syntax.Number(rate.denominator, span)
 

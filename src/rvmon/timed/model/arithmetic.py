@@ -88,6 +88,8 @@ def fitting(number: int, variable: Variable, span: Span | None) -> int:
     """
     if variable.is_bool:
         return int(bool(number))
+    if variable.is_real:
+        return number
     if not variable.low <= number <= variable.high:
         limits = f"[{variable.low}, {variable.high}]"
         message = f"`{variable.name}` is set to {number}, outside {limits}"

@@ -23,6 +23,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Fractional,
     If,
     InLocation,
     Invoke,
@@ -38,6 +39,7 @@ from rvmon.timed.model.expressions import (
     VariableValue,
     While,
 )
+from rvmon.timed.model.fractions import GRID, operation
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 
@@ -69,6 +71,9 @@ def evaluator(expression: Expression) -> Evaluator:
             return lambda locations, values: table[place(locations, values)]
         case Invoke():
             return caller(expression)
+        case Fractional(name, operands, span):
+            compute, parts = operation(name, span), [evaluator(part) for part in operands]
+            return lambda locations, values: compute(*(part(locations, values) for part in parts))
         case InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
         case UnaryOperation(unary, operand):
@@ -154,7 +159,7 @@ class Frame(list[int]):
 
     def __init__(self, values: Values, room: int) -> None:
         super().__init__([*values, *[0] * room])
-        self.clocks: dict[int, int] = {}
+        self.clocks: dict[int, float] = {}
         self.rounds = 0
         self._variables = len(values)
 
@@ -206,10 +211,10 @@ def _step(statement: Statement) -> Runner:
         case Assignment():
             return _assigner(statement)
         case Reset(clock, written, span):
-            value = evaluator(written)
+            value, steps = evaluator(written), GRID if isinstance(written, Fractional) else 1
 
             def set_clock(locations: Locations, frame: Frame) -> None:
-                frame.clocks[clock] = check_time(value(locations, frame), span)
+                frame.clocks[clock] = check_time(value(locations, frame), span) / steps
 
             return set_clock
         case Perform(call):

@@ -149,8 +149,22 @@ class PathFormula:
     left: Expression = TRUE
 
 
+@dataclass(frozen=True, slots=True)
+class Fractional:
+    """An operation on numbers with a fraction, which are carried as bits (`fractions`).
+
+    Attributes:
+        name: which one.
+    """
+
+    name: str
+    operands: tuple[Expression, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Expression = (
     Constant
+    | Fractional
     | VariableValue
     | Lookup
     | Invoke
@@ -166,13 +180,14 @@ Expression = (
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An integer in `[low, high]`; a bool is one in `[0, 1]`."""
+    """An integer in `[low, high]`; a bool is one in `[0, 1]`, a real is the bits of a double."""
 
     name: str
     low: int
     high: int
     initial: int
     is_bool: bool = False
+    is_real: bool = False
 
 
 @dataclass(frozen=True, slots=True)

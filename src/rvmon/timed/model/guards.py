@@ -16,6 +16,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Fractional,
     InLocation,
     Invoke,
     Lookup,
@@ -85,7 +86,7 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (body, left)
             case VariableValue(slot) | Lookup(_, slot):
                 waiting += slot.indices
-            case Invoke(_, arguments):
+            case Invoke(_, arguments) | Fractional(_, arguments):
                 waiting += arguments
             case _:
                 pass

@@ -20,6 +20,7 @@ from rvmon.timed.model.expressions import (
     Variable,
 )
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
+from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import Names
 
 
@@ -252,6 +253,7 @@ class Network:
         priorities: of steps; `None` if all are equal.
         has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
             under `or`.
+        fraction: where it has a number with a fraction, of which nothing is proved, if it has one.
         original: the network of which this one says more: its runs are shown without the automata,
             clocks and variables that stand behind those of that; `None`: it is none such.
         is_watched: whether the last automaton watches the others: it takes part in each of their
@@ -271,6 +273,7 @@ class Network:
     names: Names = field(compare=False, repr=False)
     priorities: Priorities | None = None
     has_split_edges: bool = field(default=False, compare=False)
+    fraction: Span | None = field(default=None, compare=False)
     original: Network | None = None
     is_watched: bool = False
 
@@ -289,3 +292,36 @@ class Network:
     def locals(self) -> tuple[Variable, ...]:
         """Parameters and local variables of functions; the last stands in slot −1."""
         return tuple(reversed(self.names.functions.locals))
+
+
+def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
+    """Refuse to decide what depends on fractions, or on clocks that stop or run at other rates.
+
+    Args:
+        network: of the clocks.
+        asked: those that a query speaks of.
+
+    Raises:
+        ModelError: there are numbers with a fraction, or such a clock is compared. Source:
+            Henzinger, Kopke, Puri, Varaiya, What's Decidable about Hybrid Automata, 1998 (one
+            stop-watch makes reaching undecidable).
+    """
+    fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
+    if network.fraction is not None:
+        message = "a number with a fraction: what is proved has integers only"
+        raise model_error("TA016", message, network.fraction, fix)
+    if next(network.rates, None) is None:
+        return
+    guards = [
+        *(place.invariant for a in network.automata for place in a.locations),
+        *(edge.guard for a in network.automata for edge in a.edges),
+    ]
+    compared = {one.clock for guard in guards for one in guard.clocks} | set(asked)
+    found = [(p, r) for p, r in network.rates if r.clock in compared or network.has_split_edges]
+    if found:
+        place, rate = found[0]
+        message = (
+            f"`{network.clocks[rate.clock].name}` stops or changes its rate and is compared "
+            f"({len(found)} places): what such clocks can reach is not decidable"
+        )
+        raise model_error("TA016", message, place.span, fix)

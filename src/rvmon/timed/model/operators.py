@@ -61,6 +61,7 @@ class BaseType(StrEnum):
 
     INT = "int"
     BOOL = "bool"
+    DOUBLE = "double"
     CLOCK = "clock"
     CHANNEL = "chan"
     RECORD = "struct"

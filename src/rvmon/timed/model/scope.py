@@ -44,10 +44,12 @@ class ConstantSymbol:
 
     Attributes:
         extents: the indices of each dimension, if it is an array.
+        is_real: whether the value is the bits of a number with a fraction.
     """
 
     value: ConstantValue
     extents: tuple[range, ...] = ()
+    is_real: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator
 from rvmon.timed.model.expressions import Expression, InLocation, VariableValue
 from rvmon.timed.model.guards import either, together
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.network import Network, check_clocks
 from rvmon.timed.model.operators import BaseType, LocationKind
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
@@ -33,7 +33,7 @@ from rvmon.timed.model.scope import PlacedSymbol
 from rvmon.timed.observation.observer import Observed
 from rvmon.timed.observation.propositions import NotExpressibleError
 from rvmon.timed.runs.run import Run
-from rvmon.timed.runs.space import check_clocks, check_start
+from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch

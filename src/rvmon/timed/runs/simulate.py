@@ -4,7 +4,8 @@ How chance decides: each automaton draws one of the moves that it begins and tha
 or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
 which it is possible, or, if that has no end, from an exponential distribution behind its beginning,
 at the rate of the location that it leaves (`rate`, UPPAAL's exponential rates) if it has one. A
-clock runs at the rate that an invariant gives it: times stay whole grid steps, so that is exact.
+clock runs at the rate that an invariant gives it: times stay whole grid steps, so that whole rates
+are exact; at others a clock comes to a bound with the step that takes it there or beyond.
 Weights that add up to less than 1 leave the rest to doing nothing this time. The automaton with the
 shortest delay moves, and all draw anew. A move that several windows make possible, as where one of
 higher priority comes between, is drawn from all of them.
@@ -22,16 +23,17 @@ from random import Random
 
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import Expression
+from rvmon.timed.model.fractions import GRID, number_in
 from rvmon.timed.model.network import Location, Network
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.constraints import Atom
 from rvmon.timed.runs.space import Move, Space, State, pieces_of
 
-GRID = 1_000
-"""Steps of simulated time in one unit: all times are whole numbers of them."""
-
 CHECK_EVERY = 256
 """Moves between two looks at the clock."""
+
+SLACK = 1e-6
+"""Steps by which a clock may miss a bound, where rates with a fraction are rounded."""
 
 MOST_MOVES = 100_000
 """A run with more moves before its end is taken for a Zeno loop."""
@@ -50,8 +52,8 @@ def trial_of(
     goes_on: Callable[[], bool],
 ) -> Callable[[], bool]:
     """What simulates one run and says whether it meets a normalised formula within a horizon."""
-    space = Space(network)
-    pieces = pieces_of(sought)
+    space = Space(network, GRID)
+    pieces = pieces_of(sought, GRID)
 
     def meets() -> bool:
         run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
@@ -66,7 +68,7 @@ def trial_of(
 
 def stretches(
     space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
-) -> Iterator[tuple[State, list[int], Sequence[int], int]]:
+) -> Iterator[tuple[State, list[float], Sequence[float], int]]:
     """One random run: each state, the clocks as it begins, their rates and how long it lasts.
 
     Clocks and times are in grid steps.
@@ -76,7 +78,8 @@ def stretches(
     """
     state, paces = space.initial(), _Paces(space.network)
     assert state is not None, "the network can start"
-    clocks, now = [0] * (1 + len(space.network.clocks)), 0
+    clocks: list[float] = [0] * (1 + len(space.network.clocks))
+    now = 0
     for number in range(1, MOST_MOVES + 1):
         if number % CHECK_EVERY == 0 and not goes_on():
             raise CutShortError
@@ -91,8 +94,10 @@ def stretches(
         now += stay
         move = drawn[0]
         clocks = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
+        for clock, bound in state.invariant:
+            clocks[clock] = min(clocks[clock], _limit(bound))
         for clock, value in move.resets:
-            clocks[clock] = int(value) * GRID
+            clocks[clock] = round(value)
         state = move.target
     fix = "look for a loop in which no time passes: A<> of its end finds one"
     message = f"a simulated run made {MOST_MOVES:,} moves in {now / GRID:g} units of time"
@@ -102,8 +107,8 @@ def stretches(
 def _draw(
     space: Space,
     state: State,
-    clocks: list[int],
-    rates: Sequence[int],
+    clocks: list[float],
+    rates: Sequence[float],
     random: Random,
     mean_waits: Sequence[float],
 ) -> tuple[Move, int] | None:
@@ -134,13 +139,13 @@ class _Paces:
         self._network = network
         self._ones = (1,) * (1 + len(network.clocks))
         self._are_changed = next(network.rates, None) is not None
-        self._known: dict[int, tuple[State, tuple[int, ...]]] = {}
+        self._known: dict[int, tuple[State, tuple[float, ...]]] = {}
 
     def _places(self, state: State) -> Iterator[Location]:
         for automaton, place in zip(self._network.automata, state.locations, strict=True):
             yield automaton.locations[place]
 
-    def rates(self, state: State) -> tuple[int, ...]:
+    def rates(self, state: State) -> tuple[float, ...]:
         """Of each clock, counted from 1.
 
         Raises:
@@ -152,16 +157,16 @@ class _Paces:
             self._known[id(state)] = (state, self._found(state))
         return self._known[id(state)][1]
 
-    def _found(self, state: State) -> tuple[int, ...]:
-        found: dict[int, int] = {}
+    def _found(self, state: State) -> tuple[float, ...]:
+        found: dict[int, float] = {}
         for place in self._places(state):
             for rate in place.rates:
-                value = evaluator(rate.value)(state.locations, state.values)
+                bits = evaluator(rate.value)(state.locations, state.values)
+                value = number_in(rate.value, bits)
                 name = self._network.clocks[rate.clock].name
-                if value < 0 or found.setdefault(rate.clock + 1, value) != value:
-                    problem = "below 0" if value < 0 else "set by two automata at once"
-                    message = f"the rate of `{name}` is {problem}"
-                    raise model_error("TA007", message, place.span, "give it one, from 0 up")
+                if found.setdefault(rate.clock + 1, value) != value:
+                    message = f"the rate of `{name}` is set by two automata at once"
+                    raise model_error("TA007", message, place.span, "give it one")
         return tuple(found.get(clock, 1) for clock in range(len(self._ones)))
 
     def waits(self, state: State, default: float) -> list[float]:
@@ -180,7 +185,7 @@ class _Paces:
 
 
 def _possible(
-    space: Space, state: State, clocks: list[int], rates: Sequence[int], longest: float
+    space: Space, state: State, clocks: list[float], rates: Sequence[float], longest: float
 ) -> list[_Choice]:
     """The moves that are possible now or after a delay, with all such delays."""
     found = []
@@ -233,7 +238,7 @@ class _Choice:
         return self.windows[place][0] + drawn
 
 
-def _longest(state: State, clocks: list[int], rates: Sequence[int]) -> float:
+def _longest(state: State, clocks: list[float], rates: Sequence[float]) -> float:
     """How long time may pass in a state."""
     if not state.delays:
         return 0
@@ -243,7 +248,7 @@ def _longest(state: State, clocks: list[int], rates: Sequence[int]) -> float:
 
 
 def _move_window(
-    move: Move, clocks: list[int], rates: Sequence[int], longest: float
+    move: Move, clocks: list[float], rates: Sequence[float], longest: float
 ) -> tuple[int, float] | None:
     """The delays after which a move is possible."""
     set_now, atoms = dict(move.resets), list(move.guard)
@@ -256,24 +261,27 @@ def _move_window(
 
 
 def _window(
-    atoms: Sequence[Atom], clocks: list[int], rates: Sequence[int], low: int, high: float
+    atoms: Sequence[Atom], clocks: list[float], rates: Sequence[float], low: int, high: float
 ) -> tuple[int, float] | None:
     """The delays in [low, high] after which all bounds hold; `None` if there are none."""
     for x, y, bound in atoms:
-        clock = y if x == 0 else x
-        rate = rates[clock]
-        left = _limit(bound) - clocks[clock] if x == 0 else -_limit(bound) - clocks[clock]
+        sign, clock = (1, y) if x == 0 else (-1, x)
+        # The clock's value times the sign stays at or below a limit.
+        left, rate = _limit(bound) - sign * clocks[clock], sign * rates[clock]
         if rate == 0:
-            if (left < 0) if x == 0 else (left > 0):
+            if left < -SLACK:
                 return None
-        elif x == 0:
-            high = min(high, left // rate)
+        elif isinstance(left, int) and isinstance(rate, int):
+            low, high = (
+                (low, min(high, left // rate)) if rate > 0 else (max(low, -(left // -rate)), high)
+            )
         else:
-            low = max(low, -(-left // rate))
+            step = ceil(left / rate - SLACK)
+            low, high = (low, min(high, step)) if rate > 0 else (max(low, step), high)
     return (low, high) if low <= high else None
 
 
 def _limit(bound: float) -> int:
     """A bound in grid steps; a strict one is one step less."""
     whole = ceil(bound)
-    return whole * GRID - (bound != whole)
+    return whole - (bound != whole)

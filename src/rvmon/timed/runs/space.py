@@ -27,7 +27,14 @@ from rvmon.timed.model.evaluate import (
     runner,
     slot_evaluator,
 )
-from rvmon.timed.model.expressions import TRUE, ClockCompare, ClockOp, Constant, Expression
+from rvmon.timed.model.expressions import (
+    TRUE,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    Fractional,
+)
 from rvmon.timed.model.guards import alternatives_of
 from rvmon.timed.model.network import Edge, Guard, Network
 from rvmon.timed.model.operators import LocationKind
@@ -116,11 +123,12 @@ class Move:
 class Space:
     """All discrete states of a network met so far."""
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, grid: int = 1) -> None:
         self.network = network
+        self._grid = grid
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
         self._edges = [
-            [_ready(network, index, number) for number in range(len(automaton.edges))]
+            [_ready(network, index, number, grid) for number in range(len(automaton.edges))]
             for index, automaton in enumerate(network.automata)
         ]
         self._leaving = [
@@ -128,7 +136,7 @@ class Space:
             for automaton, edges in zip(network.automata, self._edges, strict=True)
         ]
         self._invariants = [
-            [(_data(p.invariant), atoms_of(p.invariant.clocks, p.span)) for p in a.locations]
+            [(_data(p.invariant), atoms_of(p.invariant.clocks, p.span, grid)) for p in a.locations]
             for a in network.automata
         ]
 
@@ -183,7 +191,7 @@ class Space:
         behind = self.state(tuple(changed), frame.variables())
         if behind is None:
             return None
-        resets = tuple((clock + 1, float(value)) for clock, value in frame.clocks.items())
+        resets = tuple((c + 1, value * self._grid) for c, value in frame.clocks.items())
         return Move(edges, guard, left_out, resets, behind, rank)
 
     def _rank(self, state: State, edges: tuple[ReadyEdge, ...]) -> int:
@@ -292,14 +300,14 @@ class _Tried:
         return edge.channel(*self._here)
 
 
-def _ready(network: Network, automaton: int, number: int) -> ReadyEdge:
+def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdge:
     edge = network.automata[automaton].edges[number]
     channel, channels = None, range(0)
     if edge.sync is not None:
         slot = edge.sync.slot
         channel = slot_evaluator(slot)
         channels = range(slot.first, slot.first + slot.size)
-    atoms = atoms_of(edge.guard.clocks, edge.span)
+    atoms = atoms_of(edge.guard.clocks, edge.span, grid)
     updates = runner(edge.updates) if edge.updates else None
     return ReadyEdge(automaton, number, edge, _data(edge.guard), atoms, channel, channels, updates)
 
@@ -309,18 +317,22 @@ def _data(guard: Guard) -> Evaluator | None:
     return None if guard.data == TRUE else evaluator(guard.data)
 
 
-def atoms_of(compares: Sequence[ClockCompare], span: Span | None) -> AtomMaker:
-    """A function that gives the bounds of some comparisons."""
+def atoms_of(compares: Sequence[ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
+    """A function that gives the bounds of some comparisons, in steps of a grid."""
     if all(isinstance(compare.bound, Constant) for compare in compares):
         fixed = tuple(
-            _atom(compare, compare.bound.value)
+            _atom(compare, compare.bound.value * grid)
             for compare in compares
             if isinstance(compare.bound, Constant)
         )
         return lambda _locations, _values: fixed
-    bounds = [(compare, evaluator(compare.bound)) for compare in compares]
+    bounds = [
+        (compare, evaluator(compare.bound), 1 if isinstance(compare.bound, Fractional) else grid)
+        for compare in compares
+    ]
     return lambda locations, values: tuple(
-        _atom(compare, check_time(bound(locations, values), span)) for compare, bound in bounds
+        _atom(compare, check_time(bound(locations, values), span) * steps)
+        for compare, bound, steps in bounds
     )
 
 
@@ -335,9 +347,11 @@ PiecesMaker = Callable[[Locations, Values], list[tuple[Atom, ...]]]
 """The bounds under which a formula holds in a discrete state, in alternatives."""
 
 
-def pieces_of(formula: Expression) -> PiecesMaker:
+def pieces_of(formula: Expression, grid: int = 1) -> PiecesMaker:
     """Make a function that gives the pieces of a normalised formula that is plain."""
-    pieces = [(evaluator(one.data), atoms_of(one.clocks, None)) for one in alternatives_of(formula)]
+    pieces = [
+        (evaluator(one.data), atoms_of(one.clocks, None, grid)) for one in alternatives_of(formula)
+    ]
     return lambda locations, values: [
         atoms(locations, values) for holds, atoms in pieces if holds(locations, values)
     ]
@@ -357,32 +371,3 @@ def check_start(network: Network) -> None:
         message = "an invariant of the initial locations is false at time 0"
         fix = "weaken it, or start elsewhere"
         raise model_error("TA014", message, span, fix, others=others)
-
-
-def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
-    """Refuse to decide what depends on clocks that stop, or run at other rates.
-
-    Args:
-        network: of the clocks.
-        asked: those that a query speaks of.
-
-    Raises:
-        ModelError: such a clock is compared. Source: Henzinger, Kopke, Puri, Varaiya, What's
-            Decidable about Hybrid Automata, 1998 (one stop-watch makes reaching undecidable).
-    """
-    if next(network.rates, None) is None:
-        return
-    guards = [
-        *(place.invariant for a in network.automata for place in a.locations),
-        *(edge.guard for a in network.automata for edge in a.edges),
-    ]
-    compared = {one.clock for guard in guards for one in guard.clocks} | set(asked)
-    found = [(p, r) for p, r in network.rates if r.clock in compared or network.has_split_edges]
-    if found:
-        place, rate = found[0]
-        message = (
-            f"`{network.clocks[rate.clock].name}` stops or changes its rate and is compared "
-            f"({len(found)} places): what such clocks can reach is not decidable"
-        )
-        fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
-        raise model_error("TA016", message, place.span, fix)

@@ -20,11 +20,12 @@ from typing import TypeVar
 
 from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
+from rvmon.timed.model.fractions import GRID, number_in
 from rvmon.timed.model.guards import is_plain, normal_form
 from rvmon.timed.model.network import Chance, Mean, Network, Query, Simulation
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.simulate import GRID, CutShortError, stretches, trial_of
+from rvmon.timed.runs.simulate import CutShortError, stretches, trial_of
 from rvmon.timed.runs.space import Space, State, check_start
 
 RUNS = 1_000
@@ -95,14 +96,14 @@ def trajectories(
     formula = query.formula
     if not isinstance(formula, Simulation):
         raise model_error("TA020", "this asks for no runs", query.span)
-    space = Space(network)
+    space = Space(network, GRID)
     read = [None if term.clock is not None else evaluator(term.value) for term in formula.terms]
 
-    def values(state: State, clocks: Sequence[int]) -> tuple[Fraction, ...]:
+    def values(state: State, clocks: Sequence[float]) -> tuple[Fraction, ...]:
         return tuple(
-            Fraction(clocks[(term.clock or 0) + 1], GRID)
+            Fraction(clocks[(term.clock or 0) + 1]) / GRID
             if value is None
-            else Fraction(value(state.locations, state.values))
+            else Fraction(number_in(term.value, value(state.locations, state.values)))
             for term, value in zip(formula.terms, read, strict=True)
         )
 
@@ -218,12 +219,12 @@ def _tested(query: Query, chance: Chance, trial: Callable[[], bool], runs: _Runs
 
 
 def _mean(network: Network, query: Query, mean: Mean, random: Random, runs: _Runs) -> Sampled:
-    space, value = Space(network), evaluator(mean.value)
-    best: Callable[[list[int]], int] = max if mean.largest else min
+    space, value = Space(network, GRID), evaluator(mean.value)
+    best: Callable[[list[float]], float] = max if mean.largest else min
 
-    def reached() -> int:
+    def reached() -> float:
         run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.goes_on)
-        return best([value(state.locations, state.values) for state, *_ in run])
+        return best([number_in(mean.value, value(s.locations, s.values)) for s, *_ in run])
 
     found = list(runs.drawn(reached, mean.runs or RUNS))
     if len(found) < 2:

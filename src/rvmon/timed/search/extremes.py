@@ -20,12 +20,12 @@ from rvmon.timed.model.expressions import (
     Expression,
 )
 from rvmon.timed.model.guards import compares_of, is_discrete, normal_form
-from rvmon.timed.model.network import Extremes, Network, Query, Term
+from rvmon.timed.model.network import Extremes, Network, Query, Term, check_clocks
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Run
-from rvmon.timed.runs.space import Space, check_clocks, check_start
+from rvmon.timed.runs.space import Space, check_start
 from rvmon.timed.search.clock_bounds import value_range
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek

@@ -25,10 +25,10 @@ from rvmon.timed.model.expressions import (
     Variable,
     VariableValue,
 )
-from rvmon.timed.model.network import Network
+from rvmon.timed.model.network import Network, check_clocks
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.runs.run import Run
-from rvmon.timed.runs.space import check_clocks, check_start
+from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch

@@ -32,11 +32,12 @@ from rvmon.timed.model.network import (
     Query,
     QueryFormula,
     Simulation,
+    check_clocks,
 )
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
-from rvmon.timed.runs.space import check_clocks, check_start
+from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.linear import check_linear, ways_of
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek

@@ -232,7 +232,7 @@ def test_what_stop_watches_reach_is_not_decided():
 
 @pytest.mark.parametrize(
     ("invariant", "message"),
-    [("used' == n - 1", "below 0"), ("cost' == 1 + n", "set by two automata")],
+    [("used' == n - 1", "set by two automata"), ("cost' == 1 + n", "set by two automata")],
 )
 def test_rates_that_have_no_meaning_are_told(invariant, message):
     """A run that gets there says which clock and where."""
