@@ -12,7 +12,14 @@ from rvmon.logic.formula import Core, literals
 from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import State, Unborn, inputs_of, operands
 from rvmon.logic.state_graph import Graph, graph_of
-from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
+from rvmon.spec.checked.formula import (
+    Compare,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    UpdateValue,
+    WindowValue,
+)
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Scalar
 
@@ -242,7 +249,10 @@ def _uses_of(graph: Graph, captured: Iterable[Numeric]) -> dict[str, Uses]:
         name: _uses([graph.nodes[place] for place in places], name)
         for name, places in graph.by_name.items()
     }
-    for expression in captured:
+    amounts = (node.amount for node in graph.nodes)
+    windows = (one.value for one in amounts if isinstance(one, WindowValue))
+    # A window reads its number though what is measured can never be, so that no leaf does.
+    for expression in (*captured, *(value for value in windows if value is not None)):
         for name in inputs_of(expression):
             found.setdefault(name, Uses())
         for part in operands(expression):

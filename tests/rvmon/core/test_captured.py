@@ -164,3 +164,18 @@ def test_a_field_of_another_kind_may_name_an_instance(each, other):
     samples = enumerate([{event: {field: 1}, "q": True}, {}, {named: {its: 1}}])
     case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), None)
     assert disagreements(case, Maker(), online=False) == []
+
+
+def test_a_window_over_what_can_never_be_is_captured_all_the_same():
+    """What it reads has its place in the plan, though no formula is left that reads it."""
+    spec = rvmon.loads("""spec s
+time sampled every 3 ns
+signal p : bool
+signal x : real
+requirement R
+  upon start
+  then immediately 1 <= v
+  let v = 1 + integral(if once[2 ns, 2 ns] p then max(x, x) else 0, 3 ns) / 1 s
+""")
+    [attempt] = spec.evaluate([(0, {"p": True, "x": 3.0})]).attempts
+    assert (attempt.verdict, dict(attempt.captured)) == (rvmon.Verdict.PASS, {"v": 1.0})

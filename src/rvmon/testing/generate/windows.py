@@ -173,8 +173,10 @@ def _window(
     else:
         likely = 90 if mode == "each" else 40
         fields = shape.events and measured.of is not Members.HELD and chance(rng, likely)
-        if settled and measured in (Measured.MEAN, Measured.VARIANCE):
+        if settled and measured is Measured.MEAN:
             fields = True
+        if measured is Measured.VARIANCE and not shape.step:
+            fields = True  # that of what is held moves along a curve: the language refuses it
         number = field_value(rng) if fields else _held(rng, plain)
         if measured is Measured.INTEGRAL and chance(rng, 10):
             number = Literal(1)
