@@ -295,7 +295,7 @@ bool passes_repeats_over(run *r, int32_t index, int64_t t)
         return false;
     }
     until = (r->cut < NEVER) ? t : until;
-    many = (until - t) / period - REPEATS_LEFT;
+    many = (until > t) ? (until - t) / period - REPEATS_LEFT : 0;
     if ((many <= REPEATS_TOLD) || ((t - silent) / period < REPEATS_TOLD)) {
         return false;
     }
