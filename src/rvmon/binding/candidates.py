@@ -116,7 +116,8 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
     around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
     with_names = arrays_with_names(topic)
     # In flight z points down: what is along it is no height, and no climbing.
-    is_down = topic.type.startswith("px4_msgs/") or "ned" in around
+    # Types of MAVLink and of ArduPilot's logs are in capitals.
+    is_down = topic.type.startswith("px4_msgs/") or topic.type.isupper() or "ned" in around
     for leaf, kind in topic.leaves.items():
         meaning = meaning_of(leaf, topic)
         if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:

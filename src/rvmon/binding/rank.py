@@ -53,11 +53,13 @@ class Wanted:
         words: of it.
         type: declared; `None` of an event.
         guess: what a word of it was taken for; empty if all are taken as they are.
+        name: as it is written.
     """
 
     words: tuple[str, ...]
     type: Type | None
     guess: str = ""
+    name: str = ""
 
     @property
     def axis(self) -> str:
@@ -79,7 +81,7 @@ def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
     if type_ is not None and type_.unit and "A" not in type_.unit:
         # The current speed is the speed.
         words = [word for word in words if word != "current" or len(words) == 1]
-    return Wanted(tuple(words), type_, guess)
+    return Wanted(tuple(words), type_, guess, name)
 
 
 def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:
@@ -207,6 +209,7 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
     is_exact = words_of(candidate.value) == [*wanted.words]
     better = (
         0.005 * is_exact
+        - 0.01 * (is_exact and not _is_short_for(candidate.value, wanted.name))
         + 0.05 * (candidate.topic.type == _MOVING)
         + 0.02 * candidate.value.startswith("hypot(")
     )
@@ -216,6 +219,12 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
     if wanted.type is not None and wanted.type.unit and candidate.topic.units:
         worse += 0.2 * (not candidate.dimensions)  # of the others the recording says the unit
     return total / len(asked) + better - worse
+
+
+def _is_short_for(value: str, name: str) -> bool:
+    """Whether a field is called by a name, or shorter: `hdg` is `heading`, `yaw` another word."""
+    letters = iter(name.casefold())
+    return all(letter in letters for letter in value.casefold())
 
 
 def _weight(word: str, candidate: Candidate) -> float:

@@ -68,6 +68,9 @@ _JOINED = {
 }
 """Words that are written as one."""
 
+_OF_PLACES = _set("altitude latitude longitude timestamp x y z")
+"""What `ref_…` is the origin of: of other quantities a reference is what is commanded."""
+
 EMPTY = _set(
     "a actual at base body data has in is it joint measured msg my of on own robot self",
     "sensor signal the value vehicle values ego reading link frame fmu out travel driving",
@@ -212,14 +215,19 @@ def words_of(text: str) -> list[str]:
 
     >>> words_of("/robot1/handDistance.twist_vx"), words_of("e_stop")
     (['robot', '1', 'hand', 'distance', 'twist', 'speed', 'x'], ['estop'])
+    >>> words_of("ref_alt"), words_of("speed_ref"), words_of("climb_rate")
+    (['origin', 'altitude'], ['speed', 'command'], ['climb'])
     """
     plain = re.sub(r"(?i)\b(e|emergency)[_ ]?stop(ped)?(?![a-z])", "estop", text.replace("_", " "))
     found = [word.casefold() for word in _APART.findall(plain)]
     split = [part for word in found for part in _JOINED.get(word, (word,))]
     words = [_CANONICAL.get(word, word) for word in split]
+    if found[0:1] in (["ref"], ["reference"]) and not _OF_PLACES.isdisjoint(words[1:2]):
+        words[0] = "origin"
     return [
         "rate" if word == "speed" and before in ("yaw", "roll", "pitch") else word
         for before, word in zip(["", *words], words, strict=False)
+        if (before, word) != ("climb", "rate")
     ]
 
 
