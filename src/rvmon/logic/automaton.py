@@ -1,6 +1,7 @@
-"""The deterministic timed monitor of one formula as integer tables, and its locations.
+"""The deterministic timed automaton that monitors one formula, as integer tables.
 
-A location is a residual with its clocks numbered by age, and the ages that make a difference.
+A location is a residual formula whose clocks are numbered from the oldest to the youngest, together
+with the ages at which each clock enters another region.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ Token = tuple[int, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """What is required, but for the ages.
+    """A location: what an attempt there still owes, whatever the exact ages of its clocks.
 
     Attributes:
-        residual: its clocks count from the oldest, from 0, without gaps.
-        cuts: for each clock the ages, ascending, from which on it is in another region.
+        residual: the formula owed; its clocks are numbered 0, 1, … from the oldest.
+        cuts: for each clock the ages, ascending, at which it enters its next region.
     """
 
     residual: Residual
@@ -41,11 +42,11 @@ def normalise(residual: Residual, clocks: int) -> tuple[Residual, tuple[int, ...
     """Number the clocks of a residual after a step by age.
 
     Args:
-        residual: what `rvmon.logic.progress.step` gave.
-        clocks: the number of clocks before the step; the new one has this number.
+        residual: the result of `rvmon.logic.progress.step`.
+        clocks: how many clocks there were before the step; a clock it starts has this number.
 
     Returns:
-        The residual, and for each of its clocks the old one it is, or `NOW`.
+        The renumbered residual, and for each of its clocks the old number, or `NOW`.
     """
     used = sorted({clock for clause in residual for _, clock in clause if clock != NO_CLOCK})
     sources = tuple(NOW if clock == clocks else clock for clock in used)
@@ -76,7 +77,7 @@ def location_of(residual: Residual) -> Location:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Automaton:
-    """Locations, clocks and edges; made once by `construct`, never changed.
+    """A monitor automaton: locations, clocks and edges. Built by `construct`, then immutable.
 
     A *row* is a location with a region for each of its clocks: `bases[location]` plus, for each
     clock, the number of its cuts that its age has reached, times its stride. The edge taken from a
@@ -84,7 +85,7 @@ class Automaton:
     first two locations.
 
     Attributes:
-        alphabet: what letters are made of.
+        alphabet: encodes the propositions of a position as a letter.
         locations: with their residuals and cuts.
         initial: the location before the position of the trigger.
         classes: the number of classes of letters.
@@ -94,8 +95,8 @@ class Automaton:
         edges: row and class to the number of an edge; −1 where no run comes.
         targets: per edge, the location it leads to.
         sources: per edge, for each clock of its target the old clock it is, or `NOW`.
-        time_values: per row, the truth if time alone has come to it.
-        end_values: per row, whether the rule for the end of a trace makes the residual true there.
+        time_values: per row, the truth once time alone, without a letter, has reached it.
+        end_values: per row, whether the residual holds if the trace ends there.
     """
 
     alphabet: Alphabet
@@ -127,10 +128,10 @@ EndClause = tuple[tuple[int, int, bool], ...]
 
 
 def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
-    """When the end of a trace makes a residual true, whatever else is pending (SEMANTICS 3).
+    """The conditions under which a residual is true at the end of a trace (SEMANTICS 3).
 
-    A bounded `R` counts if its window is over as far as time has come, an unbounded one if its
-    window has opened at the end; nothing else counts.
+    A pending bounded `R` is true if time has passed the end of its window, an unbounded one if its
+    window has opened; every other pending operator stays unknown.
     """
     made = []
     for clause in residual:
@@ -149,7 +150,7 @@ def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
 def layout_of(
     locations: Sequence[Location],
 ) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
-    """First row and strides of each location, number of rows; the last clock runs fastest."""
+    """First row and strides of each location, and the number of rows; the last clock varies fastest."""
     bases, strides, total = [], [], 0
     for location in locations:
         bases.append(total)
@@ -164,7 +165,7 @@ def layout_of(
 
 
 def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
-    """The row of a location, for each clock of which so many of its cuts have been passed."""
+    """The row of a location, given for each clock how many of its cuts its age has passed."""
     strides = automaton.strides[location]
     return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
 
@@ -174,7 +175,7 @@ _MOST = 5
 
 
 def moves_in_runs(automaton: Automaton) -> bool:
-    """Whether attempts can be kept in order of their triggers by location alone.
+    """Whether all attempts in one location can be stepped together, as a run sorted by trigger.
 
     It is proved if there is one clock at most, which every attempt starts at its trigger and never
     again, and if the locations have an order in which age decides: read from the oldest attempts
@@ -213,7 +214,7 @@ def _starts_once(automaton: Automaton) -> bool:
 
 
 def _age_decides(automaton: Automaton, order: Sequence[int]) -> bool:
-    """Whether targets keep the order of the locations, given with the oldest attempts first."""
+    """Whether every letter preserves an order of the locations, given oldest attempts first."""
     rank = {location: index for index, location in enumerate(order)}
     rows = [row for location in order for row in reversed(_rows(automaton, location))]
     rows += _rows(automaton, automaton.initial)

@@ -1,10 +1,9 @@
-"""Windows within windows over what a letter decides: what is known of them is known in order.
+"""Chains: windows nested in windows over a propositional base, whose positions settle in order.
 
-Of such a formula no position becomes known before one that lies further left: where one position of
-a window decides, it is the first such one; where all do, the last. So what is known ends at one
-position, and all that has to be kept is where the values change. This holds of what has to be kept
-up while something stays (`whenever` and `always`), too: the first position at which it is false is
-the first that is known to be.
+No position of such a formula is decided before one further left: `F` is decided by the first
+position of its window that holds, `G` by the last. So the decided positions are a prefix, and the
+state is that prefix with the positions at which the value changes. The same is true of an invariant
+over a chain (`whenever`, `always`): the first position at which it fails is the first one decided.
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, S
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """A formula of that kind.
+    """A chain found in a network plan.
 
     Attributes:
-        base: the place of what the innermost window is over: a leaf, or a junction of leaves.
-        windows: the innermost first.
-        left: the place of the leaf that ends what is kept up; `None` if nothing is.
-        places: of the windows.
-        excused: the place of the leaf that is true where the windows do not matter to what is kept
-            up; `None` if they always do. With no unknown it is true where the one on the left is.
+        base: place of the operand of the innermost window: a leaf, or a junction of leaves.
+        windows: innermost first.
+        left: place of the leaf that releases the invariant; `None` if this is no invariant.
+        places: of the windows in the plan.
+        excused: place of the leaf under which the invariant holds whatever the windows say; `None`
+            if there is none. Where nothing is unknown it is true wherever `left` is.
     """
 
     base: int
@@ -37,7 +36,7 @@ class Chain:
 
 
 def reach_of(plan: NetworkPlan) -> int | None:
-    """Ticks after which a position is known at the latest, or only leads on to later ones.
+    """The most ticks until a position is decided, or depends on later positions alone.
 
     Args:
         plan: of a network.
@@ -135,7 +134,7 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
 
 
 def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
-    """Whether, with no unknown, a leaf is true where the one on the left is."""
+    """Whether one leaf implies the left one wherever nothing is unknown."""
     one, other = plan.nodes[left], plan.nodes[place]
     if not (isinstance(one, Leaf) and isinstance(other, Leaf)):
         return False
@@ -150,7 +149,7 @@ def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
 
 
 def _is_read(plan: NetworkPlan, place: int) -> bool:
-    """Whether a letter decides a node."""
+    """Whether a node is propositional: decided by the letter at its position."""
     node = plan.nodes[place]
     if isinstance(node, Junction):
         return all(_is_read(plan, operand) for operand in node.operands)

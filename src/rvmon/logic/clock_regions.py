@@ -1,4 +1,4 @@
-"""What is known of the ages of clocks: bounds of each, and of their differences.
+"""Zones of clock ages: bounds on each age and on the differences between ages.
 
 Source: difference bounds after Dill 1989; widening by the bounds that matter after Behrmann et al.
 2006. Ages are whole numbers, so all bounds are closed.
@@ -24,7 +24,7 @@ Cuts = Sequence[Sequence[int]]
 
 
 def exactly(ages: Sequence[int]) -> Ages:
-    """Clocks of known ages.
+    """The zone in which every clock has a known age.
 
     >>> exactly([5, 2])
     ((0, -5, -2), (5, 0, 3), (2, -3, 0))
@@ -34,7 +34,7 @@ def exactly(ages: Sequence[int]) -> Ages:
 
 
 def bounds(ages: Ages, clock: int) -> tuple[int, int]:
-    """The least and the greatest age of a clock; they count from 0 here."""
+    """The least and the greatest age of a clock, numbered from 0."""
     return -ages[0][clock + 1], ages[clock + 1][0]
 
 
@@ -45,12 +45,12 @@ def region_bounds(cuts: Sequence[int], region: int) -> tuple[int, int]:
 
 
 def regions_between(cuts: Sequence[int], low: int, high: int) -> range:
-    """The regions of the ages from one to another."""
+    """The regions that the ages in an interval lie in."""
     return range(bisect_right(cuts, low), bisect_right(cuts, high) + 1)
 
 
 def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
-    """The ages of which each is in its interval; `None` if there are none.
+    """A zone cut to an interval for each age; `None` if that leaves nothing.
 
     >>> within(exactly([5, 2]), [(0, 9), (3, 9)]) is None
     True
@@ -67,7 +67,7 @@ def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
 
 
 def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
-    """Take a lesser bound, and all that it implies."""
+    """Tighten one bound, and the others that follow from it."""
     behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
     for row in found:
         if row[one] < NEVER:
@@ -78,7 +78,7 @@ def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
 
 
 def after(ages: Ages, longest: int) -> Ages:
-    """The ages at least 1 later, and at most `longest`, which is 1 or `NEVER`.
+    """The zone after 1 to `longest` ticks have passed; `longest` is 1 or `NEVER`.
 
     >>> after(exactly([5, 2]), 1) == exactly([6, 3])
     True
@@ -91,24 +91,24 @@ def after(ages: Ages, longest: int) -> Ages:
 
 
 def joined(ages: Ages) -> Ages:
-    """The same with one more clock, which is started now."""
+    """The zone with one more clock, of age 0."""
     rows = [(*row, row[0]) for row in ages]
     return (*rows, rows[0])
 
 
 def chosen(ages: Ages, clocks: Sequence[int]) -> Ages:
-    """Some clocks only, in this order; they count from 0 here, −1 is the last."""
+    """The zone of some of the clocks, in this order; numbered from 0, −1 is the last."""
     places = [0, *(range(1, len(ages))[clock] for clock in clocks)]
     return tuple(tuple(ages[one][other] for other in places) for one in places)
 
 
 def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
-    """What is kept of ages, so that few are distinguished: more ages, of the same regions.
+    """A larger zone of the same regions, so that a search meets finitely many.
 
     Args:
-        ages: each clock is within one region.
+        ages: a zone within one region of each clock.
         cuts: of the clocks.
-        differences: whether they are kept.
+        differences: whether bounds on differences are kept.
     """
     found = [[*row] for row in ages]
     apart = []

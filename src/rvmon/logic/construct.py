@@ -16,7 +16,7 @@ from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClause
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How large an automaton may become before it is given up.
+    """The size at which the construction of an automaton is given up.
 
     Attributes:
         locations: at most so many.
@@ -46,7 +46,7 @@ def construct(
         required: what an attempt requires, as `X` of it: it starts before its trigger's position.
         alphabet: of that formula.
         budget: when to give up.
-        ages: takes those with which locations are looked at.
+        ages: if given, collects the clock ages with which locations were explored.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.
@@ -80,7 +80,7 @@ class _Construction:
         return self.tables(initial)
 
     def enter(self, residual: Residual, ages: tuple[int, ...]) -> int:
-        """The location of a residual, to be explored if it is new or entered younger."""
+        """The location of a residual; queued again if it is new, or entered at a lesser age."""
         index = self.index.get(residual)
         if index is None:
             if len(residual) > self.budget.clauses:

@@ -1,4 +1,4 @@
-"""Is there an infinite continuation that satisfies a residual?
+"""Decides whether some infinite continuation of a trace satisfies a residual.
 
 A clause of a residual is a state of a nondeterministic automaton: a step takes it to any clause of
 what it becomes, under letters that the clause's literals allow. A path is accepting if no unbounded
@@ -54,7 +54,7 @@ class TooLargeError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A clause as a residual of its own, and what is known of the ages of its clocks.
+    """A state of the search: one clause of a residual, with a zone of its clock ages.
 
     Ages are counted in the ticks between two positions where these are always as many.
     """
@@ -65,7 +65,7 @@ class _State:
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """An edge between two states; `fair`: the oldest clock does not wait in a bounded region."""
+    """An edge of the search; `fair` if the oldest clock is not kept in a bounded region."""
 
     source: int
     target: int
@@ -77,12 +77,12 @@ Start = tuple[_State, ...]
 
 
 def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
-    """Where a search begins, equal for residuals of equal future; `None` if nothing is required.
+    """The start state of a search, the same for residuals with the same future; `None` if true.
 
     Args:
         residual: of literals of two senses, as `rvmon.logic.progress` makes them.
         ages: of its clocks at the last position, ticks.
-        gap: ticks between two positions; `None` if any number of them.
+        gap: ticks between two positions; `None` if any number of ticks may lie between them.
     """
     if any(not clause for clause in residual):
         return None
@@ -148,7 +148,7 @@ class _Search:
         return found
 
     def cuts(self, residual: Residual) -> list[list[int]]:
-        """The ages at which clocks enter another region, in units."""
+        """The ages at which clocks enter their next region, in units."""
         return [[-(-cut // self.unit) for cut in own] for own in location_of(residual).cuts]
 
     def successors(self, state: _State) -> Iterator[tuple[int | None, bool]]:
@@ -176,7 +176,7 @@ class _Search:
                 yield target, not oldest_stays
 
     def ages_after(self, cuts: Cuts, ages: Ages) -> Iterator[Ages]:
-        """The ages at the next position, apart by their regions."""
+        """The zones at the next position, one per combination of regions."""
         later = after(ages, self.longest)
         spans = []
         for clock, own in enumerate(cuts):
@@ -191,7 +191,7 @@ class _Search:
                 yield found
 
     def has_accepting_cycle(self, moves: Sequence[_Move]) -> bool:
-        """Whether a cycle puts nothing off for ever."""
+        """Whether some cycle postpones no `U` for ever."""
         promised = [_promises(state) for state in self.states]
         if any(m.fair and m.source == m.target and not promised[m.target] for m in moves):
             return True
@@ -239,7 +239,7 @@ def _without_literals(clause: Clause) -> Clause | None:
 
 
 def _promises(state: _State) -> frozenset[Until]:
-    """The unbounded `U` that a state puts off."""
+    """The unbounded `U` that a state postpones."""
     return frozenset(
         node
         for clause in state.residual

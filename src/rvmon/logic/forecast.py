@@ -1,4 +1,4 @@
-"""What the continuations of a trace can still bring: LTL3's anticipation for a residual.
+"""Forecasts: whether every, or no, continuation of a trace satisfies a residual (LTL3).
 
 Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4), 2011.
 """
@@ -19,7 +19,7 @@ _MOST_KNOWN = 10_000
 
 
 class Forecaster:
-    """Tells of residuals whether every, or no, continuation satisfies them.
+    """Forecasts the value of residuals.
 
     A continuation is an infinite word in which every proposition is known, independently of the
     others; bounded windows are judged by what is known of the ages of their clocks. So a forecast
@@ -27,7 +27,7 @@ class Forecaster:
     the search.
 
     Attributes:
-        duals: makes formulas of propositions that are known, and their negations.
+        duals: the factory of residuals over known propositions, and of their negations.
     """
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class Forecaster:
         self._known: dict[tuple[Start, int | None], bool] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
-        """The value that all continuations give a residual; `None` if they differ.
+        """The value of a residual under all continuations; `None` if they differ.
 
         Args:
             residual: what is required after a position.
@@ -58,7 +58,7 @@ class Forecaster:
         return None if self.admits(denied, ages, gap) else True
 
     def admits(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool:
-        """Whether continuations may satisfy a residual; true, too, where it is not worked out.
+        """Whether a continuation may satisfy a residual; true also if the search is given up.
 
         Args:
             residual: of formulas of `duals`.

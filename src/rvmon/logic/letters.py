@@ -1,4 +1,4 @@
-"""Letters: what a formula can tell apart of its propositions' values; and which lead alike.
+"""Letters: the valuations of propositions that a formula can tell apart, and their classes.
 
 Classes of letters are reduced ordered multi-valued decision diagrams.
 
@@ -41,7 +41,7 @@ def holds(sense: Sense, truth: TruthValue) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Alphabet:
-    """How the values of propositions make up a letter, a number below `size`.
+    """Encodes the values of the propositions at a position as a letter, a number below `size`.
 
     A letter is the sum of one entry per proposition of `pessimistic` (or `optimistic`), taken at
     the proposition's value.
@@ -122,7 +122,7 @@ Tree = int | tuple[int, tuple["Tree", ...]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LetterDiagram:
-    """Looks up the class of a letter by its digits, those only that matter.
+    """A decision diagram from letters to classes; it tests only the digits that matter.
 
     Attributes:
         root: of the diagram; equal parts are the same object.
@@ -139,7 +139,7 @@ class LetterDiagram:
         return node
 
     def renamed(self, classes: Sequence[int]) -> LetterDiagram:
-        """The same with other numbers for the classes."""
+        """The diagram with its classes renumbered."""
         made: dict[int, Tree] = {}
 
         def rename(node: Tree) -> Tree:
@@ -247,7 +247,7 @@ class Diagrams:
     def classes(
         self, roots: Sequence[Node], limit: int
     ) -> tuple[LetterClasses, int, list[tuple[Edge, ...]]]:
-        """Letters that no root tells apart form a class.
+        """Partitions letters into classes: two are in one class if every diagram maps them alike.
 
         Args:
             roots: diagrams.

@@ -1,4 +1,4 @@
-"""Requirements to obligations: when an attempt starts, and what it requires, in core form."""
+"""Lowers requirements to obligations: when an attempt starts, and what it owes, in core form."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from rvmon.spec.checked.specification import Mode, Requirement
 
 
 class UnmonitorableError(RvmonError):
-    """A formula cannot be monitored; the message says which part of it."""
+    """A formula cannot be monitored; the message names the part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,21 +48,21 @@ class Obligation:
     """A requirement in core form.
 
     Attributes:
-        trigger: starts an attempt; `None` where it is the end of the trace. What is not born is
-            FALSE for it.
-        required: what an attempt owes from its trigger on; of an episode, all that it owes.
-        origins: for explanations, where the parts of `required` come from.
-        running: of an episode, what is FALSE where it is over; with captured values also where it
-            is not known any more which these are.
-        again: of an episode, not FALSE where the consequent did not fail at once: there it goes on
-            after a failure; `None` where it does not, as the future stands below the past.
-        unborn: of an episode, where something of its consequent had no value yet.
+        trigger: starts an attempt; `None` for `upon end`. Unborn counts as FALSE.
+        required: what an attempt owes from its trigger on; for an episode, over all its positions.
+        origins: for explanations, the source of each part of `required`.
+        running: for an episode, FALSE where it is over; with captured values, also where these are
+            no longer certain.
+        again: for an episode, FALSE where the consequent fails at once; after a failure it goes on
+            at the first position where it does not. `None` if it does not go on, as an operator of
+            the past stands above one of the future.
+        unborn: for an episode, TRUE while some signal of its consequent had no value yet.
         determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
-        hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
-            start; `None` if the trigger is never unknown.
-        doubted: the same where it is not known whether there is such an instance at all.
-        doubt: of an episode with captured values, UNKNOWN where another may have begun.
-        caught: that numbers are known which are captured off windows.
+        hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN wherever one
+            may start; `None` if the trigger is never unknown.
+        doubted: the same for an instance of `for each` that may not exist.
+        doubt: for an episode with captured values, UNKNOWN where another one may have begun.
+        caught: states that say whether the windows captured by `let` have known values.
     """
 
     trigger: State | None
@@ -165,7 +165,7 @@ def _determined(trigger: Four, factory: Factory) -> State:
 
 
 def _unborn(consequent: Formula, factory: Factory) -> State | None:
-    """Where something that a consequent reads had no value yet; `None` if it reads no signal."""
+    """TRUE while some signal that a consequent reads had no value; `None` if it reads none."""
     found: dict[str, bool] = {}
     for atom in subformulas(consequent):
         if isinstance(atom, SignalAtom | Compare):
@@ -178,8 +178,8 @@ def _at_once(core: Core, factory: Factory) -> State:
     """A state formula that is FALSE where a position alone makes what is required there FALSE.
 
     Args:
-        core: the windows of all that has to be kept up open at once in it.
-        factory: where it is made.
+        core: the consequent, with the lower bounds of its `G` and `R` taken as 0.
+        factory: makes the state formula.
 
     Source: SEMANTICS, section 3 (After a failure).
     """

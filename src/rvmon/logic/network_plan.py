@@ -1,7 +1,8 @@
-"""From a formula to the nodes of its network.
+"""Splits a formula into the nodes of its network: leaves, junctions, windows, sweeps and shifts.
 
-`φ U[a,b] ψ` is `F[a,b] ψ` and `G[0,a) φ` and, a further on, `φ U ψ`; so are its dual and its mirror
-image. This holds of Kleene's values too, so that each part can be judged alone.
+`φ U[a,b] ψ` is `F[a,b] ψ` and `G[0,a) φ` and, shifted by a, the unbounded `φ U ψ`; likewise its
+dual and its mirror image in the past. The identity also holds in Kleene's three values, so that
+each node can be evaluated on its own.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ from rvmon.logic.formula import (
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """What is read of a letter."""
+    """A literal or constant, evaluated on the letter of a position."""
 
     core: Literal | Constant
 
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """All of its operands, or one of them."""
+    """A conjunction (`every`) or disjunction of nodes."""
 
     operands: tuple[int, ...]
     every: bool
@@ -41,14 +42,14 @@ class Junction:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The operand at every position, or some, of a window.
+    """`G[a,b]` (`every`) or `F[a,b]` of a node, or `H` or `O` in the past.
 
     Attributes:
         operand: its place.
-        low: integers from the position at hand to the first of the window; negative in the past.
-        high: the same to the last.
-        every: at every position, or at some.
-        over: ticks after which no further position comes to lie in it; `None` in the past.
+        low: offset from the current position to the first of the window; negative in the past.
+        high: offset to the last position of the window.
+        every: whether the operand must hold at all positions, or at some.
+        over: ticks after which no new position can fall into the window; `None` in the past.
     """
 
     operand: int
@@ -60,11 +61,11 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """`until` without bounds, or `since`, or the dual of one.
+    """An unbounded `until` or `since`, or the dual of one.
 
     Attributes:
-        left: place of the operand that has to hold on the way.
-        right: place of the operand to be met.
+        left: place of the operand that must hold until then.
+        right: place of the operand that must be reached.
         future: whether it is `until`.
         dual: whether it is the dual, with negated operands and result.
         kept: whether the end of the trace counts as true for it (an unbounded `R`).
@@ -79,12 +80,12 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """The operand so many integers further on.
+    """The value of a sweep at a fixed offset.
 
     Attributes:
-        operand: its place; that of a `Sweep`.
-        offset: integers; negative in the past.
-        opens: ticks after which it speaks of something, at the end of a trace.
+        operand: place of a `Sweep`.
+        offset: in positions; negative in the past.
+        opens: ticks to the position shifted to; the end of a trace is judged by it.
     """
 
     operand: int
@@ -97,13 +98,13 @@ Node = Leaf | Junction | Window | Sweep | Shift
 
 @dataclass(frozen=True, slots=True)
 class NetworkPlan:
-    """A network before it has seen anything.
+    """The static structure of a network.
 
     Attributes:
         nodes: operands before operators, the root last.
         places: the place of each formula.
-        leaves: the places of those that read a letter, with what they read.
-        looks_back: whether something speaks of what was before an attempt began.
+        leaves: places of the leaves, with what each evaluates.
+        looks_back: whether some node depends on positions before the start of the attempt.
     """
 
     nodes: tuple[Node, ...]
@@ -112,7 +113,7 @@ class NetworkPlan:
     looks_back: bool
 
     def sweep_of(self, node: Shift) -> Sweep:
-        """What a node of the plan moves along."""
+        """The sweep that a shift node reads."""
         found = self.nodes[node.operand]
         if not isinstance(found, Sweep):
             raise AssertionError("only an `until` or `since` is moved along")
@@ -139,10 +140,10 @@ def plan_of(required: Core, gap: int | None) -> NetworkPlan:
 
 
 def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
-    """One network of several formulas; `NetworkPlan.places` says where each stands.
+    """One network of several formulas; `NetworkPlan.places` has the place of each.
 
     Args:
-        formulas: of which somebody asks where they are true.
+        formulas: whose values are asked for.
         gap: as for `plan_of`.
     """
     planning = _Planning(gap or 1)
@@ -162,7 +163,7 @@ class _Planning:
         self._known: dict[Node, int] = {}
 
     def add(self, node: Node) -> int:
-        """The place of a node; equal ones are one."""
+        """The place of a node; equal nodes share one."""
         place = self._known.get(node)
         if place is None:
             place = self._known[node] = len(self.nodes)
@@ -194,7 +195,7 @@ class _Planning:
                 assert_never(core)
 
     def join(self, parts: list[int], every: bool) -> int:
-        """All of some places, or one of them."""
+        """The place of the conjunction, or disjunction, of some places."""
         different = tuple(dict.fromkeys(parts))
         return different[0] if len(different) == 1 else self.add(Junction(different, every))
 
