@@ -150,7 +150,7 @@ def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
 def layout_of(
     locations: Sequence[Location],
 ) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
-    """First row and strides of each location, and the number of rows; the last clock varies fastest."""
+    """First row and strides of each location, number of rows; the last clock varies fastest."""
     bases, strides, total = [], [], 0
     for location in locations:
         bases.append(total)

@@ -1,4 +1,4 @@
-"""The sentences and details of a record that the run of an automaton decided, or has open."""
+"""Explains attempts judged by an automaton: the sentence and the details of their records."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from rvmon.verdict import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What decisions have in common that differ in instants alone.
+    """The part of an explanation that decisions share if they differ in instants only.
 
     Attributes:
-        cause: `None` if nothing could decide otherwise.
-        sentence: about it.
+        cause: of the decision; `None` if no other decision was possible.
+        sentence: a template for the cause.
     """
 
     cause: Cause | None
     sentence: Sentence
 
     def start(self, anchors: Sequence[int], t: int, triggered: int) -> int:
-        """The instant at which what decided was instantiated."""
+        """The instant at which the deciding obligation was instantiated, ticks."""
         clock = self.cause.start if self.cause else NO_CLOCK
         if clock == NO_CLOCK:
             return triggered
@@ -45,7 +45,7 @@ class Finding:
 
 
 class Reasons:
-    """Finds the reasons of the decisions of one requirement.
+    """Explains the decisions of one requirement; explanations are cached.
 
     What was required, in which of its windows, and the letter: no more matters to a reason.
     """
@@ -105,16 +105,16 @@ def explained(
     triggered: int,
     flow: TruthValues,
 ) -> Explanation:
-    """Why an attempt was decided.
+    """Explain why an attempt was decided.
 
     Args:
         reasons: of the requirement.
-        before: where the run stood at the last position before that.
+        before: state of the run at the position before the decision.
         letter: at the decision.
         verdict: the decision.
-        t: its instant.
-        triggered: that of the trigger.
-        flow: how the propositions stood.
+        t: instant of the decision, ticks.
+        triggered: instant of the trigger, ticks.
+        flow: truth values of the propositions, and since when they had them.
     """
     finding = reasons.of(before, letter, verdict, t)
     cause = finding.cause
@@ -128,11 +128,11 @@ def explained(
 
 @dataclass(frozen=True, slots=True)
 class MachineRuns:
-    """Runs of an automaton, as `rvmon.monitor.explanation.Judged`.
+    """The two runs of an automaton for one attempt, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:
-        residuals: what is required in its locations.
-        position: the last one that the runs were stepped at; letters stay behind it.
+        residuals: what is owed in each location.
+        position: the last position at which the runs were stepped.
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
@@ -161,7 +161,7 @@ class MachineRuns:
         )
 
     def _alone(self, token: Token) -> tuple[int, bool] | None:
-        """What time alone makes of a run, and the last instant before that."""
+        """The value that a run takes if only time passes, and the last instant before it does."""
         if token[0] <= PASSED:
             return None
         return settled_alone(self.residuals[token[0]], token[1])

@@ -1,6 +1,6 @@
-"""Which part of a requirement decided an attempt, and the one sentence that says so.
+"""Finds the part of a requirement that decided an attempt, and words it in one sentence.
 
-Decisions that are alike share a sentence, with places for what differs between them.
+Decisions that differ only in instants share one sentence, a template with places for these.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ AT_DECISION = -2
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What decided.
+    """The cause of a decision.
 
     Attributes:
         node: the obligation, or the literal if none lies above it.
-        start: what shows when the obligation was instantiated: of a run of a machine the number of
-            a clock, `NO_CLOCK` if that was at the trigger, `AT_DECISION` if then; of a network
-            the instant.
-        over: whether its window passed; else `literal` decided it at the instant of decision.
+        start: when the obligation was instantiated. For an automaton the number of the clock that
+            started then, `NO_CLOCK` for the trigger, `AT_DECISION` for the decision itself; for a
+            network the instant, ticks.
+        over: whether the window ran out; else `literal` decided at the instant of the decision.
         literal: the proposition that decided it, if a single one did.
     """
 
@@ -135,7 +135,7 @@ class CauseFinder:
 
 
 class Base(Enum):
-    """What an instant or a duration in a sentence is counted from."""
+    """The reference point of an instant or duration in a sentence."""
 
     DECISION = 0
     """The instant of the decision."""
@@ -149,18 +149,18 @@ class Base(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An instant or a duration.
+    """A placeholder for an instant or a duration in a sentence.
 
     Attributes:
-        base: what it is counted from.
-        plus: so many ticks later.
+        base: its reference point.
+        plus: ticks after the reference point.
     """
 
     base: Base
     plus: int = 0
 
     def ticks(self, decided: Any, start: Any) -> Any:
-        """What stands there.
+        """The value of the placeholder.
 
         Args:
             decided: the instant of the decision, ticks; or an array of such instants.
@@ -179,7 +179,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Turned:
-    """What a proposition was at the decision, and whether it became so just then.
+    """A placeholder: `was` or `became` true or false, as the proposition did at the decision.
 
     Attributes:
         proposition: which.
@@ -192,18 +192,18 @@ class Turned:
 
 @dataclass(frozen=True, slots=True)
 class AfterTrigger:
-    """How long after the trigger the decision was, if what decided began there."""
+    """A placeholder: the delay from trigger to decision, if the deciding obligation began there."""
 
 
 @dataclass(frozen=True, slots=True)
 class LastWith:
-    """When a proposition had a truth for the last time.
+    """A placeholder: when a proposition last had a truth value.
 
     Attributes:
         proposition: of which.
         value: the truth.
         verb: `been true`, `been false` or `occurred`.
-        lasting: whether it is more than a matter of single instants.
+        lasting: whether the value can last longer than single instants.
     """
 
     proposition: State
@@ -214,15 +214,15 @@ class LastWith:
 
 @dataclass(frozen=True, slots=True)
 class TruthValues:
-    """How the propositions of a requirement stood at a position.
+    """The truth values of a requirement's propositions at a position, with their history.
 
     Attributes:
         origin: the first instant of the run, ticks.
         gap: ticks between two positions; `None` if only samples are positions.
-        begun: the position from which on it saw what is its own; `None`: it saw all.
-        values: by proposition, its truth.
-        since: by proposition, the position from which on it has had that.
-        before: by proposition and truth, the last position at which it had another one.
+        begun: for an instance of `for each`, its first position; `None`: all positions count.
+        values: by proposition, its truth value.
+        since: by proposition, the position since which it has had this value.
+        before: by proposition and value, the last position at which it had another value.
     """
 
     origin: int
@@ -247,14 +247,14 @@ Sentence = tuple[Part, ...]
 def rendered(
     sentence: Sentence, decided: int, start: int, triggered: int, flow: TruthValues
 ) -> str:
-    """A sentence about one decision.
+    """Fill in a sentence for one decision.
 
     Args:
-        sentence: about all that are like it.
+        sentence: the template.
         decided: its instant, ticks.
         start: the instant at which what decided was instantiated, ticks.
         triggered: the instant of the trigger of the attempt, ticks.
-        flow: as it stood at the decision.
+        flow: truth values at the decision.
     """
 
     def told(t: int) -> str:

@@ -1,4 +1,4 @@
-"""A specification made ready for the core: formulas, alphabets, automata."""
+"""Compiles requirements for the core: core formulas, alphabets, and automata or networks."""
 
 from __future__ import annotations
 
@@ -32,17 +32,18 @@ _BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
 
 
 class CompiledRequirement:
-    """One requirement, ready to be judged; what is needed of it is made at first use.
+    """One requirement, compiled; each derived form is built at its first use.
 
     Attributes:
         rank: its place in the file.
         spec: the specification that it is of.
         requirement: as checked.
         obligation: its formulas.
-        alphabet: of what it owes.
+        alphabet: of the obligation.
         gap: ticks between two positions; `None` if only samples are positions.
-        beside: the requirement whose attempts in doubt this judges; `None`: it is no such.
-        measured: its formulas as they are measured: their truth is that of `obligation`.
+        beside: the requirement whose attempts in doubt this one judges; `None` for an ordinary one.
+        measured: builds the obligation for robustness: the same truth, but with the comparisons
+            kept apart whose distances are measured.
     """
 
     def __init__(
@@ -80,7 +81,7 @@ class CompiledRequirement:
 
     @property
     def automaton(self) -> Automaton | None:
-        """Its automaton; `None` if that does not close."""
+        """Its automaton; `None` if the construction exceeds its budget."""
         return self._built if isinstance(self._built, Automaton) else None
 
     @cached_property
@@ -99,7 +100,7 @@ class CompiledRequirement:
 
     @property
     def refusal(self) -> str:
-        """Why it has no automaton, or empty."""
+        """Why it has no automaton; empty if it has one."""
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
     def in_runs(self, automaton: Automaton | None) -> bool:
@@ -116,7 +117,7 @@ class CompiledRequirement:
 
     @cached_property
     def hidden(self) -> CompiledRequirement | None:
-        """What judges its attempts in doubt; `None` if there are none."""
+        """The requirement that judges its attempts in doubt; `None` if it can have none."""
         return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
 
     @cached_property
@@ -152,7 +153,7 @@ class CompiledRequirement:
 
     @cached_property
     def measured_required(self) -> Core:
-        """What it owes as far as that is measured, propositions that look back taken apart."""
+        """The obligation for robustness, with past operators expanded to be measured, too."""
         return expanded(self.measured.required)
 
     @cached_property
@@ -162,7 +163,7 @@ class CompiledRequirement:
 
     @property
     def counts_alone(self) -> bool:
-        """Whether which attempts it has does not hang on what becomes of them.
+        """Whether its attempts start independently of how earlier ones end.
 
         Episodes go on after a failure; what is in doubt leaves no record if it is met.
         """
@@ -183,7 +184,7 @@ class CompiledRequirement:
 
     @property
     def _read(self) -> Sequence[State]:
-        """The state formulas whose leaves are shown of it."""
+        """The state formulas whose leaves appear in its records."""
         trigger = self.obligation.trigger
         return (*(() if trigger is None else (trigger,)), *self.alphabet.propositions)
 

@@ -1,4 +1,4 @@
-"""A specification of which requirements are compiled when they are first asked for, and its plans.
+"""A specification compiled for the core: requirements on first use, plans cached on disk.
 
 Packed plans are kept in the user's cache folder: data, of which nothing is executed.
 """
@@ -26,8 +26,8 @@ class CompiledSpec:
 
     Attributes:
         checked: as checked.
-        is_kept: whether what is dear to make of it is kept in the user's cache folder.
-        forms: what was made for its monitors, by what it depends on.
+        is_kept: whether packed plans are kept in the user's cache folder.
+        forms: packed plans made so far, by the options they depend on.
     """
 
     def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
@@ -77,7 +77,7 @@ _HERE = Path(__file__).parents[1]
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What requirements are compiled and planned for.
+    """A packed plan, as it is kept in the cache.
 
     Attributes:
         data: the packed plan.
@@ -112,7 +112,7 @@ class Place:
         self._path = folder / f"plan-{self._key}.bin"
 
     def read(self) -> Kept | None:
-        """What is kept; `None` if that is nothing, or damaged. The core has to check the plan."""
+        """Read the entry; `None` if there is none or it is damaged. The core checks the plan."""
         body = None if self._path is None else read_kept(self._path)
         if body is None:
             return None
@@ -125,7 +125,7 @@ class Place:
         return found if key == self._key.encode() else None
 
     def write(self, made: Kept) -> None:
-        """Keep a plan; if that fails, never mind."""
+        """Keep a plan; a failure to write is ignored, as the plan can be made again."""
         if self._path is not None:
             names = json.dumps([sorted(made.single), made.readers])
             keep(self._path, b"\n".join([self._key.encode(), names.encode(), made.data]))

@@ -1,4 +1,4 @@
-"""A finished trace judged, or measured, by the core, whatever holds it."""
+"""Judges, or measures the robustness of, a finished trace of any source."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def judge_source(
 def open_trace(
     checked: CheckedSpec, trace: Any, reading: Reading, *, only: Sequence[str] | None
 ) -> Recording:
-    """A trace as a recording that has what is read; it need not be read yet.
+    """Open a trace as a recording, and check that it has the names that requirements read.
 
     Raises:
         MissingNameError: it is in columns, and lacks a name that a requirement reads.
@@ -150,7 +150,7 @@ def judge_and_measure(
 
 
 def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
-    """Take a piece as far as the trace goes."""
+    """Judge a piece up to the end of the trace."""
     until = source.until if source.is_cut else None
     if isinstance(piece, Sample):
         if until is None or piece.t <= until:
@@ -160,7 +160,7 @@ def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
 
 
 class _Run:
-    """Measures a recording."""
+    """A run that measures a recording."""
 
     def __init__(
         self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
@@ -199,7 +199,7 @@ MARGIN = np.dtype(
 
 
 class RecordedMargins:
-    """The figures of a run.
+    """Collects the robustness figures of a run.
 
     Args:
         ids: of requirements, by number.
@@ -212,7 +212,7 @@ class RecordedMargins:
         self._parts: dict[int, list[Sequence[NDArray[Any]]]] = {}
 
     def add(self, found: bytes) -> None:
-        """Take figures as bytes of `MARGIN`."""
+        """Add figures, given as bytes of dtype `MARGIN`."""
         margins = np.frombuffer(found, MARGIN)
         of_position = margins["of_position"] == 1
         if not of_position.all():
@@ -231,7 +231,7 @@ class RecordedMargins:
             figures[self._ids[requirement], number] = Robustness(low, high, kept)
 
     def margins(self) -> Margins:
-        """All of them."""
+        """All figures collected."""
         streams = {
             self._ids[number]: Stream(*map(np.concatenate, zip(*parts, strict=True)))
             for number, parts in self._parts.items()

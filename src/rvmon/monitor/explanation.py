@@ -1,4 +1,4 @@
-"""What a record says beside the verdict: why an attempt is undecided, and what left it open."""
+"""Explains undecided attempts: what they wait for, and which unknown input left them open."""
 
 from __future__ import annotations
 
@@ -20,15 +20,14 @@ from rvmon.verdict.attempt import Blame, Decision
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outage:
-    """A stretch over which a signal or event was not known; it ends when a value comes.
+    """A stretch over which a signal or event was unknown; the next value ends it.
 
     Attributes:
         name: of the signal or event.
-        why: what it began with; `MISSING` if there was no value yet, `ABSENT` if there is no
-            source.
-        since: its first instant, ticks; of no meaning for `MISSING` and `ABSENT`.
-        until: the instant from which on it was known again, ticks; `None` if it still is not.
-        bound: if it is stale, the time without an update that made it so, ticks.
+        why: the reason; `MISSING` if there was no value yet, `ABSENT` if there is no source.
+        since: its first instant, ticks; meaningless for `MISSING` and `ABSENT`.
+        until: the instant at which it was known again, ticks; `None` if it still is unknown.
+        bound: for `stale after D`, D in ticks.
     """
 
     name: str
@@ -40,13 +39,13 @@ class Outage:
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """Why the two runs of an attempt parted: what was not known.
+    """Why the pessimistic and the optimistic run of an attempt diverged: what was unknown.
 
     Attributes:
         origin: the first instant of the run, ticks.
-        position: where.
-        outages: of the signals and events in question; that they ended may become known later.
-        texts: of propositions that were unknown though all they read was known.
+        position: where they diverged, ticks.
+        outages: of the signals and events involved; their ends may become known later.
+        texts: of propositions that were unknown although all their inputs were known.
     """
 
     origin: int
@@ -69,7 +68,7 @@ class Doubt:
 
 
 def outage_in_words(outage: Outage, origin: int) -> str:
-    """From when to when a signal was not known, and why; counted from an origin, ticks."""
+    """In words: from when to when a signal was unknown, and why; counted from an origin, ticks."""
     name = f"`{outage.name}`"
     if outage.why is HealthKind.ABSENT:
         return f"{name} has no source"
@@ -94,7 +93,7 @@ def outage_in_words(outage: Outage, origin: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What a record says beside the verdict; see `rvmon.verdict.attempt.Attempt`."""
+    """The explanatory fields of a record; see `rvmon.verdict.attempt.Attempt`."""
 
     reason: str = ""
     required: str = ""
@@ -105,12 +104,12 @@ class Explanation:
 def earlier(
     worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, cannot_pass: bool
 ) -> int | None:
-    """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
+    """When time alone decides an attempt: the pessimistic run passes, or the optimistic fails.
 
     Args:
-        worse: what time alone makes of the run that takes the unknown for the worse, and when.
-        better: the same of the run that takes it for the better.
-        cannot_pass: whether the attempt does not pass.
+        worse: the value that time alone gives the pessimistic run, and when.
+        better: the same of the optimistic run.
+        cannot_pass: whether the attempt can no longer pass.
     """
     found = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
     found += [better[0]] if better is not None and not better[1] else []
@@ -118,7 +117,7 @@ def earlier(
 
 
 def still_required(required: str, end: int | None, origin: int) -> str:
-    """What an undecided attempt waits for, or waited for when the trace ended."""
+    """What an undecided attempt waits for, or was waiting for when the trace ended."""
     when = "" if end is None else f" when the recording ended at {format_instant(end, origin)}"
     return f"still required{when}: {required}"
 
@@ -145,7 +144,7 @@ def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
 
 
 def longer(required: Core, triggered: int, end: int | None) -> str:
-    """How much longer a trace that has ended would decide an attempt, whatever it brings."""
+    """By how much a finished trace would have had to be longer to decide an attempt."""
     if end is None:
         return ""
     reach = horizon(required)
@@ -158,26 +157,26 @@ def longer(required: Core, triggered: int, end: int | None) -> str:
 
 
 def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
-    """Truth values by the text of what has them, the last one of several; `None` is unknown."""
+    """Truth values by the text of the proposition; of equal texts the last; `None` is unknown."""
     pairs = zip(texts, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """An attempt as it stands by now.
+    """The state of an undecided attempt.
 
     Attributes:
         compiled: the requirement, or what judges its attempts in doubt.
         origin: the first instant of the run, ticks.
         triggered: the instant of its trigger, ticks.
-        worse: where the run stands that takes the unknown for the worse.
-        better: the same for the better.
-        doubt: when and why the two runs parted, or it is not known whether there was a trigger.
-        unborn: which of what it reads has had no value so far.
+        worse: state of the pessimistic run, which reads UNKNOWN as the worse value.
+        better: state of the optimistic run.
+        doubt: when and why the two diverged, or why the trigger itself is in doubt.
+        unborn: names that it reads and that had no value so far.
         sure: whether its trigger was TRUE.
-        cannot_pass: whether it cannot pass, since its episode was over before all was born.
-        cut: whether it is not known any more which values it captured.
+        cannot_pass: whether it cannot pass, as its episode ended before all its signals were born.
+        cut: whether its captured values are no longer certain.
     """
 
     compiled: CompiledRequirement
@@ -193,7 +192,7 @@ class Undecided:
 
 
 class Judged(Protocol):
-    """What judged an attempt, as it stands at a stamp."""
+    """The judge of an attempt (automaton or network), in its state at a stamp."""
 
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
         """What an undecided attempt waits for, or why it can wait no more; see `why_open`."""
@@ -239,7 +238,7 @@ def why_settled(decision: Decision, policy: EndPolicy) -> str:
 
 
 def why_nothing(*, cut: bool) -> Explanation:
-    """Why an attempt stays undecided, whatever comes, though it is over."""
+    """Why an attempt that is over stays undecided whatever follows."""
     if cut:
         return Explanation("it is not known which values it captured")
     return Explanation("it was over before all that it speaks of had a value")

@@ -1,4 +1,4 @@
-"""Some requirements of a specification, packed for the core, and how samples of them are read."""
+"""Packs requirements as a plan of the core, with what is needed to hand it samples."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class CapturedValues:
-    """Reads captured values.
+    """Decodes the values that attempts captured.
 
     Args:
         spec: the specification.
@@ -69,7 +69,7 @@ class CapturedValues:
 
 
 def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None]:
-    """By name, what a requirement captures; `None`: a number, which says itself of what kind."""
+    """By name, the kind of each captured value; `None` for a number, which carries its own kind."""
     found: dict[str, Kind | None] = {}
     each = requirement.for_each
     if each is not None:
@@ -107,10 +107,10 @@ piece of them, that; see `module_notes.h`."""
 
 @dataclass(frozen=True, slots=True)
 class PlannedCore:
-    """A packed plan, from which monitors are made.
+    """A packed plan; makes monitors.
 
     Attributes:
-        packed: the plan as bytes, and what its numbers stand for.
+        packed: the plan as bytes, and the meaning of its numbers.
         captured: reads the values that attempts captured.
         numbers: of names: signals first, then events.
         words: of signals, events, fields: a number for each label, or field.
@@ -196,7 +196,7 @@ class PlannedCore:
         }
 
     def instance(self, attempt: Attempt) -> object:
-        """What is the same of attempts of one instance, or one alone with values of its own."""
+        """The part of the details that all attempts of one instance share."""
         one = self._specification.checked.requirements[attempt.requirement]
         if one.captures:
             return attempt.requirement, attempt.in_doubt, attempt.number
@@ -244,13 +244,13 @@ def planned_core(
     traced: Collection[str] = (),
     measured: bool = False,
 ) -> PlannedCore:
-    """The packed plan of some requirements; made once for a specification.
+    """The packed plan of some requirements; made once per specification and options.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
-        traced: ids of those of which somebody asks where attempts go in their automata.
-        measured: whether attempts are to be measured as well.
+        traced: ids of those whose paths through their automata are recorded, for coverage.
+        measured: whether robustness is measured as well.
 
     Raises:
         RvmonError: a requirement is beyond the core.
@@ -297,7 +297,7 @@ def _made(
 def _checked(
     compiled: CompiledSpec, ids: tuple[str, ...], before: Kept | None
 ) -> PlannedCore | None:
-    """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
+    """A plan from the cache; `None` if there is none, or it is of other requirements."""
     if before is None:
         return None
     found = planned_as(compiled.checked, ids, before, compiled)

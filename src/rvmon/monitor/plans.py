@@ -1,4 +1,4 @@
-"""The plans of requirements for the core."""
+"""Chooses how the core judges each requirement, and puts them together in a plan."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rvmon.spec.checked.names_read import requirements_asked
 
 
 def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
-    """A requirement as the core judges it.
+    """How the core judges a requirement: automaton, chain or network.
 
     Args:
         one: the requirement.
@@ -62,7 +62,7 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
 
 
 def _traced(one: CompiledRequirement) -> PlannedRule:
-    """A requirement that its whole automaton judges, as people know it."""
+    """A requirement judged by the automaton that people are shown, so that edges are counted."""
     rule, automaton = planned_rule(one), one.automaton
     in_runs = one.in_runs(automaton)
     return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
@@ -77,7 +77,7 @@ def _stepped(rule: PlannedRule) -> PlannedRule:
 
 @cache
 def _nothing_required() -> tuple[Core, Alphabet, Automaton]:
-    """What attempts owe that only have to be counted, and what judges them."""
+    """The obligation of attempts that are only counted."""
     factory = Factory()
     required = factory.constant(True)
     alphabet = alphabet_of(required)
@@ -85,7 +85,7 @@ def _nothing_required() -> tuple[Core, Alphabet, Automaton]:
 
 
 def _blurs(one: CompiledRequirement) -> State | None:
-    """What is UNKNOWN where an attempt may have begun with other values than it captured."""
+    """A state that is UNKNOWN where an attempt may have begun with other captured values."""
     obligation = one.obligation
     # What it owes by a trigger that is TRUE, it owes at one position.
     return obligation.doubt or (None if one.beside is None else obligation.trigger)
@@ -105,8 +105,8 @@ def plan_alone(
         compiled: the specification.
         only: ids of its requirements; default all.
         traced: ids of those of which somebody asks where attempts go in their automata.
-        stepped: whether no chain of windows is to judge any.
-        measured: whether it is to measure them as well.
+        stepped: whether chains are left out, so that each attempt is stepped.
+        measured: whether robustness is measured as well.
 
     Raises:
         UnknownNameError: there is no such requirement.

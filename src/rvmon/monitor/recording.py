@@ -1,4 +1,4 @@
-"""Recordings that the core judges: of what comes as columns all rows at once, else each sample."""
+"""Feeds recordings to the core: columns in blocks of rows, everything else sample by sample."""
 
 from __future__ import annotations
 
@@ -62,13 +62,13 @@ def judge_recording(
 
 
 class RecordingRun:
-    """A run of the core, and what it is to be given.
+    """A run of the core over the pieces of a recording.
 
     Args:
         checked: the specification.
         planned: the plan that it judges by.
         source: the recording that the pieces come from.
-        finds: whether somebody asks for the health of the input.
+        finds: whether the health of the input is collected.
 
     Attributes:
         core: the run.
@@ -98,7 +98,7 @@ class RecordingRun:
         self._turns = sorted(turns, key=_comes_before)
 
     def take(self, piece: Batch | Sample) -> None:
-        """Judge a piece of the recording, behind those before."""
+        """Judge the next piece of the recording."""
         if isinstance(piece, Sample):
             self._take_sample(piece)
         else:
@@ -121,12 +121,12 @@ class RecordingRun:
         self._row += 1
 
     def _lose_until(self, t: int) -> None:
-        """Have lost, and found, what a sample at an instant finds lost."""
+        """Tell the core of all outages that begin or end up to an instant."""
         while self._turns and _comes_before(self._turns[0]) <= t:
             self._losses.turn(self._turns.pop(0))
 
     def _take_batch(self, batch: Batch) -> None:
-        """Judge rows; those that take a closer look as samples."""
+        """Judge rows in one call; fall back to samples where a row needs Python to look at it."""
         count = len(batch.times)
         done = 0
         while done < count:
@@ -147,7 +147,7 @@ class RecordingRun:
                 done = end
 
     def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
-        """Rows as `native.Monitor.rows` takes them; `None`: they take a closer look."""
+        """Rows as `native.Monitor.rows` takes them; `None` if they must be fed as samples."""
         if not self._expected >= {*batch.signals, *batch.events}:
             return None
         planned = self._planned

@@ -1,4 +1,4 @@
-"""Reports of the core's runs: their records become attempts when someone looks at them."""
+"""Reports on runs of the core; a raw record becomes an `Attempt` only when it is read."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ _WHOLE, _REAL = 1, 2
 
 
 class RecordedAttempts(LazyAttempts):
-    """Attempts made from the records of a run; what they say beside is worked out when read.
+    """The attempts of a run, made from raw records on access; explanations when they are read.
 
     Args:
-        planned: the plan that it judged by.
+        planned: the plan of the run.
         records: array of `RECORD`, in the order of reports.
         numbers: array of `NUMBER` [records, most], the values that they captured.
         notes: of these records, and the letters that they refer to.
@@ -62,7 +62,7 @@ class RecordedAttempts(LazyAttempts):
         self._numbers = numbers
 
     def told_with(self, others: RecordedAttempts) -> None:
-        """Have what these say read by what reads it of others of the same plan.
+        """Share one reader of explanations among reports of the same plan.
 
         What comes from another process brings a plan of its own, whose specification would be
         compiled anew for each run.
@@ -197,7 +197,7 @@ def report_of_run(
 def _dropped(
     ids: Sequence[str], counts: Mapping[str, Mapping[Verdict, int]], records: NDArray[Any]
 ) -> Mapping[str, Mapping[Verdict, int]]:
-    """How many attempts were counted of which there is no record."""
+    """How many attempts were counted, but not kept, by requirement and verdict."""
     if sum(sum(own.values()) for own in counts.values()) == len(records):
         return {}
     there = np.bincount(

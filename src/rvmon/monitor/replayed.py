@@ -1,4 +1,4 @@
-"""Networks as they were, from the letters that the core kept."""
+"""Rebuilds the state of a network at an earlier instant, from the letters the core recorded."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _IN_WORD = 32
 
 @dataclass(frozen=True, slots=True)
 class Letters:
-    """Truths of propositions at positions, in pieces.
+    """The recorded truth values of propositions, position by position.
 
     Attributes:
-        pieces: of words: a position, then its truths, and so on.
+        pieces: int64 words: a position, then its packed truth values, two bits each, and so on.
     """
 
     pieces: tuple[bytes, ...]
 
     def read(self, count: int) -> Iterator[tuple[int, tuple[int, ...]]]:
-        """The positions, with the truths of so many propositions."""
+        """Iterate over positions, each with the truth values of `count` propositions."""
         stride = Struct(f"={1 + -(-count // _IN_WORD)}q")
         for piece in self.pieces:
             for position, *words in stride.iter_unpack(piece):
@@ -40,7 +40,7 @@ class Letters:
 
 
 def _truth(sense: Sense, value: int, *, better: bool) -> bool:
-    """Whether a leaf is true, the unknown taken for the better or for the worse."""
+    """Evaluate a leaf, with UNKNOWN read optimistically (`better`) or pessimistically."""
     if value == UNKNOWN:
         return better and sense is not Sense.KNOWN_FALSE
     return value == (TRUE if sense is Sense.TRUE else FALSE)
@@ -54,14 +54,14 @@ def _noted(
     *,
     better: bool,
 ) -> Noted:
-    """Letters for a network, from the position that is asked for on, where no others matter.
+    """The letters to replay; those before `position` only if the formula looks back.
 
     Args:
         compiled: the requirement.
         gap: ticks between two positions; `None` if only samples are positions.
-        letters: of the judge.
-        position: what is asked for.
-        better: whether the unknown is taken for the better.
+        letters: recorded for the attempt.
+        position: the position whose value is asked for, ticks.
+        better: whether UNKNOWN is read optimistically.
     """
     plan, propositions = compiled.network_plan, compiled.alphabet.propositions
     place = {state: number for number, state in enumerate(propositions)}
@@ -93,16 +93,16 @@ def at_decision(
     verdict: bool,
     t: int,
 ) -> Network | None:
-    """The network that decided, as it was then.
+    """Rebuild the network that decided an attempt, as it was at the decision.
 
     Args:
         compiled: the requirement.
         gap: ticks between two positions; `None` if only samples are positions.
-        letters: by which it judged; `None`: they are not known.
-        position: the instant of the position whose value was waited for, ticks.
-        triggered: the instant of the trigger; behind the position if that was the end of the trace.
-        verdict: the decision: what fails is decided by the run for the better.
-        t: its instant.
+        letters: recorded for the attempt; `None`: none were kept.
+        position: the position whose value decides the attempt, ticks.
+        triggered: instant of the trigger, ticks; later than `position` for `upon end`.
+        verdict: the decision; a failure is decided by the optimistic run.
+        t: instant of the decision, ticks.
     """
     if letters is None:
         return None
@@ -130,14 +130,14 @@ def at_moment(
     now: int,
     count: int,
 ) -> NetworkRuns:
-    """The networks of an open attempt at a stamp.
+    """Rebuild both networks, pessimistic and optimistic, of an open attempt.
 
     Args:
         compiled: as for `at_decision`.
         gap: see there.
         letters: see there.
         position: see there.
-        now: the stamp.
+        now: the stamp, twice the instant in ticks, plus one if its letter is known.
         count: how many attempts are open.
     """
     if letters is None:

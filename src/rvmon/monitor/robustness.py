@@ -1,4 +1,4 @@
-"""The robustness of attempts: figures, and a monitor that gives them while samples come."""
+"""Robustness: the figures of attempts, and a monitor that computes them online."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Robustness:
     """How far a formula is from the other truth value, in base units.
 
     Attributes:
-        low: the least that it can be, whatever is not known and whatever had come after the end.
-        high: the greatest.
-        kept: the least, if all is well behind the end that only has to be kept up.
+        low: lower bound over all values of unknown input and all continuations of the trace.
+        high: upper bound.
+        kept: lower bound if what only has to be kept up (`always`) holds after the end.
     """
 
     low: float
@@ -54,7 +54,7 @@ class Robustness:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A figure of a run.
+    """The robustness of one attempt, or at one position.
 
     Attributes:
         requirement: its id.
@@ -82,7 +82,7 @@ FIGURES = Measured, Robustness, tuple(getattr(type_, name) for type_, name in _F
 
 
 class Stream(Sequence[tuple[int, Robustness]]):
-    """Figures at instants, as arrays; each is made when it is asked for.
+    """A sequence of figures held as arrays; each object is made on access.
 
     Args:
         times: int64[n] ticks.
@@ -142,7 +142,7 @@ class Margins:
 
 
 class RobustnessMonitor(FedMonitor[Measured]):
-    """Measures a stream of samples; made by `Spec.robustness_monitor`.
+    """Measures robustness online; made by `Spec.robustness_monitor`.
 
     What a call returns are the figures that nothing can change any more. A sample that is later
     than `max delay` is refused, and figures that were given stay whatever came too late.
@@ -193,7 +193,7 @@ class RobustnessMonitor(FedMonitor[Measured]):
         return self._tell(lambda: self._step(t_ns, values))
 
     def _tell(self, tell: Callable[[], None]) -> Sequence[Measured]:
-        """Make a call, and no other until it is over; the figures that it settled."""
+        """Make a call, refuse others until it returns, and give the figures that it settled."""
         return self._one_call(self._settled, tell)
 
     def _settled(self, tell: Callable[[], None]) -> Sequence[Measured]:
@@ -207,7 +207,7 @@ class RobustnessMonitor(FedMonitor[Measured]):
 
     @property
     def open(self) -> Sequence[Measured]:
-        """What is known now of the attempts that are not settled: bounds that only draw closer."""
+        """Current bounds on the figures of open attempts; they only tighten."""
         return self._one_call(self._core.open_figures)
 
     def finish(self, t: float | None = None) -> Sequence[Measured]:

@@ -1,4 +1,4 @@
-"""A run of the core as a snapshot, and back.
+"""Writes the state of a run as a snapshot, and restores it.
 
 The format is one line (kind, checksum) and JSON, in which the core's bytes stand as text. It is
 checked before anything is taken from it, and nothing in it is executed.
@@ -32,7 +32,7 @@ _LEFT_OUT = ("span", "source", "text", "title", "doc")
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a monitor was asked for; see `rvmon.monitor.monitor.build_monitor`."""
+    """The options of a monitor; see `rvmon.monitor.monitor.build_monitor`."""
 
     settle: str
     sources: frozenset[str] | None
@@ -46,14 +46,14 @@ def written(
     run: native.Monitor,
     state: Mapping[str, Any],
 ) -> bytes:
-    """The bytes of a run.
+    """The snapshot of a run, as bytes.
 
     Args:
         compiled: the specification.
         options: what its monitor was asked for.
         planned: the plan that it judges by.
         run: of the core.
-        state: what Python holds of it, as JSON has it.
+        state: the part of the state that Python holds, as JSON.
     """
     document = {
         "rvmon": _version(),
@@ -72,7 +72,7 @@ def written(
 
 
 def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
-    """What a snapshot says; `only`, `settle`, `sources` and `keep` are of its monitor.
+    """Check a snapshot and parse it; `only`, `settle`, `sources` and `keep` are its options.
 
     Raises:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
@@ -94,7 +94,7 @@ def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
 def put_back(
     document: Mapping[str, Any], planned: PlannedCore, run: native.Monitor
 ) -> Mapping[str, Any]:
-    """Give a run that was just begun the state that a snapshot holds; what Python held of it.
+    """Restore the state of a fresh run; returns the part of it that Python holds.
 
     Raises:
         SnapshotError: the requirements were judged by another plan, or what is there is no run.

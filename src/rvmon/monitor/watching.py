@@ -1,4 +1,4 @@
-"""Where formulas are true in a recording, found by the core."""
+"""Finds where formulas are true, false or unknown over a recording, by the core."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ period, in sampled time numbers of samples."""
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Where a formula is known in a recording.
+    """The stretches over which a formula is decided.
 
     Attributes:
         true: surely.
@@ -42,11 +42,11 @@ class Known:
 
 
 class TruthsPlan:
-    """Formulas made ready for the core, for any number of recordings.
+    """A plan that evaluates formulas over any number of recordings.
 
     Args:
         spec: the specification.
-        formulas: may speak of the future; what a recording ends too early for is not known.
+        formulas: may speak of the future; UNKNOWN where the recording ends too early.
         captured: the values that the formulas read as captured.
     """
 
@@ -62,7 +62,7 @@ class TruthsPlan:
 
 
 class TruthsRun:
-    """Follows where formulas are known while a recording is read.
+    """Evaluates formulas while a recording is read.
 
     Args:
         plan: of the formulas.
@@ -78,7 +78,7 @@ class TruthsRun:
         self._validator = Validator(plan.spec, known, frozenset())
 
     def take(self, piece: Batch | Sample) -> None:
-        """Take what comes next; what the specification does not declare is passed over."""
+        """Take the next sample; names that the specification does not declare are skipped."""
         if not isinstance(piece, Sample):
             self._rows.take(piece)
             return
@@ -103,7 +103,7 @@ class TruthsRun:
         return made
 
     def known(self, end: int) -> list[Known]:
-        """Where each formula is known, at all positions; the recording ends (ticks)."""
+        """End the recording (ticks), and give where each formula is decided."""
         self._run.finish(end)
         return [
             Known(*(tuple(_ranges(one)) for one in self._run.truths(place)))
@@ -119,7 +119,7 @@ def known_truths(
     names: frozenset[str] | None,
     captured: Mapping[str, Scalar],
 ) -> list[Known]:
-    """Where formulas are known, at all positions of a recording; see `TruthsRun`.
+    """Evaluate formulas at all positions of a recording; see `TruthsRun`.
 
     Args:
         spec: the specification.
