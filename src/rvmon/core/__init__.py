@@ -1,1 +1,1 @@
-"""The native core: its sources in C, and what packs plans for it; built, it is `rvmon.native`."""
+"""The native core: its C sources, and the packing of plans for it. Built, it is `rvmon.native`."""

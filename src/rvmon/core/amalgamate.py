@@ -1,4 +1,4 @@
-"""The native core as one header and one source, for who links it or compiles it in one go.
+"""Amalgamates the native core into one header and one source file, for embedding.
 
 The build hook runs this file alone: it imports nothing of rvmon.
 """
@@ -21,7 +21,7 @@ _PROTOTYPE = re.compile(
 
 
 def core_header(folder: str = FOLDER) -> str:
-    """The header of the core as it stands: it includes nothing of ours."""
+    """The public header of the core, which includes no other file of ours."""
     return _text(folder, HEADER)
 
 
@@ -38,14 +38,14 @@ def core_files(folder: str = FOLDER) -> list[str]:
 
 
 def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> str:
-    """All sources of the core but the binding to Python, one behind the other.
+    """All sources of the core except the Python binding, concatenated.
 
-    What they call of each other is static here, so that nothing but `rv_…` is seen outside.
+    Functions shared between files become static, so that only `rv_…` is visible outside.
 
     Args:
         header: the name by which the header is included.
-        folder: where the sources stand.
-        lines: whether a compiler's messages shall name the files that the lines come from.
+        folder: of the sources.
+        lines: whether `#line` directives name the original files in compiler messages.
     """
     names = core_files(folder)
     done = {HEADER}

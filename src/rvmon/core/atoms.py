@@ -1,6 +1,6 @@
-"""What is read off the input at a position, each once: the atoms of a part of a plan.
+"""Packs the atoms of a plan part: everything that is read from the input, each once.
 
-The programs that work numbers out run in the core on a stack.
+Numeric expressions become programs that the core runs on a stack.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _INT64 = 1 << 63
 
 
 class Code(IntEnum):
-    """What a word of a program does, before the operations."""
+    """The operand codes of a program; the codes of operations follow."""
 
     END = 0
     NUMBER = auto()
@@ -81,7 +81,7 @@ _UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
 
 
 class Names:
-    """The numbers of the names that a part of a plan reads.
+    """Numbers the names that a plan part reads.
 
     Args:
         plan: of the part.
@@ -90,10 +90,10 @@ class Names:
     Attributes:
         signals: by name, its number in the part.
         events: the same.
-        key: the event and the field whose values tell instances apart; `None`: nothing does.
-        captured: by name, the place of a captured value.
-        constants: captured values that are known now.
-        windows: by what is measured, the place of its number.
+        key: the event field that identifies instances of `for each`; `None` if there are none.
+        captured: by name, the index of a captured value.
+        constants: captured values that are already known.
+        windows: by window, the slot of its number.
     """
 
     def __init__(self, plan: Plan, numbering: Numbering) -> None:
@@ -128,7 +128,7 @@ class Programs:
         self._names = names
 
     def place(self, expression: Numeric) -> int:
-        """The place of the program of an expression.
+        """The index of the program of an expression.
 
         Raises:
             RvmonError: it is too deep, or holds a number that the core does not have.
@@ -141,7 +141,7 @@ class Programs:
         return self._sections.run(Section.CODE, [*words, Code.END])
 
     def _emit(self, expression: Numeric, words: list[int]) -> int:
-        """Add the words of an expression; returns how many numbers lie on the stack at most."""
+        """Add the words of an expression; returns the stack depth that it needs."""
         names = self._names
         match expression:
             case Literal(value=value):
@@ -231,18 +231,18 @@ class AtomOp(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """What is read off the input; names by their numbers in the part.
+    """An atom; names are given by their numbers in the part.
 
     Attributes:
-        op: what kind of atom it is.
-        constant: that a real signal is compared with.
+        op: its kind.
+        constant: the constant a real signal is compared with.
         compare: the number of the comparison.
         input: the signal or event; −1 if there is none, or several.
-        left: the place of a program.
-        right: the same.
-        events: those of which it reads fields.
-        values: the signals of which it reads values.
-        updates: the signals an update of which changes it, though the value stays.
+        left: index of the program of the left side.
+        right: index of the program of the right side.
+        events: the events whose fields it reads.
+        values: the signals whose values it reads.
+        updates: the signals whose updates change it even if the value stays.
         occurrences: the events that it reads.
         captured: whether it reads captured values.
     """
@@ -261,12 +261,12 @@ class Atom:
 
     @property
     def lone_signals(self) -> tuple[int, ...]:
-        """The signals that, if they have a source, make it speak of one position."""
+        """The signals that, if they have a source, make its value momentary."""
         return self.updates if self.op in (AtomOp.UPDATED_SIGNAL, AtomOp.CHANGED) else ()
 
     @property
     def momentary(self) -> int:
-        """How many names with a source make it speak of one position only."""
+        """How many of its names, if they have a source, make it hold at single positions only."""
         return len(self.lone_signals) + len(self.occurrences) + (self.op is AtomOp.START)
 
 
@@ -293,7 +293,7 @@ class Atoms:
         return self._numbers.setdefault(self._atom(leaf), len(self._numbers))
 
     def itself(self, number: Numeric) -> int:
-        """The number of the atom that is unknown where a number is; its programs are of that."""
+        """The atom `x == x`: UNKNOWN where a number is unknown; its programs compute the number."""
         return self.comparison(Compare(CompareOp.EQ, number, number))
 
     def comparison(self, compared: Compare) -> int:

@@ -1,4 +1,4 @@
-"""The automata of a plan as tables, those of one shape once, and diagrams of letters."""
+"""Packs automata as tables, shared between requirements of one shape, and letter diagrams."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Automata:
         self._packed: dict[int, tuple[Automaton, int]] = {}
 
     def place(self, automaton: Automaton) -> int:
-        """The place of an automaton, which it shares with all of the same tables."""
+        """The index of an automaton; equal tables are stored once."""
         known = self._packed.get(id(automaton))
         if known is None:
             known = self._packed[id(automaton)] = automaton, self._place(automaton)
@@ -91,7 +91,7 @@ class Automata:
 
 
 def _decisions(root: Tree) -> list[tuple[int, tuple[Tree, ...]]]:
-    """The decisions of a diagram, each before those that it leads to."""
+    """The decision nodes of a diagram, parents before children."""
     found: dict[int, tuple[int, tuple[Tree, ...]]] = {}
     stack = [root]
     while stack:
@@ -108,7 +108,7 @@ def _is_lone(class_of: LetterClasses) -> bool:
 
 
 def _table(class_of: LetterClasses) -> Sequence[int]:
-    """The class of each letter; none if a diagram has them."""
+    """The class of each letter; empty if a diagram is used instead."""
     return () if isinstance(class_of, LetterDiagram) else class_of
 
 
@@ -117,7 +117,7 @@ def _padded(values: Sequence[int], width: int) -> list[int]:
 
 
 def _regions(automaton: Automaton, width: int) -> tuple[list[int], list[int], list[int]]:
-    """Per location and clock: where its cuts begin, these, and the stride of its regions."""
+    """Per location and clock: offset of its cuts, the cuts, and the stride of its regions."""
     first, cuts, strides = [0], list[int](), list[int]()
     for location, own in zip(automaton.locations, automaton.strides, strict=True):
         strides += _padded(own, width)

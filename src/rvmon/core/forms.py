@@ -1,4 +1,4 @@
-"""Formulas that no automaton judges as operators of a network, and how far what is due holds."""
+"""Packs formulas that are judged by a network, and the leaves by which robustness is measured."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ class Operator(IntEnum):
 def add_form(
     sections: Sections, plan: NetworkPlan, chain: Chain | None, index: Mapping[State, int]
 ) -> int:
-    """Add a formula; returns its place.
+    """Add the formula of a network; returns its index.
 
     Args:
         sections: of the plan.
         plan: of the formula.
-        chain: that it is; `None`: it is none.
-        index: the places of propositions.
+        chain: its description as a chain; `None` if it is no chain.
+        index: the node of each proposition.
     """
     operators = add_operators(sections, plan, index)
     own: tuple[int, ...] = (*sections.listed(()), -1, -1, -1)
@@ -123,7 +123,7 @@ def _add(
 
 
 def _values(core: Literal | Constant) -> list[int]:
-    """What a leaf counts as where its proposition is FALSE, UNKNOWN and TRUE."""
+    """The two-bit reading (pessimistic, optimistic) of a leaf for FALSE, UNKNOWN and TRUE."""
     if isinstance(core, Constant):
         return [(_WORSE + _BETTER) * core.value] * 3
     wanted = TRUE if core.sense is Sense.TRUE else FALSE
@@ -135,7 +135,7 @@ def _values(core: Literal | Constant) -> list[int]:
 
 
 class Measure(IntEnum):
-    """What a leaf is measured by."""
+    """How the robustness of a leaf is computed."""
 
     CONSTANT = 0
     TRUTH = auto()
@@ -150,14 +150,14 @@ def add_margin(
     spec: CheckedSpec,
     requirement: Requirement,
 ) -> None:
-    """Add what is measured of the attempts of a judge, which is the next one.
+    """Add the robustness formula of the next judge.
 
     Args:
         sections: of the plan.
         plan: of the formula.
         index: the places of propositions.
         spec: gives the units.
-        requirement: whose attempts they are.
+        requirement: that is measured.
     """
     measures = sections.count(Section.MEASURES)
     for _, core in plan.leaves:
@@ -188,9 +188,9 @@ def _measure(
 
 
 def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requirement) -> bool:
-    """Whether it matters to what is measured that a node of a leaf is kept up.
+    """Whether measuring a leaf needs the truth value of its node to be maintained.
 
-    A distance is read off the values; while something is not born all nodes are kept up.
+    A distance is computed from the values; before all signals are born every node is maintained.
     """
     if isinstance(core, Constant):
         return False
@@ -204,7 +204,7 @@ def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requir
 
 
 def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement) -> bool:
-    """Whether its sides are labels: two of them have no distance."""
+    """Whether both sides are labels, which have no distance."""
     values = {one.name: one.value for one in requirement.captures}
     each = requirement.for_each
     if each is not None:
@@ -227,7 +227,7 @@ def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement)
 
 
 def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
-    """What the unit of a comparison is in base units; 1 where it is not plain."""
+    """The factor from the unit of a comparison to base units; 1 where the unit is a product."""
     sides = (leaf.left, leaf.right)
     written: Sequence[str] = [side.unit for side in sides if isinstance(side, Number) and side.unit]
     units = [*written, *(_unit(side, spec) for side in sides)]

@@ -1,4 +1,4 @@
-"""What judges the attempts of requirements, and what it hears of nodes."""
+"""Packs the judges of requirements, and the links by which nodes notify them."""
 
 from __future__ import annotations
 
@@ -78,10 +78,10 @@ class Judges:
         numbers: of the requirements of its rules, among all.
 
     Attributes:
-        networked: the numbers of those that a network judges, be it a chain of windows.
-        forms: how many formulas they have.
-        clocks: the most that an automaton of them has, or 1: a position of a network.
-        undetermined: how many tell whether their trigger was ever true or false.
+        networked: the judges that are networks or chains.
+        forms: how many network formulas there are.
+        clocks: the most clocks of an automaton; a network needs 1, for its position.
+        undetermined: how many judges track whether their trigger was ever TRUE or FALSE.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class Judges:
                 add_margin(sections, network, self._index, plan.spec, rule.requirement)
 
     def links(self, place: int) -> Iterator[tuple[int, ...]]:
-        """What a node tells judges, as records."""
+        """The links from a node to judges, as records."""
         for judge, (kind, (worse, better)) in self._links.get(place, {}).items():
             yield (judge, kind, *worse, *better)
 
@@ -165,10 +165,9 @@ class Judges:
 
 
 def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
-    """What judges a rule: an automaton, or a network, which may be a chain of windows.
+    """How a rule is judged: by an automaton, a network, or a chain.
 
-    An automaton of windows within windows steps each open attempt by itself; a chain is one step
-    for all of them.
+    An automaton for nested windows steps each open attempt on its own; a chain steps all at once.
     """
     automaton = rule.automaton
     if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
@@ -192,10 +191,9 @@ def _flags(rule: PlannedRule, *, hidden: bool) -> int:
 
 @cache
 def outcomes(policy: EndPolicy) -> tuple[int, ...]:
-    """What becomes of an undecided attempt: verdict plus 4 times the decision.
+    """How the end of a trace settles an undecided attempt: verdict plus 4 times the decision.
 
-    Counted through in binary: whether it holds by the rule for the end (1), can pass no more (2),
-    can fail no more (4).
+    Indexed by bits: holds by the rule for the end (1), can no longer pass (2), nor fail (4).
     """
     found = []
     for state in range(8):

@@ -1,4 +1,4 @@
-"""The state formulas of a part of a plan as nodes: their memories, timers, and when they matter."""
+"""Packs state formulas as nodes: their operators, memories, timers and lifetimes."""
 
 from __future__ import annotations
 
@@ -92,14 +92,14 @@ class Node:
     """A state formula; see `node_plan` in plan.h.
 
     Attributes:
-        op: what kind of node it is.
-        operands: places of nodes; of a leaf and of what is not born, signals times 2, plus 1 if an
-            update after the first value is asked for.
-        tally: of a window whose numbers are added up, the number of their sum.
-        most: of a window, how many members it has at most; 0: any number.
-        chosen: of a window, from which operand on they are asked of each occurrence.
-        since: of a window, the captured instant that it begins with; −1: another.
-        reads: the atoms of which it reads the numbers, and not the truths alone.
+        op: its kind.
+        operands: indices of nodes; for leaves and births, 2 × signal, plus 1 if an update after the
+            first value is required.
+        tally: for a window that adds numbers, the index of its exact sum.
+        most: for a window of the last n updates, n; 0 for any number.
+        chosen: for a window, the first operand that is evaluated per occurrence.
+        since: for a window, the captured instant at which it begins; −1 if none.
+        reads: the atoms whose numbers, not only truth values, it reads.
     """
 
     op: NodeOp
@@ -127,12 +127,12 @@ class Nodes:
 
     Attributes:
         all: of them, operands first.
-        seen: how many remember a truth.
+        seen: how many remember a truth value.
         edges: how many remember an instant.
         stretches: how many remember stretches of time.
-        tallies: how many of these add up numbers.
-        timers: how many time alone can change.
-        needed: those that matter once all is born and determined.
+        tallies: how many of these add numbers.
+        timers: how many can change by time alone.
+        needed: those still needed once all signals are born and all triggers were determined.
     """
 
     def __init__(self, plan: Plan, names: Names, atoms: Atoms) -> None:
@@ -171,11 +171,11 @@ class Nodes:
 
     @property
     def read_as_numbers(self) -> frozenset[int]:
-        """The atoms of which somebody reads the numbers."""
+        """The atoms whose numbers are read."""
         return frozenset(atom for node in self.all for atom in node.reads)
 
     def parents(self, place: int) -> tuple[Sequence[int], Sequence[int]]:
-        """Of which nodes a node is an operand: at first, and once all is born and determined."""
+        """The parents of each node: at first, and once all is born and determined."""
         found = self.graph.parents[place]
         if place not in self.needed:
             return found, ()
@@ -189,7 +189,7 @@ class Nodes:
                     yield place, operand // 2, operand % 2 == 1
 
     def stateful(self) -> list[int]:
-        """The nodes to be worked out at each sample, if only these are positions."""
+        """In sampled time, the nodes to be evaluated at every sample."""
         lasting = (NodeOp.DOUBT, NodeOp.EVER, NodeOp.ELAPSED)  # the last one has a timer
         return [place for place in self.graph.stateful if self.all[place].op not in lasting]
 
@@ -274,7 +274,7 @@ class Nodes:
 
 
 def _since(state: State) -> NodeOp:
-    """A `since` by what it has to remember."""
+    """The kind of a `since` node, by what it has to remember."""
     if state.low == 0:
         return NodeOp.EVER if state.high is None else NodeOp.EDGE
     return NodeOp.EDGE if state.high is None else NodeOp.STRETCH
@@ -291,7 +291,7 @@ def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
 
 
 def _needed(plan: Plan) -> frozenset[int]:
-    """The nodes that matter once every signal is born and every trigger was true or false."""
+    """The nodes needed once every signal is born and every trigger was TRUE or FALSE."""
     states = [state for _, rule in plan.judges for state in _asked(rule, plan)]
     states += (one.proposition for core in plan.truths for one in literals(core))
     states += (watch.state for watch in plan.watches)

@@ -1,6 +1,6 @@
-"""From the plan of requirements to the bytes that the core judges by; see native/plan/plan.md.
+"""Packs a plan of requirements as the bytes that the core interprets; see native/plan/plan.md.
 
-A part of a plan is requirements that are judged together.
+A plan consists of parts: requirements that share nodes and are judged together.
 """
 
 from __future__ import annotations
@@ -123,11 +123,11 @@ class Part:
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
-        """Lists for the time until all is born and determined, and from then on."""
+        """Two lists: until all is born and determined, and from then on."""
         return *self._sections.listed(first), *self._sections.listed(then)
 
     def _add_groups(self) -> dict[int, list[int]]:
-        """Add what is counted; returns by node the watches that hear of it."""
+        """Add the counters of coverage; returns by node the watches that it notifies."""
         watched: dict[int, list[int]] = {}
         groups: list[list[int]] = [[] for _ in self._plan.watches]
         first = 0
@@ -195,7 +195,7 @@ class Part:
         return found
 
     def _alive(self, atoms: Sequence[int]) -> list[int]:
-        """Those that matter once all is born and determined."""
+        """The nodes needed once all is born and determined."""
         return [number for number in atoms if self._live[number]]
 
     def _add_signals(self) -> int:
@@ -269,7 +269,7 @@ class Part:
         return first
 
     def _keyed(self) -> dict[str, int]:
-        """By event, the field whose value says which instance it concerns; others concern all."""
+        """By event, the field that selects the instance; events without one concern them all."""
         each = next((rule.requirement.for_each for rule in self._plan.rules), None)
         if each is None:
             return {}
@@ -285,7 +285,7 @@ class Part:
 
 
 def pack(plan: Plan) -> Packed:
-    """Pack a plan: all requirements without captured values together, each of the others apart.
+    """Pack a plan: one part for all requirements without captures, and one for each of the others.
 
     Args:
         plan: of the requirements.
@@ -314,7 +314,7 @@ def pack(plan: Plan) -> Packed:
 
 
 def _subscribe(sections: Sections, plan: Plan, parts: list[Part]) -> None:
-    """Say of each name which parts read it, and of each event which fields it has."""
+    """Add the parts that read each name, and the fields of each event."""
     first = 0
     sections.add(Section.FIELD_FIRST, first)
     for event in plan.spec.events.values():

@@ -1,6 +1,6 @@
-"""The bytes of a plan: records of fixed size in sections, and lists, each once. See plan.h.
+"""The byte format of a plan: sections of fixed-size records, and shared lists. See plan.h.
 
-What is packed is data, with the names that its numbers stand for.
+A packed plan is data only, together with the names that its numbers stand for.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from rvmon.trace.schema import Kind
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """A plan as bytes, and what its numbers stand for.
+    """A plan as bytes, with the meaning of its numbers.
 
     Attributes:
         data: the bytes.
-        signals: by name, what values they take; in the order of their numbers.
-        events: their names; their numbers are those behind the signals.
-        fields: by event and name, what values they take; in the order of their numbers.
-        labels: by label, the number that it is given to the core as.
+        signals: kind of value by name, in the order of their numbers.
+        events: names; numbered after the signals.
+        fields: kind of value by event and field, in the order of their numbers.
+        labels: by label, its number in the core.
         ids: of the requirements, by number.
     """
 
@@ -38,7 +38,7 @@ class Packed:
 
 
 def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
-    """What the bytes of a plan of some requirements stand for, which only these say.
+    """Restore the names of a packed plan from the specification.
 
     Args:
         spec: declares the names.
@@ -60,7 +60,7 @@ def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
 
 
 class Numbering:
-    """The numbers of what a specification declares.
+    """Numbers everything that a specification declares.
 
     Attributes:
         names: of signals, then events.
@@ -76,7 +76,7 @@ class Numbering:
 
 
 def numbered(names: Sequence[str]) -> dict[str, int]:
-    """The place of each of some names."""
+    """The index of each name."""
     return {name: number for number, name in enumerate(names)}
 
 
@@ -147,7 +147,7 @@ Listed = tuple[int, int]
 
 
 class Sections:
-    """The sections of a plan while it is made."""
+    """The sections of a plan under construction."""
 
     def __init__(self) -> None:
         self._bytes = {section: bytearray() for section in Section}
@@ -159,14 +159,14 @@ class Sections:
         return len(self._bytes[section]) // RECORDS[section].size
 
     def add(self, section: Section, *fields: float) -> int:
-        """Add a record; returns its place."""
+        """Add a record; returns its index."""
         data, record = self._bytes[section], RECORDS[section]
         place = len(data) // record.size
         data += record.pack(*fields)
         return place
 
     def shared(self, section: Section, *fields: int) -> int:
-        """The place of a record that is there once, whoever asks for it."""
+        """The index of a record; equal records are stored once."""
         key = section, fields
         place = self._records.get(key)
         if place is None:
@@ -174,7 +174,7 @@ class Sections:
         return place
 
     def run(self, section: Section, values: Iterable[int]) -> int:
-        """The place of some numbers one behind the other, which are there once."""
+        """The index of a run of numbers; equal runs are stored once."""
         data = array("q" if section is Section.TICKS else "i", values).tobytes()
         if not data:
             return 0
@@ -189,7 +189,7 @@ class Sections:
         return self.run(Section.LISTS, places), len(places)
 
     def data(self, gap: int, sizes: Sequence[int]) -> bytes:
-        """All of it.
+        """The whole plan as bytes.
 
         Args:
             gap: ticks between two positions; 0 if only samples are positions.

@@ -1,7 +1,6 @@
-"""What a requirement with captured values asks of its attempts and instances.
+"""Packs what attempts with `let` and instances of `for each` need.
 
-Each attempt of a `let`, and each instance of a `for each`, is a monitor of its own, which begins as
-that stands which it comes from.
+Each such attempt or instance is a run of its own, forked from the state of the run that started it.
 """
 
 from __future__ import annotations
@@ -76,13 +75,13 @@ class Unit:
         return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
 
     def _forgets(self, state: State) -> bool:
-        """Whether a node that time changes remembers nothing, or begins with an attempt."""
+        """Whether a time-dependent node carries no memory into a new attempt."""
         begins = not self._replays and begins_with_attempt(state)
         return state.op is StateOp.PASSED or begins
 
     @cached_property
     def _replays(self) -> bool:
-        """Whether a captured attempt has to look at what was before its values were."""
+        """Whether an attempt with captures depends on samples before its trigger."""
         if not self._requirement.captures:
             return False
         judged = [rule for _, rule in self._plan.judges]
@@ -107,11 +106,11 @@ class Unit:
 
     @property
     def _is_fresh(self) -> bool:
-        """Whether an instance can be made from what the first monitor stands at.
+        """Whether a new instance can be forked from the current state of the root run.
 
-        Between two ticks of a clock that has gone on to what the next tick sees: what its trigger
-        was at the last one, which an edge asks for, is gone. It is not asked for where attempts
-        begin whatever the trigger was.
+        In clocked time the root has, between two ticks, already moved to the letter of the next
+        tick, so that the previous value of a trigger, which an edge needs, is gone. That does not
+        matter where attempts start independently of the previous value.
         """
         reach = self._reach
         if reach is None or not reach.is_fresh:
@@ -129,7 +128,7 @@ class Unit:
 
     @property
     def _starters(self) -> tuple[int, int]:
-        """The judges of which attempts start in the first monitor, and in instances, as bits."""
+        """Which judges start attempts in the root run, and which in instances, as bits."""
         bits = {rule: 1 << index for index, (_, rule) in enumerate(self._plan.judges)}
         known = bits[self._rule]
         hidden, doubted = self._rule.hidden, self._rule.doubted

@@ -1,7 +1,7 @@
-"""Formulas to core formulas: past and present become propositions, the rest is X, U, R.
+"""Lowers formulas to core formulas: subformulas of past and present become propositions, above them
+only X, U and R remain.
 
-Where a formula is needed down to what is read off the input, propositions that look back are taken
-apart again.
+`expanded` takes propositions apart again, where a formula is needed down to what the input gives.
 """
 
 from __future__ import annotations
@@ -43,22 +43,22 @@ from rvmon.spec.checked.rewrite import rewritten
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """What a core formula was made from: a formula of the spec, or its negation."""
+    """The source of a core formula: a formula of the specification, or its negation."""
 
     formula: Formula
     positive: bool
 
 
 class Lowering:
-    """Brings formulas into core form.
+    """Lowers formulas to core form.
 
     Args:
         factory: where core formulas are made.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
-        favour: whether what is not born counts in favour of what is required.
+        favour: whether unborn propositions count in favour of the requirement.
         measured: see `rvmon.logic.three_valued.Reader`.
         sampled: whether only samples are positions.
-        opened: whether the windows of all that has to be kept up open at once.
+        opened: whether lower bounds of `G` and `R` are taken as 0.
 
     Attributes:
         origins: where what was made comes from.
@@ -84,13 +84,13 @@ class Lowering:
         self._made_up: dict[int, Formula] = {}
 
     def state(self, formula: Formula, positive: bool) -> State:
-        """A state formula that is required, or whose negation is."""
+        """The state formula of a required formula, or of one whose negation is required."""
         if not self.favour:
             return self.reader.literal(formula, UNKNOWN)
         return self.reader.literal(formula, TRUE if positive else FALSE)
 
     def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
-        """What is implied, up to where the trigger is known to be false; there nothing is."""
+        """`implied` until the trigger is known to be false, where the obligation ends."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
         required = self.factory.release(over, implied, 0, None)
         for node in (implied, required):
@@ -169,7 +169,7 @@ class Lowering:
         return make(left, right, low, high)
 
     def required(self, operand: Core) -> Core:
-        """What is required at positions of which some may not be there."""
+        """The requirement at positions that may not exist (an outage of sampled time)."""
         return self._if_there(operand) if self._meets_blanks else operand
 
     def _behind(self, operand: Core) -> Core:
@@ -242,9 +242,9 @@ def _spelled(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
 
 
 def expanded(core: Core) -> Core:
-    """The same formula, the propositions of whose literals are leaves.
+    """The formula with past operators expanded, so that its literals are leaves.
 
-    What only asks whether a proposition is known stays whole.
+    Tests of whether a proposition is known are not expanded.
     """
     return _Expanding().core(core)
 

@@ -1,6 +1,6 @@
-"""One step of a residual, and what time alone and the end of a trace make of it.
+"""Progression: steps a residual by a letter, by time alone, and by the end of the trace.
 
-Where all propositions are known a residual has two two-valued readings, its own and its negation's.
+Where all propositions are known, a residual and its negation are both two-valued.
 
 Source: AUTOMATA 1; after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
 """
@@ -49,7 +49,7 @@ def phase(node: Until | Release, age: int) -> Phase:
 def step(
     residual: Residual, ages: Sequence[int], read: ReadLiteral, limit: int | None = None
 ) -> Residual:
-    """What is required after a position.
+    """The residual after a position.
 
     In the result, clocks below `len(ages)` are the old ones, and `len(ages)` is a new one that was
     started at this position.
@@ -135,17 +135,17 @@ class _Step:
 
 
 def instance(node: Core, read: ReadLiteral) -> Residual:
-    """What a formula that is instantiated at a position owes after it."""
+    """The residual of a formula that is instantiated at a position."""
     return _Step((), read, None).instance(node)
 
 
 def opened(node: Until | Release, clock: int) -> Atom:
-    """What is left of an opened window: its start matters no more, and without an end no age."""
+    """The rest of a window that has opened: without its start, and without a clock if unbounded."""
     return node.opened or node, NO_CLOCK if node.high is None else clock
 
 
 def after(residual: Residual, ages: Sequence[int]) -> Residual:
-    """What is required when time has passed without a position: windows that are over are settled.
+    """The residual after time has passed without a position: windows that are over are settled.
 
     Args:
         residual: what is required after the last position.
@@ -162,7 +162,7 @@ def after(residual: Residual, ages: Sequence[int]) -> Residual:
 
 
 def value(residual: Residual) -> int:
-    """The truth of a prefix that leaves this residual."""
+    """The truth value of the prefix that left this residual."""
     if residual == HOLDS:
         return TRUE
     return UNKNOWN if residual else FALSE
@@ -187,7 +187,7 @@ def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
 
 
 class Duals:
-    """Reads formulas where no proposition is unknown, so that each has a negation.
+    """Builds residuals over known propositions only, so that each has a negation.
 
     What it makes has literals of two senses only (`is known to be false` is `is false` there), and
     their propositions are no combinations of others. What lies ahead of an operator of the past is

@@ -1,4 +1,4 @@
-"""Smaller automata that do the same: fewer locations, age regions, clocks and classes of letters.
+"""Minimises automata: fewer locations, age regions, clocks and classes of letters.
 
 Source: partition refinement after Moore 1956; clocks that are not read again after Daws and Yovine
 1996, Reducing the number of clock variables of timed automata.
@@ -27,7 +27,7 @@ Regions = tuple[int, ...]
 
 @dataclass(slots=True)
 class _Place:
-    """A location while it is worked on."""
+    """A location under minimisation: its residual, clock regions and outgoing edges."""
 
     residual: Residual
     cuts: tuple[tuple[int, ...], ...]
@@ -35,11 +35,12 @@ class _Place:
 
 
 def reduce(automaton: Automaton, label: Label | None = None) -> Automaton:
-    """An automaton that decides the same attempts at the same instants.
+    """Minimise an automaton; it decides the same attempts at the same instants.
 
     Args:
         automaton: as constructed.
-        label: what has to stay the same for people, clocks with it; `None`: only verdicts have to.
+        label: key that merged locations must share, so that what is shown stays right; clocks are
+            kept then, too. `None`: only verdicts are preserved.
     """
     draft = _Draft(automaton)
     while draft.merge(label) or draft.drop_cuts() or (label is None and draft.drop_clocks()):
@@ -104,7 +105,7 @@ class _Draft:
         return True
 
     def _look(self, index: int, label: Label | None) -> Hashable:
-        """What tells a location from others at first sight."""
+        """The initial key of partition refinement."""
         if index <= PASSED or index == self.initial:
             return index
         place = self.places[index]
@@ -113,7 +114,7 @@ class _Draft:
         return place.cuts, values, end_clauses(place.residual), labelled
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
-        """Where a location leads, up to what is known to be equivalent."""
+        """The successors of a location, up to the current partition."""
         seen: dict[int, Hashable] = {id(None): None}
 
         def move(edge: Edge | None) -> Hashable:
@@ -125,7 +126,7 @@ class _Draft:
         return tuple(tuple(map(move, edges)) for edges, _, _ in self.places[index].rows.values())
 
     def _with_initial(self, blocks: list[int]) -> list[int]:
-        """The initial location joins another that moves as it does, if no attempt rests there."""
+        """Merge the initial location with one of equal successors, if no attempt stays in it."""
         initial = self.initial
         if initial <= PASSED or self.places[initial].cuts or self._is_entered(initial):
             return blocks
@@ -153,7 +154,7 @@ class _Draft:
     # Regions.
 
     def drop_cuts(self) -> bool:
-        """Make one region of two in which all is the same; returns whether there were any."""
+        """Merge regions in which all is the same; returns whether there were any."""
         found = False
         for place in self.places:
             for clock in range(len(place.cuts)):
@@ -201,7 +202,7 @@ class _Draft:
         return True
 
     def _live_clocks(self) -> set[tuple[int, int]]:
-        """The clocks of which an age is read, in their location or later."""
+        """The live clocks: those whose age is read in a location, or later."""
         live = {
             (index, clock)
             for index, place in enumerate(self.places)
@@ -238,7 +239,7 @@ class _Draft:
     # Tables.
 
     def tables(self) -> Automaton:
-        """The automaton, with letters of a class where no location tells them apart any more."""
+        """The minimised automaton, with letters merged that no location distinguishes any more."""
         rows = [row for place in self.places for row in _in_order(place)]
         columns: dict[tuple[Edge | None, ...], int] = {}
         new_class = [
@@ -292,7 +293,7 @@ def _without(
 
 
 def _joined(place: _Place, clock: int, cut: int) -> dict[Regions, Row] | None:
-    """The rows when a cut is left out; `None` if something happens there."""
+    """The rows without a cut; `None` if the regions on its sides differ."""
     made: dict[Regions, Row] = {}
     for regions, row in place.rows.items():
         region = regions[clock]
@@ -306,7 +307,7 @@ def _joined(place: _Place, clock: int, cut: int) -> dict[Regions, Row] | None:
 
 
 def _either(one: Row, other: Row) -> Row | None:
-    """A row that serves for both, if one does; where no run comes, anything serves."""
+    """A row that replaces both, if there is one; an unreachable entry matches any."""
     if one == other:
         return one
     if one[1:] != other[1:]:

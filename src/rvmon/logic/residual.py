@@ -1,4 +1,4 @@
-"""What an attempt still owes: a reduced disjunctive normal form of timed atoms.
+"""Residuals: what an attempt still owes, as a reduced disjunctive normal form of timed atoms.
 
 Source: AUTOMATA 1; reduced DNFs of monotone functions are their prime implicants (Quine 1952).
 """
@@ -30,7 +30,7 @@ _MOST_PAIRS = 1 << 10
 
 
 class TooManyClausesError(Exception):
-    """A residual outgrew the limit that was set for it."""
+    """A residual exceeded its limit of clauses."""
 
 
 def _follows(atom: Atom, clause: Clause) -> bool:
@@ -84,7 +84,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
 
 
 def _conjunction(clause: Clause) -> Clause:
-    """Without the atoms that others of the clause imply."""
+    """The conjunction without atoms that others in it imply."""
     implied = [atom for atom in clause.difference(_rigid(clause)) if _follows(atom, clause)]
     return clause.difference(implied) if implied else clause
 

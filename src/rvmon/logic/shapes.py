@@ -1,10 +1,10 @@
-"""Automata of formulas that differ in their propositions and bounds alone: constructed once.
+"""Constructs one automaton per shape: formulas that differ in propositions and bounds share it.
 
-What is required in a location is told apart, so that a run can be explained by where it stood.
+Locations with different residuals stay apart, so that a run can be explained by its location.
 
-Bounds matter to an automaton by their order, and by how far they lie apart where that is little: an
-age that `construct` meets is 0 or a bound, and as many ticks more as steps were taken behind it.
-So bounds that lie far apart are replaced by others in the same order, and put back afterwards.
+An automaton depends on the order of the bounds, and on their distances where these are small: an
+age that `construct` meets is 0 or a bound, plus one tick per step taken after it. So bounds that
+lie far apart are replaced by small ones in the same order, and put back afterwards.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def _parts(node: Core) -> Iterator[Core]:
 
 
 def _bounds(node: Core) -> Iterator[int]:
-    """The ages at which something changes for a node."""
+    """The bounds of a node."""
     if isinstance(node, Until | Release):
         if node.low:
             yield node.low
@@ -154,7 +154,7 @@ def _bounds(node: Core) -> Iterator[int]:
 
 
 def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
-    """What each bound is replaced by: by itself, where it matters how near they lie."""
+    """The replacement of each bound; bounds whose distances matter replace themselves."""
     if any(high - low < _APART for low, high in pairwise((0, *bounds))):
         return {bound: bound for bound in bounds}
     return {bound: _STRIDE * rank for rank, bound in enumerate(bounds, start=1)}
@@ -163,7 +163,7 @@ def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
 def _description(
     nodes: Sequence[Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
 ) -> Iterator[object]:
-    """What a formula is but for the names of its propositions."""
+    """The key of a shape: the formula without the names of its propositions."""
     place = {id(node): number for number, node in enumerate(nodes)}
     digits = {state: number for number, state in enumerate(alphabet.propositions)}
     for node in nodes:

@@ -1,4 +1,4 @@
-"""The state formulas of some requirements as one graph with shared nodes, and what leaves read.
+"""The state formulas of requirements as one graph with shared nodes.
 
 Instances of a `for each`, and attempts with captured values, depend on nodes of this graph.
 """
@@ -67,7 +67,7 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Graph:
-    """Nodes in an order in which operands come first.
+    """The nodes, operands first.
 
     Attributes:
         nodes: the state formulas.
@@ -75,8 +75,8 @@ class Graph:
         operands: per node the places of its operands.
         parents: per node the places of those it is an operand of.
         by_name: per signal and event, the leaves that read it.
-        stateful: the nodes that remember, and those that change by time alone.
-        remembers_captured: whether a node that remembers stands above such a leaf.
+        stateful: the nodes with memory, and those that change by time alone.
+        remembers_captured: whether a node with memory depends on captured values.
     """
 
     nodes: tuple[State, ...]
@@ -206,7 +206,7 @@ def _settled(state: State, operands: Sequence[int | None]) -> int | None:
 
 
 def _all_of(roots: Iterable[State]) -> set[State]:
-    """State formulas and all they are made of."""
+    """State formulas and all their subformulas."""
     seen: set[State] = set()
     stack = list(roots)
     while stack:
@@ -223,7 +223,7 @@ def leaf_count(roots: Iterable[State]) -> int:
 
 
 def graph_of(roots: Iterable[State]) -> Graph:
-    """The graph of state formulas and all they are made of."""
+    """The graph of some state formulas."""
     nodes = tuple(sorted(_all_of(roots), key=lambda state: state.id))
     index = {state: place for place, state in enumerate(nodes)}
     operands = tuple(tuple(index[arg] for arg in state.args) for state in nodes)
@@ -260,7 +260,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What an instance depends on; worked out once for a requirement.
+    """What the instances of a requirement depend on.
 
     Attributes:
         own: the nodes whose value depends on the instance's, or that read its event.
@@ -342,7 +342,7 @@ def varying(graph: Graph) -> frozenset[int]:
 
 
 def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
-    """Some nodes and all that depend on them."""
+    """Some nodes and all nodes that depend on them."""
     found = set(leaves)
     for place, operands in enumerate(graph.operands):
         if not found.isdisjoint(operands):

@@ -1,7 +1,7 @@
-"""Formulas of the present and past with four values, as state formulas with three.
+"""Translates formulas of the present and past from four truth values to three.
 
-Before the birth of its signals a proposition is neither true nor false nor unknown. No monitor has
-that value: where a formula stands says what it is taken for, and the formula is rewritten so.
+Before its signals are born a proposition has a fourth value, unborn. No monitor represents it: the
+context of a formula fixes what unborn counts as, and the formula is rewritten accordingly.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ from rvmon.spec.checked.rewrite import read, rewritten, without_spans
 
 
 class Reader(Reading[Four]):
-    """Makes formulas of the present and past into state formulas.
+    """Translates formulas of the present and past to state formulas.
 
     Args:
         factory: where they are made.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
-        measured: whether what is made has the robustness that the formula has, and not its truth
-            alone, which takes more formulas.
+        measured: whether the result must have the robustness of the formula, not only its truth
+            value; that takes more formulas.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
@@ -71,7 +71,7 @@ class Reader(Reading[Four]):
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
-        """A formula whose propositions, not the whole, are taken for `unborn` where they are not.
+        """The state formula in which each unborn proposition, not the whole, counts as `unborn`.
 
         A proposition is an atom or an operator of the past.
         """
@@ -122,7 +122,7 @@ class Reader(Reading[Four]):
                 return self._atom(formula)
 
     def _amount(self, formula: Amount) -> Four:
-        """What is not born adds nothing; a limit, and what a mean is of, are born first."""
+        """A window beside a limit: unborn members add nothing; the limit must be born first."""
         states = [
             self._in_truth.four(part).read(UNKNOWN if part is formula.known else FALSE)
             for part in formula.operands
@@ -148,14 +148,14 @@ class Reader(Reading[Four]):
         return self._born_with(factory.compared(leaf, *dict.fromkeys(states)), asked)
 
     def _unborn(self, part: SignalAtom | Compare) -> State:
-        """That a signal that is read is not born, whatever occurs."""
+        """Whether some signal that is read is unborn."""
         if isinstance(part, Compare) and windows_in(part.left, part.right):
             return self._compared(part).unborn
         signals = tuple(sorted(signals_of(part).items()))
         return self.factory.leaf(Unborn(signals)) if signals else self.factory.state_false
 
     def _born_with(self, value: State, asked: Iterable[State]) -> Four:
-        """What is unknown while something is not born, and is not born itself till then."""
+        """A value that is unborn until everything in `asked` is born."""
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
@@ -262,7 +262,7 @@ class Reader(Reading[Four]):
         return factory.state_any(states)
 
     def since(self, left: Four, right: Four, interval: Interval) -> Four:
-        """Positions at which an operand is not born are passed over."""
+        """`since` passes over positions at which an operand is unborn."""
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
@@ -311,7 +311,7 @@ class Reader(Reading[Four]):
         return Four(factory, read, unborn=unborn)
 
     def previous(self, arg: Four) -> Four:
-        """Not born where its operand was not."""
+        """`previous` is unborn where its operand was."""
         factory = self.factory
         value = factory.previous(arg.read(FALSE))
         if not arg.mortal:
@@ -323,7 +323,7 @@ class Reader(Reading[Four]):
         return Four(self.factory, same(self.previous(arg).read(FALSE)), mortal=False)
 
     def _held(self, arg: Four, interval: Interval | None) -> Four:
-        """As long as it must have held, it must have been born."""
+        """`held` is unborn unless its operand was born throughout."""
         factory = self.factory
         elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
         value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
