@@ -1,5 +1,4 @@
-"""Lowers formulas to core formulas: subformulas of past and present become propositions, above them
-only X, U and R remain.
+"""Lowers formulas to core formulas: X, U and R over propositions of past and present.
 
 `expanded` takes propositions apart again, where a formula is needed down to what the input gives.
 """
