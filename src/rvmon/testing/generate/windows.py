@@ -157,6 +157,7 @@ def _window(
     counted: Formula | None = None
     most = None
     chosen: tuple[Compare, ...] = ()
+    bounded = False
     plain = replace(shape, events=False)
     may_be_last = measured.of is not Members.HELD and measured is not Measured.DURATION
     if may_be_last and (mode == "last" or chance(rng, 25)) and mode not in ("since", "each"):
@@ -182,11 +183,13 @@ def _window(
             number = Literal(1)
         value = number
         operand, chosen = _member(rng, below, draw, measured, number)
-        if measured in (Measured.DELTA, Measured.AGO):
+        bounded = measured in (Measured.DELTA, Measured.AGO) or (
+            measured is Measured.VARIANCE and not fields
+        )
+        if bounded:  # the language asks for a D
             window = window or shape.longest
     since = mode == "since" or chance(rng, 30)
-    lone = measured in (Measured.DELTA, Measured.AGO) or most
-    if shape.instants and since and not lone:
+    if shape.instants and since and not (bounded or most):
         begun = passed(pick(rng, shape.instants), Literal(0), strict=False)
         operand = Binary(BinaryOp.AND, begun, operand)
     return WindowValue(measured, operand, window, value, most, counted, chosen)
