@@ -4,9 +4,8 @@
     python -m benchmarks.models originals FOLDER [--seconds 2] [--most 200]
 
 `cost` prints symbolic states visited and stored, seconds of CPU (the least of some searches) and
-bytes of memory for each stored state, each network in a process of its own. Beside them stands what
-TChecker (compiled, C++) took for its own models of the same systems, on the same machine, where it
-is known.
+bytes of memory for each stored state, each network in a process of its own. How that compares with
+TChecker, `python -m benchmarks.tchecker` prints.
 
 For `originals`, FOLDER holds clones of the repositories of `uppaal_originals.txt`, which has a line
 for each repository (its name, and the commit that was looked at) and below it one for each model:
@@ -49,22 +48,6 @@ _WORDS = re.compile(r" \(\d+ places\)|`[^`]*`|\d+")
 COLLISION = "E<> Station(1).Transm and Station(2).Transm and Bus.Idle"
 """Of CSMA/CD, as TChecker asks it: the model's own query compares clocks."""
 
-PEER = {
-    ("fischer", 7): "7,737 stored, 0.26 s",
-    ("fischer", 8): "25,080 stored, 1.43 s",
-    ("fischer", 9): "81,035 stored, 6.73 s",
-    ("fischer", 10): "260,998 stored, 31.7 s",
-    ("csma_cd", 7): "7,490 stored, 0.18 s",
-    ("csma_cd", 8): "20,738 stored, 0.67 s",
-    ("csma_cd", 9): "55,554 stored, 2.22 s",
-    ("train_gate", 5): "215,375 stored, 3.21 s",
-    ("fddi", 5): "129 stored, 0.01 s",
-    ("fddi", 8): "303 stored, 0.18 s",
-    ("fddi", 10): "459 stored, 1.06 s",
-}
-"""TChecker 0.8 for its own models of these systems (CPU seconds, `-a aLU-covreach`), 2026-11-28, on
-a busy machine."""
-
 SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "fddi": (5, 8, 10)}
 
 
@@ -75,7 +58,7 @@ def cost(options: argparse.Namespace) -> None:
         for network, query in _queries(name, int(size)):
             _measure(network, query, options.repeat, options.seconds)
         return
-    print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}   TChecker")
+    print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}")
     for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
         words = [sys.executable, "-m", "benchmarks.models", "cost", "--only", name, str(size)]
         words += ["--repeat", str(options.repeat), "--seconds", str(options.seconds)]
@@ -123,8 +106,8 @@ def _print(name: str, size: int, told: dict[str, float]) -> None:
     label = f"{name} {size}" if size else f"{name} {told['query']}"
     held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
     figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
-    unknown = "" if told["holds"] is not None else "not decided"
-    print(f"{label:22} {figures}   {PEER.get((name, size), '')}{unknown}".rstrip(), flush=True)
+    unknown = "" if told["holds"] is not None else "   not decided"
+    print(f"{label:22} {figures}{unknown}".rstrip(), flush=True)
 
 
 def known() -> dict[str, str]:
