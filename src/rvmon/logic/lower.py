@@ -101,7 +101,7 @@ def lower(
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
     begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
-    in_truth = begin(measured=False).reader
+    in_truth = begin(measured=False).reader if measured else lowering.reader
     of_windows = [itself(one.value) for one in requirement.captures if windows_in(one.value)]
     caught = tuple(in_truth.four(one).read(UNKNOWN) for one in of_windows)
     match requirement.trigger:
@@ -118,7 +118,9 @@ def lower(
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
-        required = lowering.episode(running, lowering.required(implied), requirement.consequent)
+        # An episode is over where its trigger is FALSE, by whatever distance.
+        truth = _running(in_truth.four(requirement.trigger).read(FALSE), requirement, factory)
+        required = lowering.episode(truth, lowering.required(implied), requirement.consequent)
         ahead = begin(opened=True).core(requirement.consequent, True)
         again = None if looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None

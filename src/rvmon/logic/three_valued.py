@@ -104,7 +104,7 @@ class Reader(Reading[Four]):
                 arg = self.four(operand)
                 return self._all([self.no(arg), self._before(arg)])
             case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
-                return self._held(self.four(operand), interval)
+                return self._held(self.four(operand), self._in_truth.four(operand), interval)
             case Unary() | Binary():
                 return read(formula, self.four, self)
             case Amount() if self.measured and formula.has_distance(held=self.held):
@@ -322,12 +322,12 @@ class Reader(Reading[Four]):
         """What it was at the position before: false if not born, as what lies before the trace."""
         return Four(self.factory, same(self.previous(arg).read(FALSE)), mortal=False)
 
-    def _held(self, arg: Four, interval: Interval | None) -> Four:
+    def _held(self, arg: Four, truth: Four, interval: Interval | None) -> Four:
         """`held` is unborn unless its operand was born throughout."""
         factory = self.factory
         elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
         value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
-        missing = self._historically(arg.missing, interval)
+        missing = self._historically(truth.missing, interval)
         if not arg.mortal:
             lost = factory.state_all([missing, factory.negation(missing)])
             return Four(factory, same(factory.state_any([value, lost])), mortal=False)

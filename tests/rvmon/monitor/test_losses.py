@@ -288,3 +288,20 @@ def test_reasons_that_are_all_different_do_not_fill_the_memory():
     found = [one for one in monitor.finish(1).health if one.kind is HealthKind.LATE]
     assert len(found) < 1_100
     assert sum(one.count for one in found) == 3_000
+
+
+def test_an_event_that_is_lost_between_samples_may_have_occurred():
+    """Robustness looks at it again as the outage begins, though its truth was unknown before."""
+    text = "spec s\nevent h(m: real)\nrequirement R\n  upon start\n  then for 3 ns h.m < 5\n"
+    monitor = rvmon.loads(text).robustness_monitor()
+    figures = [*monitor.step_ns(-3, {"h": {"m": None}}), *monitor.lose_ns(["h"], -2)]
+    figures += [*monitor.found_ns(["h"], -1), *monitor.finish_ns(3)]
+    assert [(one.robustness.low, one.robustness.high) for one in figures] == [
+        (float("-inf"), float("-inf"))
+    ]
+    figures = rvmon.loads(text.replace("3 ns", "1 ns")).robustness_monitor()
+    figures.step_ns(-3, {"h": {"m": None}})
+    figures.lose_ns(["h"], -2)
+    figures.found_ns(["h"], -2)
+    [figure] = figures.finish_ns(-2)
+    assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), float("inf"))

@@ -115,6 +115,7 @@ static void lose_name(run *r, int32_t name, int64_t t)
     if (name < signals) {
         lose_signal(r, name, t);
     } else {
+        margins_mark_changed(r, name);
         r->silent[name - signals] = IS_UNKNOWN;
     }
     recheck_name(r, name);
@@ -134,6 +135,7 @@ static void leave_behind(run *r, int32_t name, int64_t until)
     r->absent[name] = 0;
     set_momentary(r, name, true);
     if (name >= signals) {
+        margins_mark_changed(r, name);
         r->silent[name - signals] = IS_FALSE;
         end_loss(r, name);
     } else {
