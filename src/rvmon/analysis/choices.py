@@ -15,7 +15,7 @@ from typing import TypeVar, assert_never
 from rvmon.logic.formula import Factory, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
 from rvmon.logic.state_graph import captured_names, names_of
-from rvmon.monitor.watching import Positions, known_truths
+from rvmon.monitor.watching import Known, known_truths
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
@@ -189,15 +189,15 @@ def truths_tried(
     gap = spec.gap or 1
     samples = [Sample(place * gap, values) for place, values in enumerate(tried)]
     found = known_truths(spec, cores, samples, samples[-1].t, None, {})
-    columns = [_column(one.true, one.false, len(tried)) for one in found]
+    columns = [_column(one, len(tried)) for one in found]
     return list(zip(*columns, strict=True))
 
 
-def _column(true: Positions, false: Positions, count: int) -> list[int]:
+def _column(known: Known, count: int) -> list[int]:
     """Truths by position."""
     column = [UNKNOWN] * count
-    for truth, ranges in (TRUE, true), (FALSE, false):
-        for first, last in ranges:
+    for truth, ranges in (TRUE, known.true), (FALSE, known.false):
+        for first, last in ranges.tolist():
             for place in range(max(first, 0), min(last, count - 1) + 1):
                 column[place] = truth
     return column

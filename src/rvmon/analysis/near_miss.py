@@ -6,7 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from rvmon.analysis.truths import Question, Seen, Truth, holds, look_through
+import numpy as np
+
+from rvmon.analysis.spans import hold
+from rvmon.analysis.truths import Question, Seen, Truth, look_through
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -101,13 +104,14 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
 
 def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
     """The moment at which most parts were true; of equals one with more events, then the first."""
-    best: tuple[tuple[int, int, int], tuple[Formula, ...]] = ((0, 0, 0), ())
-    for at in sorted({low for part in parts for low, _ in seen[part].sure}):
-        there = tuple(part for part in parts if holds(seen[part].sure, at))
-        events = sum(isinstance(part, EventAtom) for part in there)
-        best = max(best, ((len(there), events, -at), there), key=lambda found: found[0])
-    (_, _, at), there = best
-    return _Miss(parts, there, -at if there else None)
+    instants = np.unique(np.concatenate([seen[part].sure[:, 0] for part in parts]))
+    if not len(instants):
+        return _Miss(parts, (), None)
+    true = np.array([hold(seen[part].sure, instants) for part in parts])
+    events = true[[isinstance(part, EventAtom) for part in parts]].sum(axis=0)
+    best = int(np.argmax(true.sum(axis=0) * (len(parts) + 1) + events))
+    there = tuple(part for part, is_true in zip(parts, true[:, best], strict=True) if is_true)
+    return _Miss(parts, there, int(instants[best]))
 
 
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
@@ -119,7 +123,7 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
     rest = miss.there[0]
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part)
-    unknown = any(holds(seen[part].may, at) for part in miss.missing)
+    unknown = any(hold(seen[part].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
     return f"{_listed(miss.missing)} {lacking} {while_}"
@@ -136,7 +140,7 @@ def _apart(
     groups: dict[str, list[Formula]] = {}
     for part in parts:
         word = "was never true"
-        low, high = seen[part].may[0]
+        low, high = seen[part].may[0].tolist()
         if isinstance(part, SignalAtom) and part.name in valueless:
             word = valueless[part.name]
         elif low <= start and high >= end:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from rvmon.analysis.example import small_step
+from rvmon.analysis.spans import outside, within
 from rvmon.analysis.truths import (
     Question,
     Seen,
-    Spans,
-    both,
     look_through,
-    outside,
     parts_of,
     subformulas,
     truths_of_parts,
@@ -32,6 +33,11 @@ from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.analysis.truths import Positions
 
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
@@ -90,16 +96,16 @@ def late_in(
     return found
 
 
-def _first_after(deadline: int, spans: Spans, positions: Sequence[int] | None) -> int | None:
-    """The first position (`None`: every tick is one) after an instant that lies in a span."""
-    place = bisect_right(spans, deadline, key=lambda span: span[1])
-    for low, high in spans[place:]:
+def _first_after(deadline: int, spans: NDArray[np.int64], positions: Positions) -> int | None:
+    """The first position after an instant that lies in a span."""
+    for place in range(int(np.searchsorted(spans[:, 1], deadline, "right")), len(spans)):
+        low, high = (int(edge) for edge in spans[place])
         first = max(low, deadline + 1)
         if positions is None:
             return first
         index = bisect_left(positions, first)
         if index < len(positions) and positions[index] <= high:
-            return positions[index]
+            return int(positions[index])
     return None
 
 
@@ -111,15 +117,15 @@ class PartTruth:
         depth: how deep it lies; 0 for what is required.
         text: as in the spec.
         part: `trigger` or `required`.
-        true: the ticks of the window at which it is true.
-        false: those at which it is false; at the others it is not known.
+        true: closed intervals of the ticks of the window at which it is true.
+        false: of those at which it is false; at the others it is not known.
     """
 
     depth: int
     text: str
     part: str
-    true: Spans
-    false: Spans
+    true: tuple[tuple[int, int], ...]
+    false: tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,8 +195,8 @@ def part_truths_of(
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):
             truth = truths[id(formula)]
-            shown = ((start, stop),)
-            true = both(truth.sure, shown)
-            false = outside(both(truth.may, shown), start, stop)
-            part_truths.append(PartTruth(depth, format_formula(formula), part, true, false))
+            true = within(truth.sure, start, stop)
+            false = outside(within(truth.may, start, stop), start, stop)
+            shown = [tuple((low, high) for low, high in one.tolist()) for one in (true, false)]
+            part_truths.append(PartTruth(depth, format_formula(formula), part, *shown))
     return tuple(part_truths)

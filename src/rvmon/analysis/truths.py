@@ -1,14 +1,14 @@
-"""Where formulas are true over a whole recording, in sorted and disjoint intervals of ticks."""
+"""Where formulas are true over a whole recording."""
 
 from __future__ import annotations
 
-from array import array
-from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
+import numpy as np
+
+from rvmon.analysis.spans import FOREVER, joined, outside, within
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
@@ -31,59 +31,20 @@ from rvmon.trace.schema import is_unknown
 from rvmon.verdict.attempt import Attempt
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rvmon.readers.batch import Batch
 
-Spans = tuple[tuple[int, int], ...]
-"""Closed intervals of ticks, ascending, none touching the next."""
-
-FOREVER = 1 << 63
-"""Later than any tick."""
-
-
-def union(intervals: Iterable[tuple[int, int]]) -> Spans:
-    """The ticks of some intervals; empty ones are dropped.
-
-    >>> union([(5, 7), (1, 2), (3, 4)])
-    ((1, 7),)
-    """
-    merged: list[tuple[int, int]] = []
-    for low, high in sorted(intervals):
-        if low > high:
-            continue
-        if merged and low <= merged[-1][1] + 1:
-            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
-        else:
-            merged.append((low, high))
-    return tuple(merged)
-
-
-def holds(spans: Spans, t: int) -> bool:
-    """Whether a tick lies in one of the spans."""
-    place = bisect_right(spans, t, key=lambda span: span[0])
-    return place > 0 and t <= spans[place - 1][1]
-
-
-def both(left: Spans, right: Spans) -> Spans:
-    """The ticks that lie in both."""
-    return union((max(a, c), min(b, d)) for a, b in left for c, d in right)
-
-
-def outside(spans: Spans, low: int, high: int) -> Spans:
-    """The ticks from `low` to `high` that lie in none.
-
-    >>> outside(((2, 3),), 0, 5)
-    ((0, 1), (4, 5))
-    """
-    edges = [(low - 1, low - 1), *spans, (high + 1, high + 1)]
-    return union((a + 1, b - 1) for (_, a), (b, _) in pairwise(edges))
+    Positions = range | NDArray[np.int64] | None
+    """Instants of positions, ascending; `None` where every tick is one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Truth:
     """Where a formula is surely true, and where it may be (unknown or true), on all ticks."""
 
-    sure: Spans
-    may: Spans
+    sure: NDArray[np.int64]
+    may: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,14 +77,14 @@ class Seen:
         names: the signals and events that had a source; `None`: all.
         begin: the instant of the first sample, ticks; `None`: there is none.
         end: the last instant.
-        positions: of the recording; `None` where every tick is one.
+        positions: of the recording.
         valueless: the signals that never had a value.
     """
 
     names: frozenset[str] | None
     begin: int | None
     end: int
-    positions: Sequence[int] | None
+    positions: Positions
     valueless: frozenset[str]
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
@@ -162,14 +123,14 @@ def look_through(
         groups[question.whose].add(question.formulas)
     runs = [one for one in groups.values() if one.begin(names, plans)]
     begin: int | None = None
-    instants = array("q")
+    instants: list[NDArray[np.int64]] = []
     valueless = set(spec.signals)
     for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
-        times = (piece.t,) if isinstance(piece, Sample) else piece.times
+        times = np.array([piece.t]) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
         if spec.time is TimeModel.SAMPLED:
-            instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
+            instants.append(times)
         if valueless:
             valueless -= _born(piece, valueless)
         for run in runs:
@@ -254,7 +215,8 @@ class _Group:
             core: Truth(ticks.spans(one.true), ticks.others(one.false))
             for core, one in zip(self._made.order, known, strict=True)
         }
-        found[None] = Truth((), ticks.others(()))
+        nowhere = np.empty((0, 2), np.int64)
+        found[None] = Truth(nowhere, ticks.others(nowhere))
         return {text: found[core] for text, core in self._made.cores.items()}
 
 
@@ -266,24 +228,14 @@ def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
     return {name for name in valueless & piece.signals.keys() if piece.signals[name].holds_value}
 
 
-def _unlike(instants: Iterable[int]) -> Iterator[int]:
-    """Each instant once."""
-    last = None
-    for t in instants:
-        if t != last:
-            yield t
-        last = t
-
-
 def _positions(
-    spec: CheckedSpec, begin: int, end: int, instants: Sequence[int]
-) -> Sequence[int] | None:
-    """The positions; `None` where every tick is one."""
+    spec: CheckedSpec, begin: int, end: int, instants: Sequence[NDArray[np.int64]]
+) -> Positions:
     match spec.time:
         case TimeModel.HELD:
             return None
         case TimeModel.SAMPLED:
-            return instants
+            return np.unique(np.concatenate(instants))
         case TimeModel.CLOCKED:
             period = spec.period or 1
             return range(-(-begin // period) * period, end + 1, period)
@@ -294,7 +246,7 @@ def _positions(
 class _Ticks:
     """The ticks at which something is said of positions."""
 
-    def __init__(self, positions: Sequence[int] | None, begin: int, end: int) -> None:
+    def __init__(self, positions: Positions, begin: int, end: int) -> None:
         self._positions = positions
         self._first = 0
         self._begin = begin
@@ -302,25 +254,35 @@ class _Ticks:
             self._first = positions.start // positions.step
         self.end = end
 
-    def spans(self, ranges: Iterable[tuple[int, int]]) -> Spans:
+    def spans(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
         """Those of ranges of positions."""
-        whole = ((self._begin, self.end),)
-        if self._positions is None:
-            return both(union(ranges), whole)
-        return both(union(self._lasting(ranges, self._positions)), whole)
+        if self._positions is not None:
+            ranges = self._lasting(ranges - self._first, self._positions)
+        return within(joined(ranges), self._begin, self.end)
 
-    def others(self, ranges: Iterable[tuple[int, int]]) -> Spans:
+    def others(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
         """All others, and those behind the end."""
         return outside(self.spans(ranges), self._begin, FOREVER)
 
     def _lasting(
-        self, ranges: Iterable[tuple[int, int]], positions: Sequence[int]
-    ) -> Iterator[tuple[int, int]]:
-        last = len(positions) - 1
-        for low, high in ranges:
-            first, stop = max(low - self._first, 0), min(high - self._first, last)
-            if first <= stop:
-                yield positions[first], positions[stop + 1] - 1 if stop < last else self.end
+        self, ranges: NDArray[np.int64], positions: range | NDArray[np.int64]
+    ) -> NDArray[np.int64]:
+        """From the first of these positions to the tick before the one that follows the last."""
+        ranges = ranges[(ranges[:, 1] >= 0) & (ranges[:, 0] < len(positions))]
+        if not len(ranges):
+            return ranges
+        stops = np.minimum(ranges[:, 1], len(positions) - 1) + 1
+        firsts = _at(positions, np.maximum(ranges[:, 0], 0))
+        lasts = np.full(len(ranges), self.end)
+        is_followed = stops < len(positions)
+        lasts[is_followed] = _at(positions, stops[is_followed]) - 1
+        return np.column_stack((firsts, lasts))
+
+
+def _at(positions: range | NDArray[np.int64], places: NDArray[np.int64]) -> NDArray[np.int64]:
+    if isinstance(positions, range):
+        return positions.start + positions.step * places
+    return positions[places]
 
 
 def _of_instance(

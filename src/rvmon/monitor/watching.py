@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from struct import iter_unpack
 from typing import TYPE_CHECKING
 
 from rvmon.core.plan import pack
@@ -20,25 +19,25 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar, Trace
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from rvmon.monitor.recording import RecordingRun
     from rvmon.readers.batch import Batch
-
-Positions = tuple[tuple[int, int], ...]
-"""Ranges of positions, first and last, ascending: ticks, in clocked time ticks divided by the
-period, in sampled time numbers of samples."""
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The stretches over which a formula is decided.
+    """Where a formula is decided.
 
     Attributes:
-        true: surely.
-        false: surely.
+        true: int64[n, 2], ranges of positions, first and last, ascending: ticks, in clocked time
+            ticks divided by the period, in sampled time numbers of samples.
+        false: likewise.
     """
 
-    true: Positions
-    false: Positions
+    true: NDArray[np.int64]
+    false: NDArray[np.int64]
 
 
 class TruthsPlan:
@@ -104,9 +103,11 @@ class TruthsRun:
 
     def known(self, end: int) -> list[Known]:
         """End the recording (ticks), and give where each formula is decided."""
+        import numpy as np
+
         self._run.finish(end)
         return [
-            Known(*(tuple(_ranges(one)) for one in self._run.truths(place)))
+            Known(*(np.frombuffer(one, np.int64).reshape(-1, 2) for one in self._run.truths(place)))
             for place in self._plan.places
         ]
 
@@ -135,7 +136,3 @@ def known_truths(
     for sample in samples:
         run.take(sample)
     return run.known(end)
-
-
-def _ranges(data: bytes) -> Iterator[tuple[int, int]]:
-    return iter_unpack("=qq", data)

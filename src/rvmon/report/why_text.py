@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
-from rvmon.analysis.truths import Spans
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.tracks import Track, signals_told
@@ -149,10 +148,10 @@ def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
     return FALLS if begins else RISES
 
 
-def _inside(spans: Spans, low: int, high: int) -> bool:
+def _inside(spans: Sequence[tuple[int, int]], low: int, high: int) -> bool:
     """Whether all that touches a stretch of time lies within it."""
     return all(low <= a and b <= high for a, b in spans if a <= high and low <= b)
 
 
-def _touches(spans: Spans, low: int, high: int) -> bool:
+def _touches(spans: Sequence[tuple[int, int]], low: int, high: int) -> bool:
     return any(a <= high and low <= b for a, b in spans)

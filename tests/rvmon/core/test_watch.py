@@ -42,7 +42,7 @@ def truths(text, values, end):
     checked, core = required(text)
     samples = [Sample(t, one) for t, one in values.items()]
     (found,) = known_truths(checked, [core], samples, end, None, {})
-    return found.true, found.false
+    return tuple(tuple(map(tuple, one.tolist())) for one in (found.true, found.false))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,65 @@
+"""Sets of ticks: closed intervals in an array int64[n, 2], ascending, none touching the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+FOREVER = (1 << 63) - 1
+"""Later than any tick."""
+
+
+def joined(intervals: Any) -> NDArray[np.int64]:
+    """Those intervals, where some may touch the next.
+
+    Args:
+        intervals: int64[n, 2], ascending, none reaching into the next.
+
+    >>> joined([(1, 2), (3, 4), (6, 7)]).tolist()
+    [[1, 4], [6, 7]]
+    """
+    found = np.asarray(intervals, np.int64).reshape(-1, 2)
+    apart = np.ones(len(found) + 1, np.bool_)
+    apart[1:-1] = found[1:, 0] > found[:-1, 1] + 1
+    if apart.all():
+        return found
+    return np.column_stack((found[apart[:-1], 0], found[apart[1:], 1]))
+
+
+def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
+    """The ticks from `low` to `high` that lie in the set.
+
+    >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
+    [[3, 4], [6, 6]]
+    """
+    first = np.searchsorted(spans[:, 1], low)
+    stop = np.searchsorted(spans[:, 0], high, "right")
+    return np.clip(spans[first:stop], low, high)
+
+
+def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
+    """The ticks from `low` to `high` that do not; the set lies within these.
+
+    >>> outside(joined([(2, 3)]), 0, 5).tolist()
+    [[0, 1], [4, 5]]
+    """
+    firsts = np.concatenate(([low], spans[:, 1] + 1))
+    lasts = np.concatenate((spans[:, 0] - 1, [high]))
+    return np.column_stack((firsts, lasts))[firsts <= lasts]
+
+
+def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:
+    """Whether each of some ticks lies in the set.
+
+    >>> hold(joined([(1, 4), (6, 7)]), [0, 1, 5, 7]).tolist()
+    [False, True, False, True]
+    """
+    if not len(spans):
+        return np.zeros(np.shape(ticks), np.bool_)
+    place = np.searchsorted(spans[:, 0], ticks, "right") - 1
+    found: NDArray[np.bool_] = (place >= 0) & (np.asarray(ticks) <= spans[place, 1])
+    return found
