@@ -155,10 +155,10 @@ class _Copied:
             yield line
 
     def taken(self) -> str:
-        """The lines since this was asked last, each with an end."""
+        """The lines since this was asked last; the last one of all may lack its end, here too."""
         text = "".join(self._read)
         self._read.clear()
-        return text if text.endswith("\n") else f"{text}\n"
+        return text
 
 
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:

@@ -81,7 +81,7 @@ def unpack(path: str) -> dict[str, bytes]:
         TamperedError: it was changed since, or is no archive.
     """
     try:
-        if not Path(path).is_file() or Path(path).stat().st_size > MOST_BYTES:
+        if Path(path).stat().st_size > MOST_BYTES or not Path(path).is_file():
             raise RvmonError(f"{path} is no file, or larger than {MOST_BYTES >> 30} GB")
         data = Path(path).read_bytes()
     except OSError as error:

@@ -18,7 +18,7 @@ from rvmon.native.sources import CSV_FOLDER
 from rvmon.readers import places
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.readers.cells import batch_of, cells_of_labels, kept
-from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines
+from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines, unended
 from rvmon.readers.places import LONGEST_LINE, bounded_lines
 from rvmon.readers.rows import Row
 from rvmon.readers.values import as_declared, scalar_of_text
@@ -55,13 +55,18 @@ _LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r(?!\Z))")
 
 
 def csv_batches(
-    file: BinaryIO, layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout]
+    file: BinaryIO,
+    layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout],
+    ignoring: frozenset[str],
+    lose: Callable[[frozenset[str]], object],
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order.
 
     Args:
         file: is read from its start.
         layout_of: reads the header off the rows.
+        ignoring: the signals that take no unknown value.
+        lose: is told the names that are unknown as the last line has no end.
 
     Raises:
         TraceError: with the line's number; the rows above it have been given out.
@@ -76,7 +81,13 @@ def csv_batches(
             row = bounded_lines(io.StringIO(text.cut(end), newline=""))
             yield csv_samples(split_lines(row, before), reader.layout)
         elif ended == _ALL and not text.read_on():
-            return
+            break
+    if text.start < len(text.rest):
+        before = text.line
+        tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
+        for line, t, values, lost in unended(split_lines(tail, before), reader.layout, ignoring):
+            lose(lost)
+            yield iter([(line, t, values)])
 
 
 class _Text:
@@ -106,6 +117,11 @@ class _Text:
         self.start = 0
         self.is_last = not piece
         return True
+
+    @property
+    def is_ended(self) -> bool:
+        """Whether it is read to its end, and its last line has one."""
+        return self.is_last and self.rest[-1:] in (b"\n", b"\r", b"")
 
     def _refuse_long(self) -> None:
         rest = self.rest[self.start :].decode(errors="ignore")
@@ -162,7 +178,7 @@ class _Reader:
         lines = np.empty(room, np.int64)
         table = np.zeros(2 * len(self._labels), np.int32)
         ended, rows, at, end, count, odd, labels = read(
-            text.rest, text.start, text.is_last, csv.field_size_limit(), self._slots, self._kinds,
+            text.rest, text.start, text.is_ended, csv.field_size_limit(), self._slots, self._kinds,
             self._absent, numbers, says, lines, self._odd, self._labels, table,
         )  # fmt: skip
         found = text.rest

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
-from rvmon.readers.places import opened
+from rvmon.readers.places import Ends, opened
 from rvmon.readers.values import shorten
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
@@ -171,13 +171,16 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None) -> Iterator[str]:
-    """The lines of a text as plain CSV has them; where comments stood they are empty."""
+    """The lines of a text as plain CSV has them; where comments stood they are empty.
+
+    The last one has an end if it has one in the text.
+    """
     made: Callable[[list[str]], list[str]] | None = None
     lines = 0
-    for number, row in _rows(text, dialect):
+    ends = Ends(text)
+    for number, row in _rows(iter(ends), dialect):
         if made is None:
-            made = _stamp_maker(row, stamps)
-            row = made(row)
+            row, made = _stamp_maker(row, stamps)
         else:
             if dialect.has_commas:
                 row = [_COMMA.sub(r"\1.\2", one) if _COMMA.fullmatch(one) else one for one in row]
@@ -190,22 +193,22 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
         plain = written.getvalue()
         # The header comes first, whatever stood above it; the others keep their numbers.
         missing = number - lines - plain.count("\n") if lines else 0
-        yield "\n" * missing + plain
         lines += missing + plain.count("\n")
+        yield "\n" * missing + (plain if ends.is_there else plain[:-1])
 
 
-def _rows(text: io.TextIOWrapper, dialect: Dialect) -> Iterator[tuple[int, list[str]]]:
+def _rows(lines: Iterator[str], dialect: Dialect) -> Iterator[tuple[int, list[str]]]:
     """The rows with the numbers of their lines; what is no row is left out."""
     above = dialect.above
     for _ in range(above):
-        text.readline()
+        next(lines, "")
     if dialect.is_commented:
         above += 1
-        yield above, _cells(_COMMENT.sub("", text.readline(), count=1), dialect.separator)
+        yield above, _cells(_COMMENT.sub("", next(lines, ""), count=1), dialect.separator)
     if dialect.separator:
-        rows = split_lines(text, above, dialect.separator)
+        rows = split_lines(lines, above, dialect.separator)
     else:
-        rows = ((number, line.split()) for number, line in enumerate(text, above + 1))
+        rows = ((number, line.split()) for number, line in enumerate(lines, above + 1))
     for number, row in rows:
         # What begins so is a comment where there were some above the header.
         is_comment = above and (number > above + 1) and row and _COMMENT.match(row[0])
@@ -213,28 +216,32 @@ def _rows(text: io.TextIOWrapper, dialect: Dialect) -> Iterator[tuple[int, list[
             yield number, row
 
 
-def _stamp_maker(header: Sequence[str], stamps: Stamps | None) -> Callable[[list[str]], list[str]]:
-    """What puts the stamp that several columns, or a pattern, give into a row, the header first."""
+def _stamp_maker(
+    header: list[str], stamps: Stamps | None
+) -> tuple[list[str], Callable[[list[str]], list[str]]]:
+    """A header, and what makes rows of it, with the stamp that several columns, or a pattern, give.
+
+    What stands last in a row stands last there, too: it may be half of what it was.
+    """
     if stamps is None or not ("+" in stamps.column or stamps.pattern):
-        return lambda row: row
+        return header, lambda row: row
     parts = [stamps.column] if stamps.column in header else stamps.column.split("+")
     missing = [part for part in parts if part not in header]
     if missing or (not stamps.pattern and len(parts) != 2):
-        return lambda row: row  # whoever looks for the column says that it is missing
+        return header, lambda row: row  # whoever looks for the column says that it is missing
     places = [header.index(part) for part in parts]
-    is_header = [True]
+    is_last = len(header) - 1 in places
+
+    def put(row: Sequence[str], stamp: str) -> list[str]:
+        kept = [cell for name, cell in zip(header, row, strict=True) if name != stamps.column]
+        return [*kept, stamp] if is_last else [stamp, *kept]
 
     def made(row: list[str]) -> list[str]:
-        if is_header.pop() if is_header else False:
-            kept = [name for name in row if name != stamps.column]
-            return [*kept, stamps.column]
         if len(row) != len(header):
             return row
-        cells = [row[place] for place in places]
-        kept = [cell for name, cell in zip(header, row, strict=True) if name != stamps.column]
-        return [*kept, _stamp(cells, parts, stamps)]
+        return put(row, _stamp([row[place] for place in places], parts, stamps))
 
-    return made
+    return put(header, stamps.column), made
 
 
 def _stamp(cells: Sequence[str], parts: Sequence[str], stamps: Stamps) -> str:

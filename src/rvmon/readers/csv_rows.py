@@ -225,3 +225,39 @@ def csv_samples(
         except TraceError as error:
             raise TraceError(f"line {line}: {error}") from None
         yield line, t, values
+
+
+def unended(
+    rows: Iterator[tuple[int, list[str]]], layout: Layout, ignoring: frozenset[str]
+) -> Iterator[tuple[int, int, Mapping[str, Value], frozenset[str]]]:
+    """The same of a row that lacks the end of its line, and the names that nobody knows for it.
+
+    Its last cell may be half of one, so that what it feeds is unknown; a truth value has no half.
+    Where that cell is the stamp, all is unknown.
+
+    Args:
+        rows: the last one, or none.
+        layout: of them.
+        ignoring: the signals that take no unknown value.
+
+    Raises:
+        TraceError: with the line's number; also where such a signal would be unknown.
+    """
+    for line, row in rows:
+        try:
+            t, values = read_row(row, layout)
+        except TraceError as error:
+            raise TraceError(f"line {line}: {error}; the file ends here: was it cut off?") from None
+        last = len(row) - 1
+        lost = frozenset(
+            one.name
+            for one in layout.columns
+            if layout.time == last
+            or (one.index == last and (one.kind is not Kind.BOOL or not row[last]))
+        )
+        for name in sorted(lost & ignoring):
+            raise TraceError(
+                f"line {line}: it has no end: if it was cut off, `{name}` was another value: end "
+                "the line, or leave it out"
+            )
+        yield line, t, {**values, **dict.fromkeys(lost)}, lost

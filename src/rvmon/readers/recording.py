@@ -95,6 +95,7 @@ class FileRecording:
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
         self._known: tuple[list[str], Layout] | None = None
+        self._unended: frozenset[str] = frozenset()
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -197,11 +198,16 @@ class FileRecording:
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
-                yield from csv_batches(plain, self._layout)
+                self._lose(frozenset())
+                ignoring = self._schema.ignoring
+                yield from csv_batches(plain, self._layout, ignoring, self._lose)
             else:
                 from rvmon.readers.jsonl_batch import jsonl_batches
 
                 yield from jsonl_batches(plain, self._schema, self.ignored, self._take_stamps)
+
+    def _lose(self, names: frozenset[str]) -> None:
+        self._unended = names
 
     def _take_stamps(self, stamps: Stamps) -> None:
         self._stamps = stamps
@@ -254,21 +260,11 @@ class FileRecording:
         return self.stamp_doubts() + self._cut_off()
 
     def _cut_off(self) -> list[Health]:
-        """That the last cell may be half of one: in CSV the end of a line alone says that it ends.
-
-        Of a file as it is, or as it lies at an address; nobody looks into what is packed or piped.
-        Each of several that are joined is looked at by itself.
-        """
-        if self._joined is not None:
+        """That nobody knows what the last cell said: the end of a line alone says that it ends."""
+        if not self._unended:
             return []
-        if endings_of(self.path) != (".csv", "") or not can_be_read_again(self.path):
-            return []
-        with open(local_path(self.path), "rb") as file:
-            size = file.seek(0, os.SEEK_END)
-            file.seek(max(0, size - 2))
-            if file.read().rstrip(b"\0")[-1:] in (b"\n", b"\r", b""):  # UTF-16 has a zero
-                return []
-        remark = "it has no end of line: if it was cut off, its last value is another"
+        names = ", ".join(f"`{name}`" for name in sorted(self._unended))
+        remark = f"it has no end: if it was cut off, {names} was another value, so it is unknown"
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:

@@ -2,6 +2,7 @@
 
 import pytest
 
+import rvmon
 from rvmon.cli import main
 
 SPEC = """
@@ -60,6 +61,14 @@ def test_quoted_ends_of_lines_stay(base):
     """A row is more than a line."""
     assert clip("--from", "11", "--to", "16", "-o", "b.csv") == 0
     assert '12,0.7,,,"two\nlines"\n' in (base / "b.csv").read_text()
+
+
+def test_a_last_line_without_its_end_has_none_in_the_piece(base):
+    """What it said last is not known there, either."""
+    (base / "a.csv").write_text("t,go,ready,speed\n0,,0,0.5\n5,1,1,0.6\n6,,,0.7")
+    assert clip("R2", "-o", "b.csv") == 0
+    assert (base / "b.csv").read_text().endswith("\n6,,,0.7")
+    assert rvmon.load("base.rv").evaluate("b.csv").verdicts["R2"] == "I"
 
 
 def test_an_episode_is_cut_around_what_failed(base, capsys):

@@ -1,6 +1,7 @@
 """`rvmon look`: every name of a recording over time, as text and as a page."""
 
 import math
+import re
 
 import pytest
 from tests.tools.logs import write_ulog
@@ -89,3 +90,27 @@ def test_a_course_is_bounded_and_loses_no_peak():
     assert len(stretches) <= MOST
     assert sum(one.updates for one in stretches) == 1000
     assert max(one.high for one in stretches if one.high is not None) == 9.0
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["look", "gone.csv"],
+        ["init", "gone.mcap"],
+        ["init", "gone.bag", "--for", "a.rv"],
+        ["run", "a.rv", "gone/"],
+        ["run", "a.rv", "gone.csv", "gone2.csv", "--join"],
+        ["why", "a.rv", "gone.ulg", "R1"],
+        ["clip", "a.rv", "gone.csv", "R1", "-o", "b.csv"],
+        ["watch", "a.rv", "gone.jsonl"],
+        ["conform", "gone.ta", "gone.csv"],
+        ["evidence", "gone.zip"],
+        ["check", "a.rv", "--binding", "gone.toml"],
+    ],
+)
+def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, capsys, words):
+    """By its name, and nothing else is wrong with it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rv").write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 1\n")
+    assert main(words) == 2
+    assert re.search(r"gone[.\w/]*: No such file or directory", capsys.readouterr().err)

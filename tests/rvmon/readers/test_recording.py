@@ -1,3 +1,4 @@
+import gzip
 from pathlib import Path
 
 import pytest
@@ -5,8 +6,9 @@ import pytest
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.recording import FileRecording
-from rvmon.trace.sample import HealthKind
+from rvmon.trace.sample import HealthKind, Sample
 from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.stamps import stamps_of
 
 SCHEMA = Schema(
     {"ok": Kind.BOOL, "hand.distance": Kind.REAL, "mode": Kind.LABEL, "n": Kind.INT},
@@ -78,16 +80,47 @@ def test_undeclared_columns_are_ignored_and_counted(tmp_path):
     assert recording.names == {"ok"}
 
 
-@pytest.mark.parametrize(("end", "told"), [("", True), ("\n", False), ("\r\n", False)])
-def test_a_last_line_without_its_end_is_told(tmp_path, end, told):
-    """`1.2` may be what was written of `1.25`; it is read as it stands."""
-    recording, samples = read(tmp_path, "a.csv", f"t,n\n0,1\n1,12{end}")
-    assert samples[-1] == (10**9, {"n": 12})
+UNENDED = {
+    "as it is": ("a.csv", lambda text: text.encode()),
+    "packed": ("a.csv.gz", lambda text: gzip.compress(text.encode())),
+    "in UTF-16": ("a.CSV", lambda text: text.encode("utf-16")),
+    "in a dialect": ("a.csv", lambda text: f"# by a tool\n{text}".replace(",", ";").encode()),
+}
+
+
+@pytest.mark.parametrize("end", ["", "\n", "\r\n"])
+@pytest.mark.parametrize("form", UNENDED)
+def test_what_a_last_line_without_its_end_says_is_unknown(tmp_path, form, end):
+    """`12` may be what was written of `125`: however the file lies there, that is told."""
+    name, made = UNENDED[form]
+    recording, samples = read(tmp_path, name, made(f"t,ok,n\n0,1,1\n1,1,12{end}"))
+    assert samples[-1] == (10**9, {"ok": True, "n": 12 if end else None})
     found = [(one.kind, one.name) for one in recording.health()]
-    assert found == ([(HealthKind.CUT, "the last line")] if told else [])
-    wide, same = read(tmp_path, "b.CSV", f"t,n\n0,1\n1,12{end}".encode("utf-16"))
-    assert same == samples
-    assert [(one.kind, one.name) for one in wide.health()] == found
+    assert found == ([] if end else [(HealthKind.CUT, "the last line")])
+
+
+def test_of_a_last_line_without_its_end_only_the_last_cell_is_unknown(tmp_path):
+    """Of a stamp there all is; a truth value that is there is whole, one that is not may be."""
+    assert read(tmp_path, "a.csv", "n,t,ok\n7,1,1")[1] == [(10**9, {"n": 7, "ok": True})]
+    assert read(tmp_path, "a.csv", "n,t,ok\n7,1,")[1] == [(10**9, {"n": 7, "ok": None})]
+    assert read(tmp_path, "a.csv", "t,n,go\n1,7,")[1] == [(10**9, {"n": 7, "go": None})]
+    assert read(tmp_path, "a.csv", "n,ok,t\n7,1,12")[1] == [(12 * 10**9, {"n": None, "ok": None})]
+    recording, samples = read(tmp_path, "a.csv", "t,n,unread\n1,7,1")
+    assert samples == [(10**9, {"n": 7})]
+    assert HealthKind.CUT not in [one.kind for one in recording.health()]
+    two = Schema({"s": Kind.INT}, {}, stamps=stamps_of("sec+nanosec"))
+    (tmp_path / "a.csv").write_text("sec,nanosec,s\n1,5,12")
+    assert list(FileRecording(tmp_path / "a.csv", two)) == [Sample(1_000_000_005, {"s": None})]
+
+
+def test_a_signal_that_ignores_nan_is_refused_where_a_last_line_has_no_end(tmp_path):
+    """What it would pass over was lost; nothing lost is green."""
+    spec = rvmon.loads("spec s\nsignal x : real ignore NaN\nrequirement R1\n  always x < 3\n")
+    (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2")
+    with pytest.raises(rvmon.TraceError, match="line 3: it has no end: if it was cut off, `x`"):
+        spec.evaluate(tmp_path / "a.csv")
+    (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2\n")
+    assert spec.evaluate(tmp_path / "a.csv").verdicts["R1"] == "P"
 
 
 def test_decimal_seconds_are_exact(tmp_path):
@@ -120,6 +153,16 @@ BAD = {
     "very late time": ("a.csv", f"t,n\n{'9' * 5000},1\n", "999...999"),
     "blanks and cells": ("a.csv", "t,n\n   \n0,x\n", "line 3: column `n`: `x`"),
     "binary file": ("a.csv", b"\x7fELF\x02\x01\xff\xfe\x00" * 40, "is this a binary file?"),
+    "a cell cut off": (
+        "a.csv",
+        "t,n\n0,1\n1,-",
+        "line 3: column `n`: `-` is not a whole number; the file ends",
+    ),
+    "a row cut off": (
+        "a.csv",
+        "t,n\n0,1\n1",
+        "line 3: 1 cells where the header has 2; the file ends",
+    ),
     "open quote": ("a.csv", 't,n\n0,"1\n', "not a CSV row"),
     "empty JSON lines": ("a.jsonl", "\n\n", "holds no sample"),
     "truncated JSON": ("a.jsonl", '{"t": 1, "n": 1}\n{"t": 2, "n', "line 2: not a JSON object"),

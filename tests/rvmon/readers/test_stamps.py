@@ -165,7 +165,7 @@ def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
     assert "to 0.98 s" in shown.out
     (tmp_path / "a.csv").write_text("t,x\n0,1\n1,1")
     assert main(["run", "s.rv", "a.csv", "--format", "json"]) == 0
-    assert "warning: a.csv: `the last line`: it has no end of line" in capsys.readouterr().err
+    assert "warning: a.csv: `the last line`: it has no end: if" in capsys.readouterr().err
 
 
 def of_clocks(report):

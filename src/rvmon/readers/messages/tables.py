@@ -22,7 +22,7 @@ from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
 from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.places import bounded_lines, endings_of, named_errors
+from rvmon.readers.places import Ends, bounded_lines, endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.texts import did_you_mean, text_of_file
 from rvmon.trace.schema import Kind, Schema, Stamps
@@ -134,13 +134,20 @@ def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None
 
 @contextmanager
 def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
-    """The lines of a file, split; errors inside name it."""
+    """The lines of a file, split, up to one that has no end; errors inside name it."""
     with (
         named_errors(table.path),
         opened_as_csv(table.path, table.stamps) as (plain, _),
         TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
     ):
-        yield split_lines(bounded_lines(text))
+        yield _ended(split_lines(ends := Ends(bounded_lines(text))), ends)
+
+
+def _ended(rows: Iterator[tuple[int, list[str]]], ends: Ends) -> Iterator[tuple[int, list[str]]]:
+    for line, row in rows:
+        if not ends.is_there:
+            raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
+        yield line, row
 
 
 def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Sequence[str], Stamps]:

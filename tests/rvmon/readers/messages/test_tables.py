@@ -182,3 +182,10 @@ def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, ca
     clip = ["clip", "s.rv", "runs/two", "R1#1", "--before", "1s", "-o", "x"]
     assert main(clip) == 2
     assert "clip each of them" in capsys.readouterr().err
+
+
+def test_a_file_of_a_topic_whose_last_line_has_no_end_is_refused(tmp_path):
+    """What it says last may be half of what it was."""
+    files = {"speed.csv": "t,speed\n0,0.5\n1,0.9"}
+    with pytest.raises(RvmonError, match=r"speed\.csv: line 3: it has no end: was it cut off"):
+        rvmon.loads(ONE).evaluate(folder(tmp_path / "a", files))
