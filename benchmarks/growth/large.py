@@ -21,6 +21,23 @@ requirement R2
   always (x > 3 -> within 2 s x < 3)
 """
 
+KEYED = """spec s
+signal p, q : bool
+signal x : real
+event ask(id: int)
+event answer(id: int)
+requirement R1
+  {}
+"""
+
+FAILURES = {
+    "one after the other": "always (p -> within 10 s q)",
+    "each with a captured value": "upon p then within 3 s (q and x > v) let v = x",
+    "each of an instance": "upon ask then within 3 s answer.id == n for each n in ask.id",
+    "by a trigger that never came true": "upon p and q and held(p, 1 h) then q",
+}
+"""What failures there are in a recording that was found to fail often."""
+
 FIRST_MONITOR = """
 import sys, time, rvmon
 from benchmarks.growth.large import many_requirements
@@ -123,6 +140,11 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
     yield "four rows with a leap of 54 years: run", lambda: run(LEAP, leap)
     for n in (200_000, 2_000_000):
         yield f"{n:,} rows of JSON lines: run", lambda n=n: run(SPEC, narrow_jsonl(n), "r.jsonl")
+    for kind, requirement in FAILURES.items():
+        yield (
+            f"200,000 rows, failures {kind}: run",
+            lambda own=requirement: run(KEYED.format(own), keyed_csv(200_000)),
+        )
     yield "1,000 requirements: first monitor", lambda: [*python, FIRST_MONITOR, "1000"]
     yield "10,000 requirements: first monitor", lambda: [*python, FIRST_MONITOR, "10000"]
     yield "10,000 requirements: check", lambda: check(many_requirements(10_000))
@@ -169,6 +191,17 @@ def narrow_csv(count: int) -> str:
     """So many rows in which each value changes now and then."""
     lines = (f"{t},{int(t % 7 < 3)},{int(t % 11 < 2)},{t % 97}\n" for t in range(count))
     return "t,p,q,x\n" + "".join(lines)
+
+
+def keyed_csv(count: int) -> str:
+    """So many rows that ask, each a question of its own, which is seldom answered in time."""
+    lines = (
+        f"{t},{int(t % 7 < 3)},{int(t % 11 < 2)},{t // 10},"
+        f"{1 if t % 5 == 0 else ''},{t if t % 5 == 0 else ''},"
+        f"{1 if t % 5 == 4 else ''},{t - 9 if t % 5 == 4 else ''}\n"
+        for t in range(count)
+    )
+    return "t,p,q,x,ask,ask.id,answer,answer.id\n" + "".join(lines)
 
 
 def narrow_jsonl(count: int) -> str:

@@ -96,7 +96,7 @@ class Seen:
 
 def look_through(
     spec: CheckedSpec,
-    questions: Iterable[Question],
+    questions: Sequence[Question],
     pieces: Iterable[Batch | Sample],
     end: int,
     names: frozenset[str] | None = None,
@@ -125,6 +125,7 @@ def look_through(
     begin: int | None = None
     instants: list[NDArray[np.int64]] = []
     valueless = set(spec.signals)
+    of_instances = any(question.for_each is not None for question in questions)
     for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = np.array([piece.t]) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
@@ -133,8 +134,9 @@ def look_through(
             instants.append(times)
         if valueless:
             valueless -= _born(piece, valueless)
+        samples = _samples(spec, piece) if of_instances else ()
         for run in runs:
-            run.take(piece)
+            run.take(piece, samples)
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
     truths = {whose: one.truths(ticks) for whose, one in groups.items()}
@@ -192,20 +194,16 @@ class _Group:
             self._run = TruthsRun(self._made.plan, names)
         return self._run is not None
 
-    def take(self, piece: Batch | Sample) -> None:
-        """Look at what comes next."""
+    def take(self, piece: Batch | Sample, samples: Sequence[Sample]) -> None:
+        """Look at what comes next; an instance does so by the samples in it."""
         if self._run is None:
             return
         each = self._question.for_each
         if each is None:
             self._run.take(piece)
             return
-        samples: Iterable[Sample] = (piece,) if isinstance(piece, Sample) else self._samples(piece)
         for sample in _of_instance(each, self._question.captured, samples):
             self._run.take(sample)
-
-    def _samples(self, batch: Batch) -> Iterator[Sample]:
-        return coalesce(batch.rows(0, len(batch.times)), self._spec.events, Conflicts())
 
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
         """By text of the formula; the recording is over."""
@@ -218,6 +216,12 @@ class _Group:
         nowhere = np.empty((0, 2), np.int64)
         found[None] = Truth(nowhere, ticks.others(nowhere))
         return {text: found[core] for text, core in self._made.cores.items()}
+
+
+def _samples(spec: CheckedSpec, piece: Batch | Sample) -> Sequence[Sample]:
+    if isinstance(piece, Sample):
+        return (piece,)
+    return tuple(coalesce(piece.rows(0, len(piece.times)), spec.events, Conflicts()))
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:

@@ -231,8 +231,12 @@ def _missed(
     most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
     found = {}
     for name in failed:
-        attempts = list(islice(report.of(name, Verdict.FAIL), most))
-        waits = waits_of(spec.requirements[name], attempts)
+        requirement = spec.requirements[name]
+        # What was captured, and each instance, takes a pass over the recording by itself.
+        is_alone = bool(requirement.for_each or requirement.captures)
+        own = SHOWN_PER_REQUIREMENT if is_alone else most
+        attempts = list(islice(report.of(name, Verdict.FAIL), own))
+        waits = waits_of(requirement, attempts)
         if waits:
             found[name] = attempts, waits
     return found

@@ -215,7 +215,7 @@ class _Panels:
         }
         self._seen: Seen | None = None
         if content.run.samples and report.end is not None:
-            questions = self._questions(shown)
+            questions = list(self._questions(shown))
             samples, names = content.run.samples, _sources(content)
             self._seen = look_through(content.spec, questions, samples, report.end, names)
 

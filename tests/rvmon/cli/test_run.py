@@ -455,3 +455,18 @@ def test_a_failure_says_how_late_what_it_awaited_came(files, capsys):
     text = capsys.readouterr().out
     assert json.loads(text)["requirements"]["D1"]["late"] == {"1": 3_020_000_000}
     assert Report.from_json(text).late == {"D1": {1: 3_020_000_000}}
+
+
+@pytest.mark.parametrize("captured", ["let v = x", "for each v in knock.id"])
+def test_of_captured_values_it_is_told_of_the_failures_that_are_shown(captured, files, capsys):
+    """Each would take a pass of its own over the recording."""
+    (files / "own.rv").write_text(
+        "spec own\nsignal x : real\nevent knock(id: int)\nrequirement R\n"
+        f"  upon knock\n  then within 1 s x > v\n  {captured}\n"
+    )
+    knocks = "".join(f"{10 * k},1,{k},{k}\n{10 * k + 5},,,{k + 1}\n" for k in range(1, 6))
+    (files / "own.csv").write_text("t,knock,knock.id,x\n" + knocks)
+    assert main(["run", "own.rv", "own.csv", "--format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)["requirements"]["R"]
+    assert found["counts"]["F"] == 5
+    assert found["late"] == {str(k): (10 * k + 5) * 10**9 for k in (1, 2, 3)}
