@@ -1,4 +1,4 @@
-"""A notation for what the oracle says of a trace drawn as rows of characters."""
+"""A notation for what the oracle and the core say of a trace drawn as rows of characters."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 from tests.tools.build import requirement, spec_of, timeline
+from tests.tools.differential import disagreements
+from tests.tools.forms import Maker
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import Requirement, TimeModel
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.word import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
@@ -49,14 +52,12 @@ def judge(
     """
     judged = what if isinstance(what, Requirement) else requirement(what)
     spec = spec_of(judged, time=time, period=period, stale=stale)
-    report = evaluate(
-        spec,
-        samples or timeline(**rows),
-        end=end,
-        advances=advances,
-        names=names,
-        outages=[Outage(frozenset(names.split()), *stretch) for names, *stretch in lost],
-    )
+    told = samples or timeline(**rows)
+    outages = tuple(Outage(frozenset(own.split()), *stretch) for own, *stretch in lost)
+    report = evaluate(spec, told, end=end, advances=advances, names=names, outages=outages)
+    actions = sorted((*told, *advances), key=lambda one: one.t if isinstance(one, Sample) else one)
+    case = Case(spec, tuple(actions), end, names, outages)
+    assert disagreements(case, Maker()) == []
     return [brief(attempt) for attempt in report.attempts]
 
 

@@ -9,9 +9,11 @@ from tests.tools.build import (
     always,
     compared,
     e,
+    end,
     eventually,
     following,
     held,
+    k,
     no,
     once,
     p,
@@ -24,8 +26,8 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.checked.formula import Captured, Formula, UpdateFunction, UpdateValue
+from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.law.word import Outage
 
 SAMPLED = {"time": TimeModel.SAMPLED}
@@ -41,6 +43,7 @@ def at(t: int, formula: Formula) -> Formula:
     [
         # Within it, whatever was read there; behind it, from the first update at its end or later.
         ({"p": "1....1", "lost": [("p", 2, 3)]}, "++--- +"),
+        ({"p": "1..0..1", "lost": [("p", 2, 4)]}, "++----+"),
         ({"p": "1..1", "lost": [("p", 2, 3)], "end": 5}, "++--++"),
         ({"p": "1.1", "lost": [("p", 2, 3)], "end": 5}, "++----"),
         ({"p": "1..1", "lost": [("p", 3, 3)], "end": 5}, "+++---"),
@@ -68,6 +71,7 @@ def test_an_event(judge: Any) -> None:
     expected = ["F 1", "I", "I", "I", "F 5", "F 6"]
     assert [judge(at(t, e), **told)[0] for t in range(6)] == [f"0 {one}" for one in expected]
     assert judge(requirement(q, upon=e), **told) == ["1 I"]
+    assert judge(requirement(q, upon=e), **told, q="1") == []
 
 
 @pytest.mark.parametrize("what", ["updated", "changed", "known"])
@@ -120,6 +124,8 @@ def test_a_trace_may_begin_in_an_outage(judge: Any, time: Any) -> None:
     told = {"p": "1...1...1", "lost": [("q", -8, -7)], **time}
     assert judge(p, **told) == ["-8 I"]
     assert judge(requirement(no(p), whenever=p), **told) == ["-8 F 0"]
+    # The first sample is at its last instant: nothing can have come before that.
+    assert judge(p, p="1", lost=[("q", 0, 0)]) == ["0 P 0"]
 
 
 def test_how_long_a_trace_has_lasted(judge: Any) -> None:
@@ -143,7 +149,9 @@ def test_a_trace_reaches_to_the_end_of_an_outage(judge: Any, time: Any) -> None:
     """That time went on was not lost."""
     assert judge(eventually(p, 0, 3), p="0", lost=[("q", 2, 5)], **time) == ["0 F 4"]
     assert judge(always(p), p="1", lost=[("q", 2, 5)], **time) == ["0 P 5 held"]
-    assert judge(always(p), p="1", lost=[("p", 5, 5)]) == ["0 I"]
+    for policy in (EndPolicy.DEFAULT, EndPolicy.PASS):
+        required = requirement(always(p), at_end=policy)
+        assert judge(required, p="1", lost=[("p", 5, 5)]) == ["0 I"]
 
 
 @pytest.mark.parametrize("lost", ["q", ""])
@@ -189,6 +197,54 @@ def test_clocked_time_counts_what_was_lost_at_the_tick_behind(judge: Any) -> Non
     assert judge(at(8, e), **told) == ["0 I"]
     assert judge(requirement(p, upon=probe("changed", "x")), **told) == ["12 P 12"]
     assert judge(at(8, compared(x, "==", 2)), **told) == ["0 P 8"]
+
+
+@pytest.mark.parametrize(
+    ("read", "expected"), [(p, "P 8"), (probe("updated", "p"), "F 8"), (q, "I")]
+)
+def test_sampled_time_holds_behind_it_what_was_read_within(
+    judge: Any, read: Formula, expected: str
+) -> None:
+    """Of names that were not lost; it is no update there."""
+    told = {"p": "0..1", "q": "1..1", "e": "........1", "lost": [("q", 2, 5)], **SAMPLED}
+    assert f"8 {expected}" in judge(requirement(read, upon=e), **told)
+
+
+def test_sampled_time_hides_a_trigger_from_the_second_tick_on(judge: Any) -> None:
+    """At the first one there is no edge if it was true before."""
+    for last, expected in ((8, []), (9, ["1 I"])):
+        told = {"p": "0u..1", "lost": [("", 8, last)], **SAMPLED}
+        assert judge(requirement(true, upon=p), **told) == expected
+
+
+def test_what_was_lost_may_be_of_any_key(judge: Any) -> None:
+    """Also of one never seen: it has an instance of its own, in doubt."""
+    its = {"for_each": ForEach("id", k)}
+    own = compared(k, "==", Captured("id"))
+    told = {"q": "0", "g": "3", "lost": [("g", 2, 3)], "end": 5}
+    assert judge(requirement(q, upon=own, **its), **told) == ["0 F 0", "2 I", "2 I"]
+    # A key that comes before a lost tick of a clock is not known; the next time it is.
+    told = {"g": ".0....0", "lost": [("g", 3, 4)], "end": 8, **EVERY_4}
+    assert judge(requirement(true, **its), g=".0", lost=[("g", 3, 4)], **EVERY_4) == []
+    assert "8 P 8" in judge(requirement(true, upon=own, **its), **told)
+    # Behind an outage of sampled time the next sample is one of each instance.
+    told = {"g": "......2", "p": "........0.........1u", "lost": [("", 17, 17)], **SAMPLED}
+    assert judge(requirement(p, upon=p, **its), **told)
+
+
+def test_nothing_is_captured_within(judge: Any) -> None:
+    """What is captured there is not known, though the value was read."""
+    required = requirement(true, upon=end, captures=(Capture("v", x),))
+    assert judge(required, x="1", lost=[("", 3, 3)], **SAMPLED) == ["3 I"]
+
+
+def test_what_was_learnt_of_a_value_is_no_news_in_the_next_outage(judge: Any) -> None:
+    """Neither before all was born, nor between two: a limit that is passed again triggers."""
+    late = {"p": "....11.0....1", "q": ".....0", "lost": [("x", 12, 13)], "end": 12}
+    required = requirement(two(once(q, 0, 9), "and", compared(x, ">", 1)), upon=p)
+    assert judge(required, **late) == ["12 F 12", "4 I"]
+    told = {"x": ".0.0....2..02", "q": ".0....0", "p": ".0", "lost": [("q", 2, 3), ("q", 10, 12)]}
+    assert judge(requirement(q, upon=compared(x, ">", 1)), **told) == ["8 F 8", "12 I"]
 
 
 def test_an_outage_takes_time() -> None:
