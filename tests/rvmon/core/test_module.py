@@ -3,7 +3,6 @@
 import gc
 import random
 import sys
-import weakref
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -215,30 +214,7 @@ def test_several_payloads_where_they_can_be_told_apart():
         assert {str(one.verdict) for one in decided if one.captured["i"] > 9} <= {"P"}
 
 
-KINDS = ((0, 2), (2, 0), (3, 1))
 """Numbers of signals with the kinds of their columns."""
-
-
-def test_rows_are_judged_as_samples(planned):
-    """The same values by columns and by dictionaries give the same records."""
-    rng = np.random.default_rng(3)
-    times = np.cumsum(rng.integers(1, 10**9, 500))
-    p, x = rng.random(500) < 0.5, np.where(rng.random(500) < 0.1, np.nan, rng.random(500) * 2)
-    n, e = rng.integers(0, 6, 500), rng.random(500) < 0.4
-    absent = frozenset({"q", "mode", "f"})
-    by_rows, by_samples = planned.monitor(absent), planned.monitor(absent)
-    says = np.where(e, np.uint8(2), np.uint8(0))
-    for start, stop in ((0, 200), (200, 201), (201, 500)):
-        own = [one[start:stop].copy() for one in (p, x, n, says)]
-        some = tuple((at, (kind, own[at - 1 if at else 0], None)) for at, kind in KINDS)
-        assert by_rows.rows(times[start:stop].copy(), (*some, (5, own[3], None))) == stop - start
-    for t, *row in zip(times.tolist(), p.tolist(), x.tolist(), n.tolist(), e.tolist(), strict=True):
-        assert by_samples.judge(t, dict(zip(("p", "x", "n", "e"), row, strict=True)), False)
-    for one in (by_rows, by_samples):
-        one.finish(None)
-    assert by_rows.records() == by_samples.records()
-    assert by_rows.counts() == by_samples.counts()
-    assert len(by_rows.records()[0]) > 20 * RECORD.itemsize
 
 
 def test_a_row_that_is_before_the_one_above_is_not_taken(run):
@@ -420,23 +396,3 @@ def test_other_threads_run_while_rows_are_judged(planned):
     with ThreadPoolExecutor(3) as pool:
         found = set(pool.map(judged, range(6)))
     assert len(found) == 1
-
-
-def test_the_collector_takes_a_ring_of_runs(planned):
-    """A run refers to what looks closer, which may refer to it."""
-
-    class Ring:
-        """Has a run that refers to it."""
-
-        def __init__(self) -> None:
-            self.run = planned.monitor(frozenset(), self.look, closer)
-
-        def look(self, t: float, values: object) -> list[rvmon.Attempt]:
-            """Look closer."""
-            raise LookupError(t, values)
-
-    ring = Ring()
-    gone = weakref.ref(ring)
-    del ring
-    gc.collect()
-    assert gone() is None

@@ -70,19 +70,6 @@ def test_samples_are_put_in_order_within_the_allowed_delay():
     assert (late.count, late.first) == (1, 5 * 10**8)
 
 
-def test_the_order_within_the_delay_changes_nothing():
-    """Samples in any order that the delay allows give the same attempts as sorted ones."""
-    samples = [(0, {"x": 1}), (0.4, {"go": True}), (0.8, {"done": True}), (1.2, {"go": True})]
-    reports = []
-    for order in ([0, 1, 2, 3], [1, 0, 2, 3], [2, 1, 0, 3], [3, 2, 1, 0]):
-        monitor = load("max delay 2 s").monitor()
-        for index in order:
-            monitor.step(*samples[index])
-        reports.append(monitor.finish(10).attempts)
-    assert reports[0]
-    assert all(report == reports[0] for report in reports)
-
-
 def test_health_lists_what_was_not_known_and_who_reads_it():
     """Missing, None, NaN and stale values are counted per signal with their first instant."""
     monitor = load().monitor()

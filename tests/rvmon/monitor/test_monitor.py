@@ -59,12 +59,6 @@ def test_a_decision_is_returned_by_the_call_that_brings_it(monitor):
     assert monitor.advance_ns(6_000_000_001) == ()
 
 
-def test_a_late_sample_tells_of_deadlines_that_passed_before_it(monitor):
-    """A deadline is missed at its instant plus one tick, whenever the next message comes."""
-    monitor.step(0, {"ready": True, "sensed": True})
-    assert brief(monitor.step(100, {"released": True})) == [("R1", 1, "F", 3_000_000_001)]
-
-
 def test_what_each_tick_starts_again_is_not_due():
     """A clock that runs from the last position goes on with time, and decides nothing by itself."""
     text = "always ((F[0 ns, 20 ns] r) -> (p U r))"
@@ -122,30 +116,6 @@ def test_time_never_goes_back(monitor):
         monitor.step(2, {"sensed": True})
     monitor.step(3, {"sensed": True})
     assert brief(monitor.finish().attempts) == [("R1", 1, "I", None)]
-
-
-def test_a_finished_run_is_over_until_reset(monitor):
-    """`finish` gives the same report again, a sample is refused, `reset` starts anew."""
-    monitor.step(0, {"ready": True, "sensed": True})
-    report = monitor.finish(5)
-    assert report.verdicts["R1"] is Verdict.FAIL
-    assert monitor.finish() is report
-    with pytest.raises(TraceError, match="reset"):
-        monitor.step(6, {})
-    monitor.reset()
-    monitor.step(0, {"ready": False, "sensed": True})
-    assert monitor.finish(5).verdicts == {
-        "R1": Verdict.NOT_TRIGGERED,
-        "R2": Verdict.PASS,
-        "R3": Verdict.NOT_TRIGGERED,
-    }
-
-
-def test_only_the_chosen_requirements_are_judged():
-    """`only` leaves the others out of the report."""
-    monitor = rvmon.loads(SPEC).monitor(only=["R2"])
-    monitor.step(0, {"ready": True, "sensed": True})
-    assert list(monitor.finish().verdicts) == ["R2"]
 
 
 def test_a_name_without_source_is_unknown_and_must_not_arrive():

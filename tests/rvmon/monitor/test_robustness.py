@@ -3,7 +3,6 @@
 import doctest
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import rvmon
@@ -242,20 +241,6 @@ def test_whole_numbers_are_subtracted_exactly(x, y, low):
     spec = rvmon.loads("spec s\nsignal x, y : int\nevent e\nrequirement R1\n  upon e then x < y\n")
     [found] = spec.robustness_monitor().step(0, {"x": x, "y": y, "e": True})
     assert found.robustness.low == low
-
-
-@pytest.mark.parametrize("x", [INFINITE, -INFINITE])
-@pytest.mark.parametrize("op", ["<", "<=", "==", "!=", ">=", ">"])
-def test_what_is_equally_infinite_is_not_apart(x, op):
-    """Its margin is 0, by samples and by columns."""
-    spec = rvmon.loads(
-        f"spec s\ntime sampled\nsignal x, y : real\nrequirement R1\n  upon start then x {op} y\n"
-    )
-    [found] = spec.robustness_monitor().step(0, {"x": x, "y": x})
-    assert found.robustness.low == found.robustness.high == 0
-    columns = {"t": np.array([0.0, 1.0]), "x": np.array([x, 1.0]), "y": np.array([x, 3.0])}
-    [(_, other), _] = spec.robustness(columns).streams["R1"]
-    assert other.low == other.high == 0
 
 
 def test_what_captures_values_and_what_does_not_is_given_in_order():

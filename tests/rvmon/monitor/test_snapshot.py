@@ -43,6 +43,21 @@ SAMPLES = [
 ]
 
 
+def opened(spec, samples):
+    """The document that the snapshot of a run holds, and what makes a snapshot of another one."""
+    monitor = spec.monitor()
+    for t, values in samples:
+        monitor.step(t, values)
+    head, _, body = monitor.snapshot().partition(b"\n")
+
+    def sealed(document):
+        text = json.dumps(document, separators=(",", ":")).encode()
+        seal = hashlib.sha256(text).hexdigest().encode()
+        return head.rpartition(b" ")[0] + b" " + seal + b"\n" + text
+
+    return json.loads(body), sealed
+
+
 @pytest.mark.law
 def test_interruptions_change_nothing():
     """A run, taken up from snapshots at random points, judges as the law says."""
@@ -124,14 +139,8 @@ def test_wrong_bytes_are_refused():
 
 def test_forged_bytes_are_refused():
     """Well-formed bytes with a right checksum that fit no monitor are an error of ours."""
-    import hashlib
-    import json
-
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
-    monitor.step(1, {"closed": True, "knock": {"force": 1.0}})
-    head, _, body = monitor.snapshot().partition(b"\n")
-    document = json.loads(body)
+    document, sealed = opened(spec, [(1, {"closed": True, "knock": {"force": 1.0}})])
     forged = [
         {**document, "state": ["object", "os", "system"]},
         {**document, "state": {}},
@@ -144,10 +153,8 @@ def test_forged_bytes_are_refused():
         {name: value for name, value in document.items() if name != "only"},
     ]
     for one in forged:
-        text = json.dumps(one).encode()
-        checksum = hashlib.sha256(text).hexdigest().encode()
         with pytest.raises(SnapshotError):
-            spec.restore(head.rpartition(b" ")[0] + b" " + checksum + b"\n" + text)
+            spec.restore(sealed(one))
 
 
 def test_a_finished_run_has_a_report_and_no_snapshot():
@@ -171,11 +178,7 @@ def places_in(value, path=()):
 def test_most_hostile_snapshots_are_refused_at_once():
     """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
-    for t, values in SAMPLES[:5]:
-        monitor.step(t, values)
-    head, _, body = monitor.snapshot().partition(b"\n")
-    document = json.loads(body)
+    document, sealed = opened(spec, SAMPLES[:5])
     places = list(places_in(document))
     for seed in range(150):
         rng = random.Random(seed)
@@ -184,10 +187,8 @@ def test_most_hostile_snapshots_are_refused_at_once():
         for key in path[:-1]:
             inner = inner[key]
         inner[path[-1]] = rng.choice([None, True, -1, 1.5, "x", [], ["dict"], ["same", 0], {}])
-        sealed = json.dumps(hostile, separators=(",", ":")).encode()
-        seal = hashlib.sha256(sealed).hexdigest().encode()
         try:
-            restored = spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+            restored = spec.restore(sealed(hostile))
             _ = restored.open, restored.next_due, restored.verdicts
             restored.snapshot()
             restored.finish()
@@ -199,16 +200,10 @@ def test_most_hostile_snapshots_are_refused_at_once():
 def test_an_instant_that_is_none_is_refused(value):
     """When a step was torn is a whole number of ticks, or it is not known."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
-    for t, values in SAMPLES[:5]:
-        monitor.step(t, values)
-    head, _, body = monitor.snapshot().partition(b"\n")
-    document = json.loads(body)
+    document, sealed = opened(spec, SAMPLES[:5])
     document["state"]["interrupted"] = value
-    sealed = json.dumps(document, separators=(",", ":")).encode()
-    seal = hashlib.sha256(sealed).hexdigest().encode()
     with pytest.raises(RvmonError, match="damaged"):
-        spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+        spec.restore(sealed(document))
 
 
 def test_a_run_that_was_torn_at_its_first_step_is_restored():
