@@ -134,6 +134,8 @@ def dialect_of(head: bytes) -> Dialect:
 
 def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | None:
     """The dialect of a table whose header, or first row, is that line; `None`: there is none."""
+    if not separator and any(other in lines[first] for other in _SEPARATORS if other):
+        return None  # blanks within cells
     header = _cells(lines[first], separator)
     behind = [line for line in lines[first + 1 :] if line.strip() and not _COMMENT.match(line)]
     rows = [_cells(line, separator) for line in behind[:_SOME]]

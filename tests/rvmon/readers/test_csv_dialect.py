@@ -108,6 +108,13 @@ def test_plain_text_is_left_as_it_is(tmp_path):
         assert dialect_of(text.encode()) == PLAIN or text == "a b c\n"
 
 
+def test_blanks_in_a_property_and_in_labels_separate_nothing(tmp_path):
+    spec = rvmon.loads("spec s\nsignal n : int\nrequirement R\n always n == 0")
+    rows = "".join(f"{t},idle now,1\n" for t in range(20))
+    (tmp_path / "a.csv").write_text(f"Device,Base 7\nSerial,4711\n\nt,mode,n\n{rows}")
+    assert spec.evaluate(tmp_path / "a.csv").verdicts["R"] == "F"
+
+
 def test_blanks_and_a_header_that_is_a_comment(tmp_path):
     """As `numpy.savetxt` and recorders of trajectories write."""
     spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n always x + y < 5")
