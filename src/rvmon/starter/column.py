@@ -33,6 +33,7 @@ class Shape:
         fields: of an event with payload.
         unit: of a number, as the messages say it; empty if they do not.
         source: the topic; empty of columns.
+        is_part: whether it comes with other fields, in each message of its topic.
     """
 
     kind: Kind | None
@@ -40,6 +41,7 @@ class Shape:
     fields: Mapping[str, Kind] = field(default_factory=dict)
     unit: str = ""
     source: str = ""
+    is_part: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,7 +244,10 @@ class Column:
         if self._falses:
             most = EVENT_SHARE * (self._trues + self._falses)
             return self._runs_are_single and self._trues <= most
-        # It is only ever reported when true: what keeps coming is always true, and no event.
+        # It is only ever reported when true: what keeps coming is always true, and no event; nor is
+        # what others bring along.
+        if self.shape.is_part:
+            return False
         longest = max(self.longest_silence, (self.first or start) - start)
         keeps_coming = self._trues >= FEW and longest <= STEADY * (end - start) / self._trues
         return self._silent > self._trues and not keeps_coming

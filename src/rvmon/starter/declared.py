@@ -170,10 +170,15 @@ def message_shapes(source: MessageFile) -> Shapes:
             elif kind is Kind.LABEL:
                 texts[full] = topic.name, leaf
             else:
-                declared[full] = Shape(kind, unit=_unit(leaf, topic), source=topic.name)
-        for full, shape in _elements(name, topic, looked[topic.name]):
-            declared[full] = shape
-            left_out.pop(full.rpartition(".")[0] + "[]", None)
+                is_part = len(leaves) > 1
+                unit = _unit(leaf, topic)
+                declared[full] = Shape(kind, unit=unit, source=topic.name, is_part=is_part)
+        for array, element, shape in _elements(topic, looked[topic.name]):
+            left_out.pop(f"{name}.{array}[]", None)
+            if re.fullmatch(r"\w+", element):
+                declared[f"{name}.{array}.{element}"] = shape
+            else:
+                left_out[f"{name}.{array}[{element}]"] = "its name is no word: bind it"
     seen = _texts_seen(source, texts)
     found = shapes_seen(seen)
     for full, shape in found.declared.items():
@@ -212,14 +217,13 @@ def _unit(leaf: str, topic: Topic) -> str:
     return meaning.units[0].symbol if is_clear and topic.leaves[leaf] is Kind.REAL else ""
 
 
-def _elements(name: str, topic: Topic, looked: Looked) -> Iterator[tuple[str, Shape]]:
-    """The named elements of arrays, such as the positions of joints."""
+def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
+    """The named elements of arrays, such as the positions of joints: array, element, shape."""
     for array, names in arrays_with_names(topic).items():
-        kind = topic.leaves[f"{array}[]"]
+        shape = Shape(topic.leaves[f"{array}[]"], unit=_unit(f"{array}[]", topic))
         for element in (looked.joints or {}).get(names, ()):
-            if re.fullmatch(r"\w+", element) and not element.isdigit():
-                full = f"{name}.{array}.{element}"
-                yield full, Shape(kind, unit=_unit(f"{array}[]", topic), source=topic.name)
+            if not element.isdigit():
+                yield array, element, replace(shape, source=topic.name)
 
 
 def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, Seen]:

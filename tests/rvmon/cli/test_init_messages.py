@@ -65,6 +65,28 @@ def test_what_is_always_true_is_no_event(tmp_path, capsys):
     assert "battery.voltage >= 24" not in text
 
 
+def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_path, capsys):
+    """As what is valid in a message of many fields; alone it says that something happened."""
+    sent = [one for one in arm() if one[0] != "/battery" and one[0] != "/present"]
+    for tick in (3, 4, 5, 6, 7, 8, 37):
+        at = START + tick * 10**8
+        sent.append(("/battery", at + 20, {"present": True, "voltage": 24.0}))
+        sent.append(("/present", at + 30, {"data": True}))
+    sent.sort(key=lambda one: one[1])
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), capsys)
+    assert "event battery.present" not in text
+    assert "battery.present: bool" in text.replace(" :", ":")
+    assert "event present" in text
+
+
+def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, capsys):
+    """It can be bound."""
+    sent = [("/joints", START, {"name": ["a", "wrist.1"], "position": [0.5, 0.25]})]
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), capsys)
+    assert "joints.position[wrist.1], " in text
+    assert ": its name is no word: bind it" in text
+
+
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin):
     """Of texts, of numbers, and of neither."""
