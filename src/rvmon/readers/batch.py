@@ -92,6 +92,15 @@ class Occurrences:
     says: NDArray[np.uint8]
     fields: Mapping[str, Cells] = field(default_factory=dict)
 
+    @property
+    def with_payload(self) -> NDArray[np.bool_]:
+        """Whether it comes with a payload, bool[n]."""
+        found = np.zeros(len(self.says), np.bool_)
+        for one in self.fields.values():
+            found |= np.True_ if one.says is None else one.says != NO_UPDATE
+        found &= self.says == YES
+        return found
+
     def cut(self, start: int, stop: int) -> Occurrences:
         """Some of the rows."""
         fields = {name: one.cut(start, stop) for name, one in self.fields.items()}

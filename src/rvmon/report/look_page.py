@@ -82,8 +82,7 @@ def grouped(
 
 def is_constant(column: Column) -> bool:
     """Whether its value is always the same."""
-    said = [one for one in column.course.stretches if one.low is not None]
-    return not column.is_event and len({one.low for one in said} | {one.high for one in said}) < 2
+    return not column.is_event and len(column.course.extremes) < 2
 
 
 def facts(column: Column) -> tuple[str, str, str, str]:
@@ -107,10 +106,10 @@ def values(column: Column) -> str:
     if column.is_event:
         return f"{column.updates:,} times"
     if column.shape.kind is Kind.BOOL:
-        first = column.course.stretches
-        seen = {one.low for one in first} | {one.high for one in first}
         words = {"false": 0.0, "true": 1.0}
-        return " and ".join(word for word, number in words.items() if number in seen)
+        return " and ".join(
+            word for word, number in words.items() if number in column.course.extremes
+        )
     if column.low is None or column.high is None:
         return "unknown"
     if column.shape.kind is Kind.INT and column.low != column.high:

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import inf, isfinite
+from typing import TYPE_CHECKING, Any
 
-from rvmon.trace.sample import Outage, Value
+import numpy as np
+
+from rvmon.readers.batch import NO_UPDATE, YES, Cells
+from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 FEW = 5
 """Of fewer occurrences nobody knows whether they are regular."""
@@ -61,7 +68,7 @@ MOST = 160
 """Stretches of a course."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Stretch:
     """What was said in a stretch of time.
 
@@ -71,71 +78,77 @@ class Stretch:
         high: greatest number.
     """
 
-    updates: int = 0
-    low: float | None = None
-    high: float | None = None
-
-    def join(self, other: Stretch) -> None:
-        """Take the stretch behind this one in."""
-        self.updates += other.updates
-        if other.low is not None and other.high is not None:
-            self.low = other.low if self.low is None else min(self.low, other.low)
-            self.high = other.high if self.high is None else max(self.high, other.high)
+    updates: int
+    low: float | None
+    high: float | None
 
 
-@dataclass(slots=True)
 class Course:
     """The stretches from the first instant on, all of one length, which doubles as time goes on.
 
     Attributes:
         start: the first instant, ticks.
         length: of a stretch, ticks.
-        stretches: in order.
         labels: the number that each label is drawn at.
     """
 
-    start: int
-    length: int = 1 << 16
-    stretches: list[Stretch] = field(default_factory=list)
-    labels: dict[str, int] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.start = 0
+        self.length = 1 << 16
+        self.labels: dict[str, int] = {}
+        self._updates = np.zeros(MOST, np.int64)
+        self._lows = np.full(MOST, inf)
+        self._highs = np.full(MOST, -inf)
 
-    def note(self, t: int, value: Value) -> None:
-        """Take an update; of an event also that nothing happened.
+    def note(self, times: NDArray[np.int64], numbers: NDArray[Any]) -> None:
+        """Take updates; of an event also that nothing happened.
 
         Args:
-            t: its instant, not before the start.
-            value: what was said.
+            times: int64[n] ticks, ascending, not before the start.
+            numbers: [n] what was said; what is not finite is not drawn.
         """
-        place = max(0, t - self.start) // self.length
-        while place >= MOST:
-            for first in range(0, len(self.stretches) - 1, 2):
-                self.stretches[first].join(self.stretches[first + 1])
-            self.stretches = self.stretches[::2]
+        places = (times - self.start) // self.length
+        while places[-1] >= MOST:
+            self._updates = _halved(np.add, self._updates, 0)
+            self._lows = _halved(np.minimum, self._lows, inf)
+            self._highs = _halved(np.maximum, self._highs, -inf)
             self.length *= 2
-            place = max(0, t - self.start) // self.length
-        while len(self.stretches) <= place:
-            self.stretches.append(Stretch())
-        one = self.stretches[place]
-        one.updates += 1
-        if isinstance(value, str):
-            number: float = self.labels.setdefault(value, len(self.labels))
-        elif isinstance(value, bool | int | float):
-            number = float(value)
-        else:
-            return
-        if number == number and abs(number) != float("inf"):
-            one.low = number if one.low is None else min(one.low, number)
-            one.high = number if one.high is None else max(one.high, number)
+            places //= 2
+        self._updates += np.bincount(places, minlength=MOST)
+        drawn = np.isfinite(numbers)
+        np.minimum.at(self._lows, places[drawn], numbers[drawn])
+        np.maximum.at(self._highs, places[drawn], numbers[drawn])
+
+    @property
+    def extremes(self) -> set[float]:
+        """The least and the greatest numbers of the stretches."""
+        return {*self._lows.tolist(), *self._highs.tolist()} - {-inf, inf}
 
     def until(self, end: int) -> list[Stretch]:
         """The stretches up to an instant, those in which nothing was said too."""
         count = max(1, min(MOST, -(-(end - self.start + 1) // self.length)))
-        return self.stretches + [Stretch() for _ in range(count - len(self.stretches))]
+        told = zip(
+            *(one[:count].tolist() for one in (self._updates, self._lows, self._highs)), strict=True
+        )
+        return [
+            Stretch(updates, low, high) if low <= high else Stretch(updates, None, None)
+            for updates, low, high in told
+        ]
+
+
+def _halved(join: np.ufunc, values: NDArray[Any], nothing: float) -> NDArray[Any]:
+    """Of two stretches one, and behind them as many in which nothing was said."""
+    joined = join(values[::2], values[1::2])
+    return np.concatenate((joined, np.full_like(joined, nothing)))
+
+
+Updates = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.bool_]"]
+"""As `Column.take` has them."""
 
 
 @dataclass(slots=True)
 class Column:
-    """One name of a recording, followed from sample to sample.
+    """One name of a recording, followed over time.
 
     Attributes:
         name: as in the recording.
@@ -165,11 +178,10 @@ class Column:
     first: int | None = None
     gaps_in_value: bool = False
     instants: list[int] = field(default_factory=list)
-    course: Course = field(default_factory=lambda: Course(0))
+    course: Course = field(default_factory=Course)
     _last: int = 0
     _trues: int = 0
     _falses: int = 0
-    _silent: int = 0
     _before: bool = False
     _runs_are_single: bool = True
 
@@ -188,59 +200,87 @@ class Column:
         """Whether it is declared as an event."""
         return self.shape.kind is None
 
-    def pass_over(self, *, first: bool) -> None:
-        """A sample does not speak of it."""
-        self.gaps_in_value |= first
-        self._silent += 1
+    def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
+        """What rows say of a signal.
 
-    def take(self, t: int, value: Value) -> None:
-        """Take an update."""
+        Args:
+            times: int64[n] ticks, of the rows.
+            cells: n of them.
+        """
+        values: NDArray[Any] = cells.values
+        if cells.labels is not None:
+            numbers = self.course.labels
+            first_seen = dict.fromkeys(values.tolist())
+            places = [0] * (max(first_seen, default=0) + 1)
+            for place in first_seen:
+                places[place] = numbers.setdefault(cells.labels[place], len(numbers))
+            values = np.array(places)[values]
+        known = values == values
+        if cells.says is None:
+            return times, values, known
+        said = cells.says != NO_UPDATE
+        return times[said], values[said], (known & (cells.says == YES))[said]
+
+    def take(
+        self, times: NDArray[np.int64], values: NDArray[Any], known: NDArray[np.bool_]
+    ) -> None:
+        """Take updates.
+
+        Args:
+            times: int64[n] ticks, ascending.
+            values: [n] numbers, truth values, the places of labels; of an event 1 where it occurs,
+                0 where it does not, NaN where it occurs with a payload.
+            known: bool[n] of which the value is.
+        """
+        if not len(times):
+            return
         if self.first is None:
-            self.first = t
-        else:
-            self.longest_gap = max(self.longest_gap, t - self._last)
-        self._last = t
-        self.updates += 1
-        self.course.note(t, value)
-        match value:
-            case bool():
-                self._truth(t, value)
-            case int() | float() if value == value:
-                self.low = value if self.low is None else min(self.low, value)
-                self.high = value if self.high is None else max(self.high, value)
-            case None | float():
-                self.gaps_in_value = True
-            case str():
-                pass
+            self.first = self._last = int(times[0])
+        self.longest_gap = max(self.longest_gap, int(np.diff(times, prepend=self._last).max()))
+        self._last = int(times[-1])
+        self.updates += len(times)
+        self.gaps_in_value |= not known.all()
+        self.course.note(times, np.where(known, values, np.nan))
+        times, values = times[known], values[known]
+        match self.shape.kind:
+            case None:
+                self._occurred(times[values != 0])
+            case Kind.BOOL:
+                self._truths(times, values.astype(np.bool_))
+            case Kind.INT | Kind.REAL if len(values):
+                low, high = values.min().item(), values.max().item()
+                self.low = low if self.low is None else min(self.low, low)
+                self.high = high if self.high is None else max(self.high, high)
             case _:
-                self._occurred(t)
+                pass
 
-    def _truth(self, t: int, value: bool) -> None:
-        if value:
-            self._trues += 1
-            self._runs_are_single &= not self._before
-            if not self._before or self.is_event or not self._falses:
-                self._occurred(t)
-        else:
-            self._falses += 1
-        self._before = value
+    def _truths(self, times: NDArray[np.int64], values: NDArray[np.bool_]) -> None:
+        before = np.concatenate(([self._before], values))[:-1]
+        never_false = np.cumsum(~values) + self._falses == 0
+        self._occurred(times[values & (~before | never_false)])
+        self._runs_are_single &= not (values & before).any()
+        self._trues += int(values.sum())
+        self._falses += int((~values).sum())
+        self._before = bool(values[-1]) if len(values) else self._before
 
-    def _occurred(self, t: int) -> None:
-        if len(self.instants) < MOST_INSTANTS:
-            self.instants.append(t)
+    def _occurred(self, times: NDArray[np.int64]) -> None:
+        self.instants += times[: MOST_INSTANTS - len(self.instants)].tolist()
 
-    def end(self, start: int, end: int) -> None:
-        """Take in between which instants the recording was."""
+    def end(self, start: int, end: int, samples: int) -> None:
+        """Take in between which instants the recording was, and of how many samples."""
+        self.gaps_in_value |= self.first != start
         if self.first is None:
             return
         span = self._last - self.first
         self.rate = (self.updates - 1) * TICKS_PER_SECOND / span if span > 0 else 0.0
         self.longest_silence = max(self.longest_gap, end - self._last)
-        if self.shape.kind is Kind.BOOL and self._trues and self._is_like_event(start, end):
+        if self._is_like_event(start, end, samples - self.updates):
             self.shape = replace(self.shape, kind=None)
             self.guessed_event, self.updates = True, self._trues
 
-    def _is_like_event(self, start: int, end: int) -> bool:
+    def _is_like_event(self, start: int, end: int, silent: int) -> bool:
+        if self.shape.kind is not Kind.BOOL or not self._trues:
+            return False
         if self._falses:
             most = EVENT_SHARE * (self._trues + self._falses)
             return self._runs_are_single and self._trues <= most
@@ -250,7 +290,7 @@ class Column:
             return False
         longest = max(self.longest_silence, (self.first or start) - start)
         keeps_coming = self._trues >= FEW and longest <= STEADY * (end - start) / self._trues
-        return self._silent > self._trues and not keeps_coming
+        return silent > self._trues and not keeps_coming
 
 
 @dataclass(frozen=True, slots=True)

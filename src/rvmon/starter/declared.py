@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from rvmon.errors import TraceError
@@ -22,8 +22,9 @@ MOST_LABELS = 16
 """A text column with more values than this is left out."""
 
 _NUMBER = re.compile(
-    r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE
+    r"[+-]?(?:\d++\.?+\d*+|\.\d++)(?:e[+-]?\d++)?+|[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE
 )
+_NUMBERS = re.compile(rf"(?:(?:{_NUMBER.pattern})(?:\n|\Z))+", re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 
 
@@ -36,12 +37,10 @@ class Seen:
         self.labels: dict[str, None] = {}
         self.fields: dict[str, Seen] = {}
         self.payloads = 0
-        self.count = 0
         self.other = False
 
     def add(self, value: object) -> None:
         """Take a JSON value that is neither null nor an object."""
-        self.count += 1
         match value:
             case bool():
                 self.kinds.add(Kind.BOOL)
@@ -55,9 +54,19 @@ class Seen:
             case _:
                 self.other = True
 
-    def add_text(self, cell: str) -> None:
-        """Take a CSV cell that is not empty."""
-        self.count += 1
+    def add_texts(self, cells: Iterable[str]) -> None:
+        """Take cells of CSV, of which those that are empty say nothing."""
+        different = dict.fromkeys(cells)
+        different.pop("", None)
+        # Of what is known to be real, and has many values, further numbers tell nothing new.
+        if Kind.REAL in self.kinds and len(self.labels) > MOST_LABELS:
+            lines = "\n".join(different)
+            if lines.count("\n") == len(different) - 1 and _NUMBERS.fullmatch(lines):
+                return
+        for cell in different:
+            self._add_text(cell)
+
+    def _add_text(self, cell: str) -> None:
         if cell in TRUE_WORDS or cell in FALSE_WORDS:
             if cell in "01":
                 self.bits = True
@@ -77,7 +86,6 @@ class Seen:
 
     def add_payload(self, payload: Mapping[str, object]) -> None:
         """Take an object."""
-        self.count += 1
         self.payloads += 1
         for key, value in payload.items():
             if value is not None:

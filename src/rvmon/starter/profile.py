@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from io import TextIOWrapper
-from typing import Any
+from itertools import islice
+from typing import TYPE_CHECKING, Any
 
 import msgspec
+import numpy as np
 
-from rvmon.errors import TraceError
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch
+from rvmon.readers.cells import cells_of_values
+from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.found import files_of
@@ -19,14 +25,22 @@ from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
 from rvmon.readers.places import bounded_lines, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
-from rvmon.starter.column import Column, Profile, Shape, Shapes
+from rvmon.starter.column import Column, Profile, Shape, Shapes, Updates
 from rvmon.starter.declared import Seen, message_shapes, shapes_seen
-from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
+
+
+AT_ONCE = 8192
+"""Rows, or samples, of which the columns are looked at together."""
 
 
 def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
@@ -79,10 +93,9 @@ def _of_csv(text: Iterable[str], stamps: Stamps | None) -> Shapes:
     if stamps is None:
         stamps_among(names, Schema({}, {}))
     columns = [Seen() for _ in header]
-    for _, row in rows:
-        for seen, cell in zip(columns, row, strict=False):
-            if cell:
-                seen.add_text(cell)
+    while some := [row for _, row in islice(rows, AT_ONCE)]:
+        for place, seen in enumerate(columns):
+            seen.add_texts(row[place] for row in some if place < len(row))
     found = shapes_seen(_without_time(dict(zip(names, columns, strict=True)), stamps))
     units = dict(named)
     declared = {
@@ -201,7 +214,7 @@ def profile_of(path: str, time: str | None = None) -> Profile:
         {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
         stamps=stamps,
     )
-    return followed(FileRecording(path, schema, ordered=False), shapes)
+    return followed(path, schema, shapes)
 
 
 def bound_profile(path: str, schema: Schema) -> Profile:
@@ -214,44 +227,108 @@ def bound_profile(path: str, schema: Schema) -> Profile:
         if recording.names is None or name in recording.names
     }
     absent = dict.fromkeys((name for name in kinds if name not in there), "nothing feeds it")
-    return followed(recording, Shapes(there, absent))
+    return followed(path, schema, Shapes(there, absent))
 
 
-def followed(recording: FileRecording, shapes: Shapes) -> Profile:
-    """Follow names from sample to sample.
+def followed(path: str, schema: Schema, shapes: Shapes) -> Profile:
+    """Follow names over time; a recording that is not in order is put in order.
 
     Args:
-        recording: has these names; it is read once.
+        path: of the recording.
+        schema: declares the names.
         shapes: what they are.
 
     Raises:
         TraceError: it cannot be read, or none of them has a value.
     """
-    path = recording.path
-    columns = [Column(name, shape) for name, shape in shapes.declared.items()]
-    start = end = samples = 0
-    for sample in recording:
-        if not samples:
-            start = sample.t
-            for one in columns:
+    try:
+        return _followed(FileRecording(path, schema), shapes)
+    except TimeOrderError:
+        return _followed(FileRecording(path, schema, ordered=False), shapes)
+
+
+def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
+    columns = {name: Column(name, shape) for name, shape in shapes.declared.items()}
+    start = end = None
+    samples = 0
+    for times, updates in _updates(recording.pieces(), columns):
+        if start is None:
+            start = int(times[0])
+            for one in columns.values():
                 one.course.start = start
-        end = sample.t
-        samples += 1
-        for one in columns:
-            if one.name in sample.values:
-                one.take(sample.t, sample.values[one.name])
-            else:
-                one.pass_over(first=samples == 1)
+        end = int(times[-1])
+        samples += len(times)
+        for name, (own_times, values, known) in updates.items():
+            columns[name].take(own_times, values, known)
+    if start is None or end is None:
+        raise TraceError("holds no sample")
     end = max(end, recording.end or end)
-    for one in columns:
-        one.end(start, end)
-    silent = {one.name: "no value in the recording" for one in columns if not one.updates}
-    kept = tuple(one for one in columns if one.updates)
+    for one in columns.values():
+        one.end(start, end, samples)
+    silent = {name: "no value in the recording" for name, one in columns.items() if not one.updates}
+    kept = tuple(one for one in columns.values() if one.updates)
     left_out = {**shapes.left_out, **silent}
     if not kept:
-        raise TraceError(f"{path}: no signal or event is found ({_reasons(left_out)})")
+        raise TraceError(f"{recording.path}: no signal or event is found ({_reasons(left_out)})")
     late, outages = recording.rows.lateness, tuple(recording.outages)
-    return Profile(path, kept, left_out, start, end, samples, late, outages)
+    return Profile(recording.path, kept, left_out, start, end, samples, late, outages)
+
+
+def _updates(
+    pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]
+) -> Iterator[tuple[NDArray[np.int64], Mapping[str, Updates]]]:
+    """The instants of some samples, and of each name its updates there."""
+    waiting: list[Sample] = []
+    for piece in pieces:
+        is_plain = isinstance(piece, Batch) and (np.diff(piece.times) > 0).all()
+        if waiting and (is_plain or len(waiting) >= AT_ONCE):
+            yield _of_samples(waiting, columns)
+            waiting = []
+        if isinstance(piece, Sample):
+            waiting.append(piece)
+        elif is_plain:
+            yield _of_batch(piece, columns)
+        else:
+            events = {name for name, one in columns.items() if one.is_event}
+            waiting += coalesce(piece.rows(0, len(piece.times)), events, Conflicts())
+    if waiting:
+        yield _of_samples(waiting, columns)
+
+
+def _of_batch(
+    batch: Batch, columns: Mapping[str, Column]
+) -> tuple[NDArray[np.int64], Mapping[str, Updates]]:
+    times = batch.times
+    found = {name: columns[name].updates_in(times, one) for name, one in batch.signals.items()}
+    for name, one in batch.events.items():
+        said = one.says != NO_UPDATE
+        values = np.where(one.with_payload, np.nan, one.says == YES)
+        found[name] = times[said], values[said], (one.says != UNKNOWN)[said]
+    return times, found
+
+
+def _of_samples(
+    samples: Sequence[Sample], columns: Mapping[str, Column]
+) -> tuple[NDArray[np.int64], Mapping[str, Updates]]:
+    told: dict[str, tuple[list[int], list[Value]]] = {}
+    for sample in samples:
+        for name, value in sample.values.items():
+            instants, values = told.setdefault(name, ([], []))
+            instants.append(sample.t)
+            values.append(value)
+    found: dict[str, Updates] = {}
+    for name, (instants, values) in told.items():
+        times = np.array(instants, np.int64)
+        kind = columns[name].shape.kind
+        if kind is None:
+            numbers = [float(one) if isinstance(one, bool) else math.nan for one in values]
+            known = np.array([one is not None for one in values])
+            found[name] = times, np.array(numbers), known
+        else:
+            found[name] = columns[name].updates_in(
+                times, cells_of_values(values, kind, Gaps(), ...)
+            )
+    return np.array([one.t for one in samples], np.int64), found
 
 
 def _reasons(left_out: Mapping[str, str]) -> str:

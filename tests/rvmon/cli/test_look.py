@@ -3,6 +3,7 @@
 import math
 import re
 
+import numpy as np
 import pytest
 from tests.tools.logs import write_ulog
 
@@ -83,9 +84,10 @@ def test_what_a_log_lost_is_told_and_shaded(tmp_path, capsys):
 
 
 def test_a_course_is_bounded_and_loses_no_peak():
-    course = Course(0)
-    for t in range(0, 10**9, 10**6):
-        course.note(t, 9.0 if t == 123 * 10**6 else 1.0)
+    course = Course()
+    times = np.arange(0, 10**9, 10**6)
+    for some in np.array_split(times, 7):
+        course.note(some, np.where(some == 123 * 10**6, 9.0, 1.0))
     stretches = course.until(10**9)
     assert len(stretches) <= MOST
     assert sum(one.updates for one in stretches) == 1000
@@ -114,3 +116,15 @@ def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, ca
     (tmp_path / "a.rv").write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 1\n")
     assert main(words) == 2
     assert re.search(r"gone[.\w/]*: No such file or directory", capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
+def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, capsys):
+    """Text behind 20,000 numbers, be it nearly a number, or two."""
+    rows = "".join(f"{t},{t / 7},{t % 3}\n" for t in range(20_000))
+    path = tmp_path / "long.csv"
+    path.write_text(f't,x,n\n{rows}20000,"{odd}",1\n')
+    assert main(["look", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "x: numbers and text" in " ".join(told.split())
+    assert "0 … 2" in told
