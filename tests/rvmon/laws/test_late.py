@@ -47,6 +47,7 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
         assert (verdict is Verdict.FAIL) is (verdicts[name] is Verdict.FAIL)
 
 
+@pytest.mark.law
 @FEW
 @given(late_cases(Profile()))
 def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:

@@ -189,7 +189,7 @@ def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, u
     )
     rng = random.Random(1)
     path = tmp_path / "run.csv"
-    rows = (f"{3 * t // 2},{rng.uniform(0, 10):.3f},{rng.randrange(2)}" for t in range(3000))
+    rows = (f"{3 * t // 2},{rng.uniform(0, 10):.3f},{rng.randrange(2)}" for t in range(1000))
     path.write_text("\n".join(["t,x,p", *rows, ""]))
     end = None if until is None else int(until * 1e9)
 

@@ -18,7 +18,7 @@ SPEC = rvmon.loads(
 PLAIN = '{"t": %d, "s": 1, "a": {"b": 2}, "go": {"n": 3}, "u": [{"v": "w:x"}]}\n'
 
 
-@pytest.mark.parametrize("lines", [0, 5, 3000])
+@pytest.mark.parametrize("lines", [0, 5, 600])
 @pytest.mark.parametrize(
     ("line", "name"),
     [
@@ -64,10 +64,10 @@ def test_lines_that_have_each_name_once_are_read():
         return rng.random() if kind else "".join(rng.choices(parts, k=4))
 
     plain = 0
-    for _ in range(3000):
+    for _ in range(1000):
         value = drawn(3)
         text = json.dumps(value, ensure_ascii=rng.random() < 0.5)
         plain += names_in(text) == count_of_names(value)
         assert names_in(text) == names_in(text.encode())
         assert names_in(text) in (-1, *range(count_of_names(value), len(text)))
-    assert plain > 500
+    assert plain > 150
