@@ -26,7 +26,15 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print import format_formula
-from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
+from rvmon.trace.sample import (
+    Outage,
+    Payload,
+    Sample,
+    Scalar,
+    Trace,
+    Value,
+    payloads_of,
+)
 from rvmon.trace.schema import is_unknown
 from rvmon.verdict.attempt import Attempt
 
@@ -101,6 +109,7 @@ def look_through(
     end: int,
     names: frozenset[str] | None = None,
     plans: Plans | None = None,
+    outages: Sequence[Outage] = (),
 ) -> Seen:
     """Find where formulas are true in a recording, which is read once.
 
@@ -112,6 +121,7 @@ def look_through(
         names: the signals and events that have a source; `None`: all.
         plans: what was made for the same questions about other recordings; what is made now is
             added.
+        outages: what the recording lost, but for one that is held, which says so itself.
 
     Cost: one pass in C for each `Question.whose`. Memory grows with how often the truths change,
     in sampled time with the number of samples.
@@ -121,12 +131,15 @@ def look_through(
         if question.whose not in groups:
             groups[question.whose] = _Group(spec, question)
         groups[question.whose].add(question.formulas)
-    runs = [one for one in groups.values() if one.begin(names, plans)]
+    if isinstance(pieces, HeldRecording):
+        outages, pieces = pieces.outages, pieces.pieces
+    source = Trace((), names, end, outages)
+    runs = [one for one in groups.values() if one.begin(source, plans)]
     begin: int | None = None
     instants: list[NDArray[np.int64]] = []
     valueless = set(spec.signals)
     of_instances = any(question.for_each is not None for question in questions)
-    for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
+    for piece in pieces:
         times = np.array([piece.t]) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
@@ -182,7 +195,7 @@ class _Group:
         """Look for these, too."""
         self._formulas |= {format_formula(formula): formula for formula in formulas}
 
-    def begin(self, names: frozenset[str] | None, plans: Plans | None) -> bool:
+    def begin(self, source: Trace, plans: Plans | None) -> bool:
         """Be ready to look; false: there is nothing to look for."""
         if plans is None or self._question.for_each is not None or self._question.captured:
             plans = {}
@@ -191,7 +204,7 @@ class _Group:
             plans[key] = _Plan(self._spec, self._question, self._formulas)
         self._made = plans[key]
         if self._made.plan is not None:
-            self._run = TruthsRun(self._made.plan, names)
+            self._run = TruthsRun(self._made.plan, source)
         return self._run is not None
 
     def take(self, piece: Batch | Sample, samples: Sequence[Sample]) -> None:
@@ -208,7 +221,7 @@ class _Group:
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
         """By text of the formula; the recording is over."""
         assert self._made is not None, "it began"
-        known = [] if self._run is None else self._run.known(ticks.end)
+        known = [] if self._run is None else self._run.known()
         found: dict[Core | None, Truth] = {
             core: Truth(ticks.spans(one.true), ticks.others(one.false))
             for core, one in zip(self._made.order, known, strict=True)

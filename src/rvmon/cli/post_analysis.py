@@ -53,11 +53,9 @@ class Remembered:
         """What was read of it up to an instant; `None`: there was more than is remembered."""
         if self._left < 0:
             return None
-        return [
-            piece if isinstance(piece, Sample) else piece.up_to(end)
-            for piece in self._pieces
-            if not isinstance(piece, Sample) or piece.t <= end
-        ]
+        from rvmon.readers.batch import pieces_up_to  # which imports NumPy
+
+        return pieces_up_to(self._pieces, end)
 
 
 MOST_LATE = 1000
@@ -111,7 +109,9 @@ def post_analysis(
         asked |= {one.for_each.value.event for one in questions if one.for_each is not None}
         pieces = _read_again(spec, recording, asked | values.names, until)
     noted = values.noted(pieces)
-    seen = look_through(spec.checked, questions, noted, end, names, spec.plans_of_truths)
+    seen = look_through(
+        spec.checked, questions, noted, end, names, spec.plans_of_truths, recording.outages
+    )
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(

@@ -71,7 +71,8 @@ def write_files(
         place = arguments.traces[0] if reproducer else trace
         if trace == "-":
             return []
-        return HeldRecording(Source(spec.recording(place)).pieces(), spec.checked.events)
+        source = Source(spec.recording(place))
+        return HeldRecording(source.pieces(), spec.checked.events, source.outages)
 
     if arguments.mcap:
         from rvmon.export.verdicts_mcap import write_verdicts

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_format, constants_of
 from rvmon.cli.output import busy, say_json, shown_while_reading
@@ -18,6 +20,10 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.errors import RvmonError
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
+    from rvmon.trace.sample import Sample
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -55,6 +61,8 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     from rvmon.analysis.near_miss import why_not_triggered
     from rvmon.analysis.subformulas import dissect
     from rvmon.monitor.missing import expect_names
+    from rvmon.readers.batch import HeldRecording, pieces_up_to
+    from rvmon.readers.source import Source
     from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds
 
@@ -68,14 +76,19 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     allowed = allowed_names(arguments.allow_missing)
     mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
+    is_cut = arguments.until is not None
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
-    read = shown_while_reading(recording, iter(recording))
-    samples = [one for one in read if until is None or one.t <= until]
-    monitor = spec.monitor(only=[name], sources=recording.names)
-    with busy(f"evaluating {name}"):
-        for sample in samples:
-            monitor.step_ns(sample.t, sample.values)
-        report = monitor.finish_ns(until)
+    pieces: list[Batch | Sample] = []
+
+    def kept(found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        for piece in shown_while_reading(recording, iter(found)):
+            pieces.append(piece)
+            yield piece
+
+    report = spec.judge(Source(recording, until, is_cut=is_cut, shown=kept), only=[name])
+    if is_cut and until is not None:
+        pieces = pieces_up_to(pieces, until)
+    samples = HeldRecording(pieces, spec.checked.events, recording.outages)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)

@@ -19,7 +19,7 @@ from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.trace.time import format_ticks, whole_ticks
+from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
@@ -89,13 +89,13 @@ class RecordingRun:
         self.core = planned.monitor(absent & planned.numbers.keys())
         self._row = 0
         self._end = source.end
+        self._cut = source.until if source.is_cut else None
         self._losses = Losses(checked, planned, self.core, None)
-        turns = [
-            turn
-            for one in source.outages
-            for turn in self._losses.lose(one.names, one.since, one.until, one.why)
+        stretches = [
+            self._losses.lose(one.names, one.since, one.until, one.why) for one in source.outages
         ]
-        self._turns = sorted(turns, key=_comes_before)
+        turns = [(_turns_at(turn, own[0].t), turn) for own in stretches for turn in own]
+        self._turns = [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
 
     def take(self, piece: Batch | Sample) -> None:
         """Judge the next piece of the recording."""
@@ -121,11 +121,21 @@ class RecordingRun:
         self._row += 1
 
     def _lose_until(self, t: int) -> None:
-        """Tell the core of all outages that begin or end up to an instant."""
-        while self._turns and _comes_before(self._turns[0]) <= t:
+        """Tell the core of all outages that begin or end up to an instant, whose sample follows."""
+        while self._turns and self._turns[0].t <= t:
             self._losses.turn(self._turns.pop(0))
 
     def _take_batch(self, batch: Batch) -> None:
+        """Judge rows, and have names lost and found between them."""
+        while self._turns and len(batch.times) and self._turns[0].t <= batch.times[-1]:
+            turn = self._turns[0].t
+            before = int(batch.times.searchsorted(turn))
+            self._judge_batch(batch.cut(0, before))
+            self._lose_until(turn)
+            batch = batch.cut(before, len(batch.times))
+        self._judge_batch(batch)
+
+    def _judge_batch(self, batch: Batch) -> None:
         """Judge rows in one call; fall back to samples where a row needs Python to look at it."""
         count = len(batch.times)
         done = 0
@@ -182,8 +192,8 @@ class RecordingRun:
 
     def finish(self) -> int | None:
         """End the run where the recording ends; gives the last instant of the trace."""
-        _, last, _ = self.core.times()
-        self._lose_until(self._end if self._end is not None else last or 0)
+        # The trace reaches to the last instant of what was lost: see the law, section 1 (Outage).
+        self._lose_until(TIME_LIMIT if self._cut is None else self._cut)
         return self.core.finish(self._end)
 
     def report(self) -> Report:
@@ -195,9 +205,12 @@ class RecordingRun:
         return replace(report, health=(*self._findings.found(self.core), *self._losses.health()))
 
 
-def _comes_before(turn: Turn) -> int:
-    """The first instant at which names are as a turn says: what is found is so behind its own."""
-    return turn.t + (not turn.lost)
+def _turns_at(turn: Turn, since: int) -> tuple[int, int]:
+    """The order of what turns: at one instant what ends, what begins, then what begins and ends.
+
+    What came at the only instant of a stretch may have come before what was lost.
+    """
+    return turn.t, 1 if turn.lost else 0 if since < turn.t else 2
 
 
 def _cells(

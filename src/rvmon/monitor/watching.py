@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rvmon.core.plan import pack
@@ -12,7 +11,6 @@ from rvmon.logic.formula import Core
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import plan_of_truths
 from rvmon.monitor.compiled_spec import Kept
-from rvmon.monitor.intake import Validator
 from rvmon.monitor.planned import planned_as
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
@@ -22,7 +20,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rvmon.monitor.recording import RecordingRun
     from rvmon.readers.batch import Batch
 
 
@@ -65,49 +62,32 @@ class TruthsRun:
 
     Args:
         plan: of the formulas.
-        names: the signals and events that have a source; `None`: all.
+        recording: its names, end and outages; what it holds is taken piece by piece.
     """
 
-    def __init__(self, plan: TruthsPlan, names: frozenset[str] | None) -> None:
-        self._plan = plan
-        self._names = names
-        declared = frozenset(plan.planned.numbers)
-        self._run = plan.planned.monitor(frozenset() if names is None else declared - names)
-        known = None if names is None else names & declared
-        self._validator = Validator(plan.spec, known, frozenset())
-
-    def take(self, piece: Batch | Sample) -> None:
-        """Take the next sample; names that the specification does not declare are skipped."""
-        if not isinstance(piece, Sample):
-            self._rows.take(piece)
-            return
-        t, values = piece.t, piece.values
-        if self._run.judge(t, values, False):
-            return
-        read = {name: values[name] for name in self._plan.read if name in values}
-        if self._run.judge(t, read, False):
-            return
-        if not self._run.judge(
-            t, self._plan.planned.plain(t, self._validator.check(t, read)), True
-        ):
-            raise ValueError("the core does not take a sample that was checked")
-
-    @cached_property
-    def _rows(self) -> RecordingRun:
+    def __init__(self, plan: TruthsPlan, recording: Trace) -> None:
         from rvmon.monitor.recording import RecordingRun  # which imports NumPy
 
-        source = Source(Trace((), self._names))
-        made = RecordingRun(self._plan.spec, self._plan.planned, source, finds=False)
-        made.core = self._run
-        return made
+        self._plan = plan
+        self._run = RecordingRun(plan.spec, plan.planned, Source(recording), finds=False)
 
-    def known(self, end: int) -> list[Known]:
-        """End the recording (ticks), and give where each formula is decided."""
+    def take(self, piece: Batch | Sample) -> None:
+        """Take what comes next; names that no formula reads are skipped."""
+        if isinstance(piece, Sample):
+            values = piece.values
+            piece = Sample(
+                piece.t, {name: values[name] for name in self._plan.read if name in values}
+            )
+        self._run.take(piece)
+
+    def known(self) -> list[Known]:
+        """End the recording, and give where each formula is decided."""
         import numpy as np
 
-        self._run.finish(end)
+        self._run.finish()
+        truths = self._run.core.truths
         return [
-            Known(*(np.frombuffer(one, np.int64).reshape(-1, 2) for one in self._run.truths(place)))
+            Known(*(np.frombuffer(one, np.int64).reshape(-1, 2) for one in truths(place)))
             for place in self._plan.places
         ]
 
@@ -132,7 +112,7 @@ def known_truths(
 
     Cost: one pass over the samples in C.
     """
-    run = TruthsRun(TruthsPlan(spec, formulas, captured), names)
+    run = TruthsRun(TruthsPlan(spec, formulas, captured), Trace((), names, end))
     for sample in samples:
         run.take(sample)
-    return run.known(end)
+    return run.known()

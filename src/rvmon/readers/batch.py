@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rvmon.readers.coalesce import Alternations, Conflicts, coalesce
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Outage, Sample, Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -343,19 +343,36 @@ def unknown_rows(
             yield is_nan, own
 
 
+def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> list[Batch | Sample]:
+    """Pieces of a recording up to an instant, ticks."""
+    return [
+        piece if isinstance(piece, Sample) else piece.up_to(end)
+        for piece in pieces
+        if not isinstance(piece, Sample) or piece.t <= end
+    ]
+
+
 class HeldRecording(Sequence[Sample]):
     """The samples of a recording; those of columns take a tenth of the memory of samples.
 
     Args:
         pieces: of the recording, in order.
         events: the names that are events.
+        outages: what it lost.
 
     Attributes:
         pieces: as given.
+        outages: as given.
     """
 
-    def __init__(self, pieces: Iterable[Batch | Sample], events: Container[str]) -> None:
+    def __init__(
+        self,
+        pieces: Iterable[Batch | Sample],
+        events: Container[str],
+        outages: Sequence[Outage] = (),
+    ) -> None:
         self.pieces = tuple(pieces)
+        self.outages = tuple(outages)
         self._events = events
 
     def __len__(self) -> int:

@@ -6,7 +6,7 @@ Source: SEMANTICS 1 and 6.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -145,11 +145,13 @@ class Trace:
         samples: with strictly increasing `t`.
         names: the names that have a source; `None` if any may come.
         end: the instant at which the recording ended, in ticks; `None`: at its last sample.
+        outages: what it lost.
     """
 
     samples: tuple[Sample, ...]
     names: frozenset[str] | None = None
     end: int | None = None
+    outages: Sequence[Outage] = ()
 
     def __iter__(self) -> Iterator[Sample]:
         return iter(self.samples)

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
 
@@ -154,3 +155,26 @@ def test_it_says_how_late_what_was_awaited_came(door, capsys):
     assert main(["why", "door.rv", "slow.csv", "D1"]) == 0
     told = "it came at 3.02 s, 20 ms after the deadline"
     assert told in " ".join(capsys.readouterr().out.split())
+
+
+def test_what_a_log_lost_is_known_to_nobody(door, capsys):
+    """The verdict is that of `rvmon run`, and the rows are not known where the log was dropped."""
+    write_ulog(door / "a.ulg", [(10**6 + 10_000 * k, 1.0, 2) for k in range(100)], [(49, 250)])
+    (door / "u.toml").write_text('[bind.speed]\ntopic = "/drive"\nvalue = "speed"\nunit = "m/s"\n')
+    (door / "u.rv").write_text(
+        "signal speed : real [m/s]\nrequirement R\n  upon start then for 900 ms speed < 3 m/s\n"
+    )
+    asked = ["u.rv", "a.ulg", "--binding", "u.toml", "--format", "json"]
+    assert main(["run", *asked]) == 0
+    assert json.loads(capsys.readouterr().out)["requirements"]["R"]["verdict"] == "I"
+    assert main(["why", *asked[:2], "R#1", *asked[2:]]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["attempt"]["verdict"] == "I"
+    row = next(one for one in told["part_truths"] if one["text"] == "speed < 3 m/s")
+    second = 10**9
+    print(row)
+    assert row["true"] == [[second, row["true"][0][1]], [row["true"][1][0], 2 * second - 10**7]]
+    assert row["false"] == []
+    lost = range(row["true"][0][1] + 1, row["true"][1][0])
+    assert len(lost) >= second // 4
+    assert second + 5 * second // 10 in lost
