@@ -61,6 +61,18 @@ class Course(Sequence[tuple[int, Scalar]]):
         """How many of them are not after an instant."""
         return int(self._columns[0].searchsorted(instant, "right"))
 
+    def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
+        """What they had changed to by some instants; `None` before the first, and if unknown."""
+        times, values, hidden = self._columns
+        places = times.searchsorted(instants, "right") - 1
+        if not len(times):
+            return [None] * len(places)
+        unknown = ((places < 0) | hidden[places]).tolist()
+        return [
+            None if is_unknown else value
+            for value, is_unknown in zip(values[places].tolist(), unknown, strict=True)
+        ]
+
     @property
     def has_unknown(self) -> bool:
         """Whether one is to the unknown."""

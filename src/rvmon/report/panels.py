@@ -19,7 +19,7 @@ from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Track, TrackKind, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -132,10 +132,18 @@ def nearest_passing(
     by how far apart they occur.
     """
     best: tuple[float, Candidate, Attempt] | None = None
+    looks = range(LOOKS)
+    instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
+    own = [() if one.kind is TrackKind.EVENT else one.values_at(instants) for one in tracks]
     for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):
         shift = attempt.triggered - passed.triggered
-        pairs = zip(tracks, candidate.tracks, strict=True)
-        distance = sum(_distance(mine, other, view, shift) for mine, other in pairs)
+        moved = [instant - shift for instant in instants]
+        distance = 0.0
+        for mine, values, other in zip(tracks, own, candidate.tracks, strict=True):
+            if mine.kind is TrackKind.EVENT:
+                distance += abs(_first(mine, view, 0) - _first(other, view, shift))
+            else:
+                distance += _distance(values, other.values_at(moved))
         if best is None or distance < best[0]:
             best = (distance, candidate, passed)
     return None if best is None else _laid_over(best[1], best[2], attempt)
@@ -163,19 +171,16 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
     )
 
 
-def _distance(mine: Track, other: Track, view: View, shift: int) -> float:
-    """How much two tracks differ, from 0 (not at all) to 1, the other moved by `shift`."""
-    if mine.kind is TrackKind.EVENT:
-        return abs(_first(mine, view, 0) - _first(other, view, shift))
-    instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in range(LOOKS)]
-    pairs = [(mine.value_at(instant), other.value_at(instant - shift)) for instant in instants]
-    numbers = [abs(value) for pair in pairs for value in pair if _is_number(value)]
+def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
+    """How much the values of two signals differ, from 0 (not at all) to 1."""
+    pairs = list(zip(mine, other, strict=True))
+    numbers = [abs(value) for value in (*mine, *other) if _is_number(value)]
     scale = max(numbers, default=0.0) or 1.0
     differences = (
         min(abs(a - b) / scale, 1.0) if _is_number(a) and _is_number(b) else float(a != b)
         for a, b in pairs
     )
-    return sum(differences) / LOOKS
+    return sum(differences) / len(pairs)
 
 
 def _first(track: Track, view: View, shift: int) -> float:

@@ -113,6 +113,12 @@ class Track:
         index = self._behind(instant)
         return self.changes[index - 1][1] if index else None
 
+    def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
+        """The same at several instants."""
+        if isinstance(self.changes, Course):
+            return self.changes.values_at(instants)
+        return [self.value_at(instant) for instant in instants]
+
     def between(self, first: int, last: int) -> Sequence[tuple[int, Scalar]]:
         """The changes from one instant to another, both included."""
         return self.changes[self._behind(first - 1) : self._behind(last)]
