@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import TYPE_CHECKING, Any, overload
@@ -182,6 +182,12 @@ class Batch:
         """Number, ticks and values of each row."""
         for row, sample in enumerate(self.rows(0, len(self.times))):
             yield self.number_of(row), sample.t, sample.values
+
+    def without(self, names: Set[str]) -> Batch:
+        """The rows with nothing of some names."""
+        signals = {name: one for name, one in self.signals.items() if name not in names}
+        events = {name: one for name, one in self.events.items() if name not in names}
+        return replace(self, signals=signals, events=events)
 
     def up_to(self, until: int | None) -> Batch:
         """The rows up to an instant (ticks); all of them without one."""

@@ -6,7 +6,7 @@ Source: SEMANTICS 1 and 6.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -104,6 +104,10 @@ class Sample:
 
     t: int
     values: Mapping[str, Value]
+
+    def without(self, names: Set[str]) -> Sample:
+        """The same with nothing of some names."""
+        return Sample(self.t, {name: self.values[name] for name in self.values.keys() - names})
 
 
 @dataclass(frozen=True, slots=True)

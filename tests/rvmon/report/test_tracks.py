@@ -26,7 +26,7 @@ from rvmon.report.tracks import (
     thresholds,
     tracks_of,
 )
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Outage, Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Blame
 from rvmon.verdict.report import report_of
@@ -196,12 +196,25 @@ def test_held_columns_give_the_tracks_of_samples(seed, tmp_path, monkeypatch):
     (tmp_path / "a.csv").write_text("\n".join(rows))
     monkeypatch.setattr(places, "BLOCK", rng.choice([100, 1 << 20]))
     recording = rvmon.loads(SPEC_TEXT).recording(tmp_path / "a.csv")
-    held = HeldRecording(recording.pieces(), SPEC.events)
-    assert repr(list(held)) == repr(list(recording))
+    lost = [
+        Outage(at, at + rng.randint(0, SECOND), "lost") for at in rng.sample(range(t), seed % 3)
+    ]
+    held = HeldRecording(recording.pieces(), SPEC.events, lost)
+    samples = HeldRecording(list(recording), SPEC.events, lost)
+    assert repr(list(held)) == repr(list(samples))
     for requirement in (R1, R2):
         assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
-            SPEC, requirement, changes_of(SPEC, list(recording))
+            SPEC, requirement, changes_of(SPEC, samples)
         )
+
+
+def test_while_it_is_lost_nothing_is_drawn_as_known():
+    """Up to the first update at the last instant or behind, be it the same value."""
+    samples = [Sample(t, {"gap": 2.0, "go": True}) for t in (0, 4, 6, 9)]
+    own = HeldRecording(samples, SPEC.events, [Outage(3, 8, "lost", frozenset({"gap"}))])
+    changes = changes_of(SPEC, own)
+    assert list(changes["gap"].ended()) == [(0, 2.0), (3, None), (9, 2.0), (200_000_010, None)]
+    assert [t for t, _ in changes["go"].ended()] == [0, 4, 6, 9]
 
 
 def test_many_numbers_are_drawn_by_their_extremes():
