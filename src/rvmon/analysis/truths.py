@@ -12,8 +12,8 @@ from rvmon.analysis.spans import FOREVER, joined, outside, within
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
-from rvmon.readers.batch import HeldRecording
 from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,

@@ -53,7 +53,7 @@ class Remembered:
         """What was read of it up to an instant; `None`: there was more than is remembered."""
         if self._left < 0:
             return None
-        from rvmon.readers.batch import pieces_up_to  # which imports NumPy
+        from rvmon.readers.held import pieces_up_to  # which imports NumPy
 
         return pieces_up_to(self._pieces, end)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.readers.batch import HeldRecording
+from rvmon.readers.held import HeldRecording
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec

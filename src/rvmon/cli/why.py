@@ -61,7 +61,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     from rvmon.analysis.near_miss import why_not_triggered
     from rvmon.analysis.subformulas import dissect
     from rvmon.monitor.missing import expect_names
-    from rvmon.readers.batch import HeldRecording, pieces_up_to
+    from rvmon.readers.held import HeldRecording, pieces_up_to
     from rvmon.readers.source import Source
     from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds

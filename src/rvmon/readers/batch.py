@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from itertools import repeat
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.coalesce import Alternations, Conflicts, coalesce
-from rvmon.trace.sample import Outage, Sample, Value
+from rvmon.readers.coalesce import Alternations, Conflicts
+from rvmon.trace.sample import Sample, Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -347,57 +347,3 @@ def unknown_rows(
         own = batch.times[rows[~null if is_nan else null]]
         if len(own):
             yield is_nan, own
-
-
-def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> list[Batch | Sample]:
-    """Pieces of a recording up to an instant, ticks."""
-    return [
-        piece if isinstance(piece, Sample) else piece.up_to(end)
-        for piece in pieces
-        if not isinstance(piece, Sample) or piece.t <= end
-    ]
-
-
-class HeldRecording(Sequence[Sample]):
-    """The samples of a recording; those of columns take a tenth of the memory of samples.
-
-    Args:
-        pieces: of the recording, in order.
-        events: the names that are events.
-        outages: what it lost.
-
-    Attributes:
-        pieces: as given.
-        outages: as given.
-    """
-
-    def __init__(
-        self,
-        pieces: Iterable[Batch | Sample],
-        events: Container[str],
-        outages: Sequence[Outage] = (),
-    ) -> None:
-        self.pieces = tuple(pieces)
-        self.outages = tuple(outages)
-        self._events = events
-
-    def __len__(self) -> int:
-        """How many rows there are, of which some may be of one sample."""
-        return sum(1 if isinstance(one, Sample) else len(one.times) for one in self.pieces)
-
-    def __iter__(self) -> Iterator[Sample]:
-        """The samples."""
-        for piece in self.pieces:
-            if isinstance(piece, Sample):
-                yield piece
-            else:
-                rows = piece.rows(0, len(piece.times))
-                yield from coalesce(rows, self._events, Conflicts())
-
-    @overload
-    def __getitem__(self, place: int) -> Sample: ...
-    @overload
-    def __getitem__(self, place: slice) -> list[Sample]: ...
-    def __getitem__(self, place: int | slice) -> Sample | list[Sample]:
-        """A sample; all are gone through, but for the first."""
-        return next(iter(self)) if place == 0 else list(self)[place]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
-from rvmon.readers.batch import HeldRecording
 from rvmon.readers.coalesce import updates_in
+from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar, Value
 
@@ -113,36 +113,10 @@ def changes_of(
 ) -> Mapping[str, Changes]:
     """By name what each signal and event of a run changed to, whichever requirements read it."""
     noted = RunChanges(spec)
-    pieces = _as_known(samples, {*noted.by_name}) if isinstance(samples, HeldRecording) else samples
-    for piece in pieces:
+    names = {*noted.by_name}
+    for piece in samples.as_known(names) if isinstance(samples, HeldRecording) else samples:
         noted.add(piece)
     return noted.by_name
-
-
-def _as_known(held: HeldRecording, names: Set[str]) -> Iterator[Batch | Sample]:
-    """The pieces, in which names are unknown while they are lost."""
-    begins = sorted(held.outages, key=lambda one: one.since)
-    turns = sorted({t for one in begins for t in (one.since, one.until)})
-    for piece in held.pieces:
-        for part in _parts(piece, turns):
-            first = part.t if isinstance(part, Sample) else int(part.times[0])
-            while begins and begins[0].since <= first:
-                one = begins.pop(0)
-                yield Sample(one.since, dict.fromkeys(names if one.names is None else one.names))
-            lost: set[str] = set()
-            for one in held.outages:
-                if one.since <= first < one.until:
-                    lost |= names if one.names is None else one.names
-            yield part.without(lost) if lost else part
-
-
-def _parts(piece: Batch | Sample, turns: Sequence[int]) -> Iterator[Batch | Sample]:
-    """A piece, of which rows are cut apart where something is lost, or found."""
-    if isinstance(piece, Sample) or not turns:
-        yield piece
-        return
-    edges = sorted({0, len(piece.times), *piece.times.searchsorted(turns).tolist()})
-    yield from (piece.cut(start, stop) for start, stop in pairwise(edges))
 
 
 class RunChanges:
