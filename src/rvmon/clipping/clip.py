@@ -24,6 +24,16 @@ from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 from rvmon.trace.time import format_stamp
 
+CLIPPED = {
+    "csv": "CSV",
+    "jsonl": "JSON lines",
+    "parquet": "Parquet",
+    "mcap": "MCAP",
+    "ros1": "bags of ROS 1",
+    "ros2": "bags of ROS 2",
+}
+"""The formats that pieces are cut out of, and what they are called."""
+
 
 def refuse_place(path: str, out: str | None) -> None:
     """Say, before any work is done for it, that a piece of a recording cannot go to a place.
@@ -33,7 +43,8 @@ def refuse_place(path: str, out: str | None) -> None:
         out: the place; `None`: one that suits it.
 
     Raises:
-        RvmonError: it has the ending of another format, or is a folder that is there.
+        RvmonError: no piece can be cut out of the recording's format, or the place has the ending
+            of another, or is a folder that is there.
         TraceError: the recording has no known format.
     """
     form = format_of(path)
@@ -41,6 +52,9 @@ def refuse_place(path: str, out: str | None) -> None:
         raise RvmonError("standard input can be read once only: save the recording first")
     if form in ("tables", JOINED):
         raise RvmonError(f"{path} is several files: clip each of them, by --from and --to")
+    if form not in CLIPPED:
+        listed = ", ".join(CLIPPED.values())
+        raise RvmonError(f"{path}: no piece can be cut out of this format, as out of {listed}")
     if out is None:
         return
     if form == "ros2" and local_path(path).is_dir():

@@ -169,3 +169,13 @@ def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, capsys,
     piece = parquet.read_table("b.parquet")
     assert piece.schema == parquet.read_table("a.parquet").schema
     assert main(["run", "v.rv", "b.parquet", "--quiet"]) == 1
+
+
+@pytest.mark.parametrize("name", ["a.ulg", "a.blf", "a.mf4", "a.h5"])
+@pytest.mark.parametrize("out", [["-o", "piece.csv"], ["--reproducer", "a.rvcase"]])
+def test_what_no_piece_is_cut_out_of_says_what_one_is(base, capsys, name, out):
+    """Before it is read."""
+    (base / name).write_bytes(b"")
+    assert main(["clip", "base.rv", name, "R1", *out]) == 2
+    told = capsys.readouterr().err
+    assert f"error: {name}: no piece can be cut out of this format, as out of CSV" in told
