@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -90,10 +91,18 @@ class RecordedAttempts(LazyAttempts):
         """See `LazyAttempts`."""
         if requirement not in self._ids:
             return iter(())
-        records = self._records
-        own = records["requirement"] == self._ids.index(requirement)
-        chosen = np.flatnonzero(own & (records["verdict"] == VERDICTS.index(verdict)))
-        return (self[index] for index in chosen.tolist())
+        kind = self._ids.index(requirement) * len(VERDICTS) + VERDICTS.index(verdict)
+        kinds, order = self._by_kind
+        first, stop = kinds.searchsorted([kind, kind + 1]).tolist()
+        return (self[index] for index in order[first:stop].tolist())
+
+    @cached_property
+    def _by_kind(self) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
+        """Requirement and verdict in one number, ascending, and which record each is of."""
+        kinds = self._records["requirement"].astype(np.int64) * len(VERDICTS)
+        kinds += self._records["verdict"]
+        order = np.argsort(kinds, kind="stable")
+        return kinds[order], order
 
     def _attempt(self, record: Any, numbers: NDArray[Any]) -> Attempt:
         triggered, decided, captured, note, requirement, number, verdict, decision, in_doubt = (
