@@ -43,6 +43,7 @@ _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
     ("h", "s", 3600),
     ("N", "kg*m/s^2", 1),
     ("Pa", "N/m^2", 1),
+    ("hPa", "N/m^2", 100),
     ("bar", "N/m^2", 100_000),
     ("J", "N*m", 1),
     ("watt", "J/s", 1),
@@ -52,9 +53,12 @@ _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
     ("V", "W/A", 1),
     ("ohm", "V/A", 1),
     ("T", "N/A/m", 1),
+    ("gauss", "N/A/m", Fraction(1, 10_000)),
     ("lx", "cd/m^2", 1),
     ("Hz", "1/s", 1),
     ("deg", "rad", _PI / 180),
+    ("cdeg", "rad", _PI / 18_000),
+    ("cdegC", "degC", Fraction(1, 100)),
     ("rev", "rad", 2 * _PI),
     ("rpm", "rad/s", 2 * _PI / 60),
     ("inch", "m", Fraction(254, 10_000)),
@@ -69,7 +73,7 @@ _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
 )
 _PREFIXED = (
     *("m", "g", "s", "A", "K", "rad", "L", "N", "Pa", "bar", "J", "W", "Wh", "Ah"),
-    *("V", "ohm", "T", "Hz", "mol"),
+    *("V", "ohm", "T", "gauss", "Hz", "mol"),
 )
 _PREFIXES = {
     "n": Fraction(1, 10**9),

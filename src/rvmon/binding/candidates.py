@@ -16,6 +16,7 @@ from rvmon.binding.words import (
     MODIFIERS,
     OF_COMMENTS,
     OF_TOPICS,
+    PLACES,
     Dimension,
     dimensions_of,
     unit_in_name,
@@ -92,12 +93,22 @@ class Candidate:
         return not _COMMANDS.isdisjoint(words) or bool(_COMMANDING.search(self.topic.type))
 
     @property
+    def is_code(self) -> bool:
+        """Whether it is a number that stands for something, of which nobody says for what."""
+        return self.kind is Kind.INT and not self.dimensions
+
+    @property
     def unit(self) -> Unit | None:
         """What the messages say, or the name of the field; `None` if neither says one."""
         if self.meaning.sort is Sort.MEASURED and len(self.meaning.units) == 1:
             return self.meaning.units[0]
         named = unit_in_name(self.value) if self.meaning.sort is Sort.OPEN else ""
         return parse_unit(named) if named else None
+
+    @property
+    def says_unit(self) -> bool:
+        """Whether the messages say its unit, or one of several, or the name of the field does."""
+        return self.meaning.sort is Sort.MEASURED or self.unit is not None
 
     @property
     def dimensions(self) -> frozenset[Dimension]:
@@ -196,8 +207,11 @@ def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
 
 def foreign_words(candidate: Candidate) -> list[str]:
     """The words of a candidate that say something, without those of the meaning alone."""
-    written = [*words_of(candidate.topic.name), *words_of(candidate.value)]
+    field = words_of(candidate.value)
+    written = [*words_of(candidate.topic.name), *field]
     plain = {*EMPTY, *AXES, "hypot", candidate.axis}
+    if {*field} <= PLACES:
+        plain -= PLACES  # it is what the field says, and no place of it
     return [word for word in dict.fromkeys(written) if word not in plain]
 
 
@@ -240,6 +254,11 @@ class Range:
         if isinstance(value, int | float) and not isinstance(value, bool):
             self.low = value if self.low is None else min(self.low, value)
             self.high = value if self.high is None else max(self.high, value)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is a number that was always the same."""
+        return self.low is not None and self.low == self.high
 
     def __str__(self) -> str:
         if not self.count:

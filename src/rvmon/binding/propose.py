@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from rvmon.binding.candidates import Candidate, Range, candidates_of, events_of, ranges_of
 from rvmon.binding.rank import fitting, in_such_a_unit, is_clear, wanted_of
@@ -18,6 +19,9 @@ from rvmon.units import base_unit, parse_unit, unit_table
 
 _MOST = 4
 """Places that are shown for a name."""
+
+_LARGE = {"rad": 360, "m": 9_000, "degC": 200, "V": 999, "A": 999, "m/s": 999, "": 100}
+"""A whole number that is larger counts parts of a unit, where nobody says of which."""
 
 _WHOLE = 1.5
 """No ratio of a whole is as large."""
@@ -70,8 +74,12 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     }
     shown = [one for own in found.values() for _, one in own[: 2 * _MOST]]
     ranges = ranges_of(source, [*shown, *(one for own in near.values() for one in own)])
-    found = {name: _with_values(own, ranges) for name, own in found.items()}
-    chosen = {name: own[0][1] for name, own in found.items() if is_clear(own)}
+    found = {name: _with_values(own, ranges, types.get(name)) for name, own in found.items()}
+    chosen = {
+        name: own[0][1]
+        for name, own in found.items()
+        if is_clear(wanted[name], own) and not _is_idle(own, ranges)
+    }
     lines = ['clock = "log"  # or "header": the stamps of the headers count']
     for name, one in chosen.items():
         lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
@@ -94,14 +102,31 @@ def _has_codes(type_: Type | None, one: Candidate) -> bool:
     return type_ is not None and type_.kind is Kind.LABEL and one.kind is not Kind.LABEL
 
 
-def _with_values(found: Found, ranges: Ranges) -> Found:
-    """Without what never has a value, unless that is all."""
+def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
+    """Without what counts parts of a unit, and what never has a value, unless that is all."""
+    if type_ is not None and type_.unit:
+        found = [(score, one) for score, one in found if not _is_raw(one, type_.unit, ranges)]
     kept = [
         (score, one)
         for score, one in found
         if (own := ranges.get((one.topic.name, one.value))) is None or own.count
     ]
     return kept or found
+
+
+def _is_raw(one: Candidate, unit: str, ranges: Ranges) -> bool:
+    """Whether it is a whole number whose unit nobody says, and too large for the plain one."""
+    own = ranges.get((one.topic.name, one.value))
+    if own is None or own.high is None or own.low is None or one.unit is not None:
+        return False
+    plain = _plain_unit(parse_unit(unit).dimension)
+    return one.kind is Kind.INT and max(own.high, -own.low) > _LARGE.get(plain, inf)
+
+
+def _is_idle(found: Found, ranges: Ranges) -> bool:
+    """Whether the best is a number that never changes, and another one does."""
+    best, *others = (ranges.get((one.topic.name, one.value), Range()) for _, one in found)
+    return best.is_constant and any(own.low != own.high for own in others)
 
 
 def _place_lines(one: Candidate, ranges: Ranges) -> Iterator[str]:
@@ -169,8 +194,9 @@ def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:
         yield 'on = "change"  # only the first of several in a row that are true'
     payload = {}
     for name, type_ in fields.items():
-        ranked = fitting(wanted_of(name, type_, ()), candidates_of(one.topic, Looked()))
-        if is_clear(ranked):
+        wanted = wanted_of(name, type_, ())
+        ranked = fitting(wanted, candidates_of(one.topic, Looked()))
+        if is_clear(wanted, ranked):
             payload[name] = ranked[0][1].value
         else:
             yield f"# Nothing was found for its field `{name}`."

@@ -39,6 +39,9 @@ _REQUESTS = frozenset(
 )
 """Words that say of an event no more than that it is one."""
 
+_EXTREMES = ("minimum", "maximum")
+"""Limits; comments speak of them where they say what a value cannot be."""
+
 _A_WORD = 0.05
 """Scores differ by less where the same words are found."""
 
@@ -92,9 +95,11 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
         for one in candidates
         if (_says_so(wanted, one) if type_ is None else _fits(wanted, type_, one))
     ]
-    scored = [(_score(wanted, one), one) for one in fit]
+    scored = [(score, one) for one in fit if (score := _score(wanted, one))]
+    if type_ is not None and type_.unit and any(one.says_unit for one in fit):
+        scored = [(score - 0.2 * (not one.says_unit), one) for score, one in scored]
     return sorted(
-        ((score, one) for score, one in scored if score),
+        scored,
         key=lambda found: (-found[0], found[1].topic.name, len(found[1].value), found[1].value),
     )
 
@@ -119,14 +124,25 @@ def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Cand
     return sorted(found, key=lambda one: -len({*wanted.words} & {*one.own, *one.around}))
 
 
-def is_clear(found: Sequence[tuple[float, Candidate]]) -> bool:
-    """Whether one is better than all others; of two topics that say the same, none is."""
+def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
+    """Whether one is better than all others; of two topics that say the same, none is.
+
+    Nor is of two codes that say much the same, unless one is called as the name, and of its topic.
+    """
     if not found:
         return False
     best, first = found[0]
+    is_exact = words_of(first.value) == [*wanted.words]
     return all(
-        score < best - (_A_WORD if _is_twin(first, one) else 1e-9) for score, one in found[1:]
+        score < best - (_A_WORD if _is_alike(first, one, is_exact=is_exact) else 1e-9)
+        for score, one in found[1:]
     )
+
+
+def _is_alike(first: Candidate, second: Candidate, *, is_exact: bool) -> bool:
+    """Whether one has to be better by a word: of twins, and of codes that may be another's."""
+    is_own = is_exact and first.topic.name == second.topic.name
+    return _is_twin(first, second) or (first.is_code and not is_own)
 
 
 def _is_twin(first: Candidate, second: Candidate) -> bool:
@@ -146,6 +162,8 @@ def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
     if not (modifiers_of(candidate) - {"command"} <= asked) or _is_of_another(wanted, candidate):
         return False
     if type_.kind in (Kind.BOOL, Kind.LABEL):
+        if not {*AXES, "xy"} & {*candidate.own} <= {*wanted.words}:
+            return False
         return candidate.meaning.sort is not Sort.MEASURED
     return _is_along(wanted, candidate) and _is_in_unit(wanted, type_, candidate)
 
@@ -187,8 +205,9 @@ def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
         dimension = parse_unit(type_.unit).dimension
         if (said and dimension not in said) or candidate.meaning.sort is Sort.CODE:
             return False
-        if candidate.meaning.is_scaled:
-            return False
+        is_magnetic = dimension == parse_unit("T").dimension
+        if candidate.meaning.is_scaled or (is_magnetic and candidate.unit is None):
+            return False  # a magnet makes thousandths of it
         return dimension in there if there else candidate.meaning.sort is Sort.OPEN
     return not (said and there) or not said.isdisjoint(there)
 
@@ -216,9 +235,15 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
         better += 0.2  # a text says which label it is, a number does not
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
-    if wanted.type is not None and wanted.type.unit and candidate.topic.units:
-        worse += 0.2 * (not candidate.dimensions)  # of the others the recording says the unit
+    worse += 0.06 * _is_beside_another(candidate, foreign)
     return total / len(asked) + better - worse
+
+
+def _is_beside_another(candidate: Candidate, foreign: Iterable[str]) -> bool:
+    """Whether its topic is called by another quantity: an acceleration among positions."""
+    named = {*words_of(candidate.topic.name)} & {*foreign}
+    others = [own for word in named if (own := dimensions_of([word]))]
+    return any(own.isdisjoint(candidate.dimensions) for own in others if candidate.dimensions)
 
 
 def _is_short_for(value: str, name: str) -> bool:
@@ -236,6 +261,9 @@ def _weight(word: str, candidate: Candidate) -> float:
         return 1.0
     if is_found(word, candidate.own) and is_found(word, words_of(candidate.value)):
         return 1.0
+    if word == candidate.value.rpartition(".")[2].replace("_", "").casefold():
+        return 1.0
     is_its_unit = candidate.unit is not None and is_measured_in(word, candidate.unit)
-    others = (*candidate.own, *candidate.implied, *candidate.around, *candidate.told)
-    return 0.9 * (is_its_unit or is_found(word, others))
+    others = (*candidate.own, *candidate.implied, *candidate.around)
+    is_told = word not in _EXTREMES and is_found(word, candidate.told)
+    return 0.9 * (is_its_unit or is_told or is_found(word, others))

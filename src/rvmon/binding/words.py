@@ -27,6 +27,7 @@ _SAME = {
     "relative": "rel",
     "satellites": "satellite sats nsats sat sv svs",
     "percentage": "percent pct soc",
+    "remaining": "rem",
     "number": "num nr count",
     "torque": "torques",
     "wheel": "wheels",
@@ -65,6 +66,12 @@ _JOINED = {
     "rollspeed": ("roll", "rate"),
     "pitchspeed": ("pitch", "rate"),
     "cpuload": ("cpu", "load"),
+    "wp": ("waypoint",),
+    "xtrack": ("cross", "track"),
+    "crosstrack": ("cross", "track"),
+    "aspd": ("air", "speed"),
+    "vservo": ("servo", "voltage"),
+    "vcc": ("board", "voltage"),
 }
 """Words that are written as one."""
 
@@ -77,6 +84,9 @@ EMPTY = _set(
 )
 """Words that say nothing of what is meant."""
 
+PLACES = _set("base body frame link joint fmu")
+"""Of them those that say something where a field has no other word."""
+
 WEAK = frozenset({"imu", "ground", "horizontal"})
 """Words that need not be found where nothing else is said of the same."""
 
@@ -85,11 +95,11 @@ MODIFIERS = _set(
     "reset counter design time timestamp stamp increment last home initial origin average",
     "mean derivative integral raw scaling covariance confidence quality valid health",
     "full nominal rated input output",
-    "fault innovation drift index id device",
+    "fault failsafe failure innovation drift index id device",
 )
 """Words that make another quantity of what they stand beside."""
 
-OF_TOPICS = _set("innovation variance bias error drift")
+OF_TOPICS = _set("innovation variance bias error drift home origin")
 """Of these words those that make another quantity of all that a topic says."""
 
 OF_COMMENTS = OF_TOPICS | _set("accuracy covariance limit tolerance")
@@ -98,7 +108,7 @@ OF_COMMENTS = OF_TOPICS | _set("accuracy covariance limit tolerance")
 SUBJECTS = _set(
     "wind water air person pedestrian human people obstacle object ball door target lead other",
     "engine motor fan pump thruster propeller gimbal load fuel cpu gpu ambient external internal",
-    "gripper hand finger trailer fork lift",
+    "gripper hand finger trailer fork lift manual stick",
 )
 """Words for what is not the robot as a whole: what is said of them is not said of it."""
 

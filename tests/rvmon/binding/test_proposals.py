@@ -144,3 +144,49 @@ def test_a_leader_is_a_guess(tmp_path, capsys):
     main(["init", bag, "--for", spec])
     told = capsys.readouterr().out
     assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told
+
+
+DATABASE = """VERSION ""
+BS_:
+BU_: ECU
+BO_ 256 Drive: 8 ECU
+ SG_ Speed : 0|8@1+ (1,0) [0|0] "furlong/h" ECU
+ SG_ Compass : 8|8@1+ (1.5,0) [0|0] "mGauss" ECU
+ SG_ Height : 16|16@1+ (1,0) [0|0] "" ECU
+ SG_ Clearance : 32|8@1+ (1,0) [0|0] "" ECU
+"""
+
+
+def test_a_scale_that_nobody_knows_is_left_open(tmp_path, capsys):
+    """A unit that is none here, a whole number that is too large for the plain unit."""
+    pytest.importorskip("cantools")
+    (tmp_path / "a.dbc").write_text(DATABASE)
+    (tmp_path / "a.log").write_text("".join(f"({t}.0) can0 100#0A0A60EA05000000\n" for t in (1, 2)))
+    names = (
+        "speed : real [m/s]",
+        "compass : real [gauss]",
+        "height : real [m]",
+        "clearance : real [m]",
+    )
+    spec = tmp_path / "a.rv"
+    declared = "".join(f"signal drive_{name}\n" for name in names)
+    spec.write_text(f"spec car\n{declared}requirement R1\n  always true\n")
+    assert main(["init", str(tmp_path / "a.log"), "--for", str(spec)]) == 1
+    assert dict(flat(tomllib.loads(capsys.readouterr().out)["bind"])) == {
+        "drive_compass": "/Drive Compass [mgauss]",
+        "drive_clearance": "/Drive Clearance [m]",
+    }
+
+
+def test_a_number_that_never_changes_is_no_clear_choice(tmp_path, capsys):
+    """What drives on a plane says of its pitch that it is 0, and another one says what it is."""
+    imu = [{"angular_velocity": {"y": rate}} for rate in (0.1, 0.2)]
+    sent = [("/odom", START, {}), ("/imu", START + 1, imu[0]), ("/imu", START + 2, imu[1])]
+    types = {"/odom": "nav_msgs/msg/Odometry", "/imu": "sensor_msgs/msg/Imu"}
+    bag = write_ros1(tmp_path / "a.bag", sent, types)
+    spec = tmp_path / "a.rv"
+    spec.write_text("spec s\nsignal pitch_rate : real [rad/s]\nrequirement R1\n  always true\n")
+    assert main(["init", str(bag), "--for", str(spec)]) == 1
+    told = capsys.readouterr().out
+    assert '# topic = "/odom", value = "twist.twist.angular.y"  # always 0' in told
+    assert '# topic = "/imu", value = "angular_velocity.y"  # 0.1 … 0.2' in told

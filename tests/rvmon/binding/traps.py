@@ -186,5 +186,50 @@ FRESH = {
             "tool_temperature": OPEN,
         },
     ),
+    "near": Robot(
+        {
+            "/home": POSE,
+            "/mission_item": ("fleet_msgs/msg/Item", {"frame": 3, "seq": 7}),
+            "/heartbeat": ("fleet_msgs/msg/Heartbeat", {"base_mode": 81, "custom_mode": 4}),
+            "/validity": ("fleet_msgs/msg/Validity", {"z_valid": True}),
+            "/position": ("fleet_msgs/msg/Position", {"az": 0.1}),
+            "/sensor_accel": ("fleet_msgs/msg/Accel", {"z": 9.8}),
+            "/stick": ("fleet_msgs/msg/Stick", {"throttle": 0.5}),
+            "/transition": ("fleet_msgs/msg/Transition", {"transition_failure": True}),
+            "/power": ("fleet_msgs/msg/Power", {"battery_volt": 12.1, "voltage_v": 12.0}),
+            "/wifi": ("fleet_msgs/msg/Wifi", {"rssi": 60, "remote_rssi": 50}),
+        },
+        "signal heading : real [deg]\n"
+        "signal mission_item : int\n"
+        "signal mode : {manual, auto}\n"
+        "signal validity_valid : bool\n"
+        "signal accel_z : real [m/s^2]\n"
+        "signal throttle : real [%]\n"
+        "signal transition : bool\n"
+        "signal power_voltage : real [V]\n"
+        "signal rssi : int",
+        {
+            "heading": OPEN,
+            "mission_item": OPEN,
+            "mode": OPEN,
+            "validity_valid": OPEN,
+            "accel_z": ("/sensor_accel z",),
+            "throttle": OPEN,
+            "transition": OPEN,
+            "power_voltage": ("/power voltage_v [V]",),
+            "rssi": ("/wifi rssi",),
+        },
+        {
+            "fleet_msgs/msg/Item": "int32 frame\nint32 seq\n",
+            "fleet_msgs/msg/Heartbeat": "int32 base_mode\nint32 custom_mode\n",
+            "fleet_msgs/msg/Validity": "bool z_valid\nbool other\n",
+            "fleet_msgs/msg/Position": "float64 az  # m/s^2\nfloat64 x  # m\n",
+            "fleet_msgs/msg/Accel": "float64 z  # m/s^2\nfloat64 x  # m/s^2\n",
+            "fleet_msgs/msg/Stick": "float64 throttle\nfloat64 roll\n",
+            "fleet_msgs/msg/Transition": "bool transition_failure\nbool other\n",
+            "fleet_msgs/msg/Power": "float64 battery_volt\nfloat64 voltage_v\n",
+            "fleet_msgs/msg/Wifi": "int32 rssi\nint32 remote_rssi\n",
+        },
+    ),
 }
-"""Right at the first attempt."""
+"""Right at the first attempt; what is near is left open."""

@@ -38,6 +38,11 @@ _SPOKEN = {
     "km/h": "kph kmh",
     "m/s": "mps",
     "T": "tesla",
+    "gauss": "gauss",
+    "mgauss": "mgauss",
+    "B": "byte",
+    "ohm": "ohm",
+    "Wh": "w.h",
     "J": "joule",
     "L": "litre liter",
 }
@@ -48,6 +53,7 @@ _UNITS = {word: unit for unit, words in _SPOKEN.items() for word in words.split(
 _WRITTEN = {
     r"^(units?|in|si)\b[:\s]*": "",
     r"^(deg\w*\s*|°)?c(elsius)?$": "degC",
+    r"^deg(heading|latitude|longitude)$": "deg",
     r"\s+per\s+|\s*/\s*": "/",
     r"(?<=/s|ec)2$": "^2",
     r"/s(ec\w*)?/s(ec\w*)?$": "/s^2",
@@ -73,8 +79,8 @@ def spoken_unit(text: str) -> str:
 
     >>> spoken_unit("rad/sec"), spoken_unit("Degrees Celsius"), spoken_unit("10mA")
     ('rad/s', 'degC', '~mA')
-    >>> spoken_unit("deg / 1e-7")
-    '~deg'
+    >>> spoken_unit("deg / 1e-7"), spoken_unit("degheading"), spoken_unit("mGauss")
+    ('~deg', 'deg', 'mgauss')
     """
     plain = text.strip(" .:").replace("**", "^").replace("²", "^2")
     plain, is_scaled = _SCALE.subn("", plain, count=1)

@@ -120,7 +120,8 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
         }
         shown = number.decode("utf-8", "replace") if isinstance(number, bytes) else number
         name = f"/{form.name}" if number is None else f"/{form.name}_{shown}"
-        told = {field: unit for field, unit in units.items() if unit and field in columns}
+        told = {field: unit for field, unit in units.items() if field in columns}
+        told = {field: unit for field, unit in told.items() if unit not in ("", "UNKNOWN")}
         topic = Topic(name, form.name, leaves_of(columns), units=told)
         found.append(ColumnTopic(topic, len(own), partial(_both, own_times, columns)))
     return found

@@ -74,6 +74,9 @@ class Meaning:
 UNKNOWN = Meaning(Sort.OPEN)
 """Of fields that stand in no table."""
 
+_OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
+"""Of a field whose unit the recording says, and it is none that is known here."""
+
 
 def meaning_of(path: str, topic: Topic) -> Meaning:
     """What a field of the messages of a topic means.
@@ -121,11 +124,12 @@ def plain_type(type_name: str) -> str:
 
 def _told(path: str, topic: Topic) -> Meaning:
     """What a recording says of a field, itself or by a comment on a number or a vector."""
-    unit = topic.units.get(path, "")
+    said = topic.units.get(path, "")
+    unit = "1" if said in ("1", "-") else spoken_unit(said)
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
-    if unit:
-        unit = "1" if unit == "1" else spoken_unit(unit)
-    elif path in topic.told and (is_number or is_vector(topic.messages.get(path, ""))):
+    if said and not unit:
+        return _OF_OTHERS
+    if not said and path in topic.told and (is_number or is_vector(topic.messages.get(path, ""))):
         unit = unit_in_comment(topic.told[path])
     is_prose = path not in topic.units
     return replace(_read(unit), is_prose=is_prose) if unit else UNKNOWN
