@@ -45,7 +45,7 @@ def page(code: str) -> Page:
     """The page of a code; an assertion says that it has another form."""
     text = every_page()[code]
     found = _FORM.fullmatch(text)
-    assert found, code
+    assert found, f"the page of {code} has not the form of its neighbours"
     parts = found.groupdict()
     parts |= {name: parts[name].removeprefix("\n") for name in ("example", "instead")}
     return Page(text, **parts)
