@@ -22,44 +22,19 @@ SPEC = """
 event a, b, c
 signal p, q : bool
 signal x : real
-requirement R1
- upon a
- then within 1 s b
-requirement R2
- upon a
- then for 2 s not b
-requirement R3
- upon a
- then within 3 s b
-requirement R4
- upon c
- then always[2 s, 3 s] p
-requirement R5
- upon b
- then for 1 s not p
-requirement R6
- upon c
- then within 2 s (p or q)
-requirement R7
- always not q
-requirement R8
- upon c
- then for 3 s not p
-requirement R9
- upon x > 3 and x < 2
- then within 1 s q
-requirement R10
- upon a
- then within 1 s (x > 3 or x <= 4)
-requirement R11
- upon a
- then within 1 s (x > 4 and x < 2)
-requirement R12
- upon b and p
- then within 1 s c
-requirement R13
- upon b and not p
- then for 1 s not c
+requirement R1 upon a then within 1 s b
+requirement R2 upon a then for 2 s not b
+requirement R3 upon a then within 3 s b
+requirement R4 upon c then always[2 s, 3 s] p
+requirement R5 upon b then for 1 s not p
+requirement R6 upon c then within 2 s (p or q)
+requirement R7 always not q
+requirement R8 upon c then for 3 s not p
+requirement R9 upon x > 3 and x < 2 then within 1 s q
+requirement R10 upon a then within 1 s (x > 3 or x <= 4)
+requirement R11 upon a then within 1 s (x > 4 and x < 2)
+requirement R12 upon b and p then within 1 s c
+requirement R13 upon b and not p then for 1 s not c
 """
 
 
@@ -163,21 +138,11 @@ def conflicts_of(text):
 def test_conflict_of_four():
     """Sets of more than three are found, and none with a member too many."""
     text = """
-requirement R1
-  upon a
-  then within 2 s (p or q or r)
-requirement R2
-  upon a
-  then for 3 s not p
-requirement R3
-  upon a
-  then for 3 s not q
-requirement R4
-  upon a
-  then for 3 s not r
-requirement R5
-  upon a
-  then within 3 s b
+requirement R1 upon a then within 2 s (p or q or r)
+requirement R2 upon a then for 3 s not p
+requirement R3 upon a then for 3 s not q
+requirement R4 upon a then for 3 s not r
+requirement R5 upon a then within 3 s b
 """
     assert conflicts_of(text) == [(("R1", "R2", "R3", "R4"), (0, 0, 0, 0))]
     found = analysis_of("event a, b\nsignal p, q, r : bool\n" + text).findings
@@ -187,9 +152,7 @@ requirement R5
 def test_conflict_with_itself_when_triggered_again():
     """A requirement that a second trigger makes impossible to meet; its timeline has both."""
     text = """
-requirement R1
-  upon a
-  then (always[2 s, 3 s] p) and (for 1 s not p)
+requirement R1 upon a then (always[2 s, 3 s] p) and (for 1 s not p)
 """
     assert conflicts_of(text) == [(("R1", "R1"), (0, 10**9))]
     analysis = analysis_of("event a\nsignal p : bool\n" + text)
@@ -201,15 +164,9 @@ requirement R1
 def test_conflict_of_a_window_in_a_window():
     """Wherever the inner window begins, it covers the stretch that another requirement needs."""
     text = """
-requirement R1
-  upon a
-  then within 500 ms for 1 s p
-requirement R2
-  upon a
-  then eventually[600 ms, 1 s] not p
-requirement R3
-  upon a
-  then eventually[600 ms, 1200 ms] not p
+requirement R1 upon a then within 500 ms for 1 s p
+requirement R2 upon a then eventually[600 ms, 1 s] not p
+requirement R3 upon a then eventually[600 ms, 1200 ms] not p
 """
     assert conflicts_of(text) == [(("R1", "R2"), (0, 0))]
 
@@ -218,14 +175,9 @@ requirement R3
 def test_conflict_apart_with_what_holds_always():
     """Two that are triggered apart conflict only because of a third that holds at all times."""
     text = """
-requirement R1
-  upon a
-  then always[2 s, 3 s] p
-requirement R2
-  upon b
-  then for 1 s q
-requirement R3
-  always not (p and q)
+requirement R1 upon a then always[2 s, 3 s] p
+requirement R2 upon b then for 1 s q
+requirement R3 always not (p and q)
 """
     assert conflicts_of(text) == [(("R1", "R2", "R3"), (0, 10**9, 0))]
 

@@ -109,14 +109,6 @@ def test_severity_and_tags_are_shown_and_kept(files, capsys):
     assert main(["evidence", "e.zip"]) == 0
 
 
-def told(text: str) -> dict:
-    """Verdicts and attempts without reasons."""
-    return {
-        name: (entry["verdict"], [(a["number"], a["decided"]) for a in entry["attempts"]])
-        for name, entry in json.loads(text)["requirements"].items()
-    }
-
-
 def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
     """Every F says why, over which window, and where in the spec."""
     assert main(["run", "door.rv", "F.csv"]) == 1
@@ -155,21 +147,6 @@ def test_a_report_names_the_page_to_open(files, capsys):
             assert capsys.readouterr().out.endswith(f"wrote {Path('rep', page)}\n")
         main([*words, "--format", "json"])
         json.loads(capsys.readouterr().out)
-
-
-@pytest.mark.parametrize(
-    ("words", "meant"),
-    [
-        (["run", "dor.rv", "P.csv"], "dor.rv: No such file or directory: did you mean `door.rv`?"),
-        (["run", "door.rv", "PP.csv"], "did you mean `P.csv`?"),
-        (["run", "door.rv", "./NTT.csv"], "did you mean `NT.csv`?"),
-        (["check", "dor.rv"], "did you mean `door.rv`?"),
-    ],
-)
-def test_a_mistyped_file_is_answered_with_the_nearest(files, capsys, words, meant):
-    """The name in that folder that is most alike is proposed."""
-    assert main(words) == 2
-    assert meant in capsys.readouterr().err
 
 
 def test_a_file_like_no_other_is_not_guessed(files, capsys):
@@ -245,6 +222,11 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys):
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
     assert "decided before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
     assert "Traceback" not in told
+    assert main(["run", "door.rv", "cut.csv", "P.csv", "--format", "json"]) == 2
+    cut, whole = json.loads(capsys.readouterr().out)
+    assert (cut["trace"], "verdicts" in cut, "line 6" in cut["error"]) == ("cut.csv", False, True)
+    assert [attempt["verdict"] for attempt in cut["judged_before"]["D1"]] == ["F"]
+    assert whole["requirements"]["D1"]["verdict"] == "P"
 
 
 @pytest.mark.parametrize("delay", ["", "max delay 1 s\n"])
@@ -281,18 +263,6 @@ def test_a_recording_that_is_refused_has_nothing_judged_before(files, capsys):
     assert json.loads(shown.out)["judged_before"] == {}
 
 
-def test_a_broken_recording_is_an_entry_in_json(files, capsys):
-    """The error and what was judged before it stand where the verdicts of others do."""
-    (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")
-    assert main(["run", "door.rv", "cut.csv", "P.csv", "--format", "json"]) == 2
-    cut, whole = json.loads(capsys.readouterr().out)
-    assert cut["trace"] == "cut.csv"
-    assert "line 6" in cut["error"]
-    assert [attempt["verdict"] for attempt in cut["judged_before"]["D1"]] == ["F"]
-    assert "verdicts" not in cut
-    assert whole["requirements"]["D1"]["verdict"] == "P"
-
-
 @pytest.mark.parametrize(("until", "verdict"), [("2", "I"), ("3", "F"), ("30", "F")])
 def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
     """What comes after --until is not judged; time goes on to it where samples end before."""
@@ -303,24 +273,20 @@ def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
     assert report["requirements"]["D1"]["verdict"] == verdict
 
 
-def test_until_before_the_first_sample_is_told(files, capsys):
-    """A recording of which nothing is left is no recording that passed."""
-    (files / "late.csv").write_text("t,knock,closed\n5,,1\n")
-    assert main(["run", "door.rv", "late.csv", "--until", "4"]) == 2
-    assert "no sample up to --until 4 s" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["door.rv", "gone.csv"], "gone.csv"),
-        (["gone.rv", "P.csv"], "gone.rv"),
+        (["dor.rv", "P.csv"], "dor.rv: No such file or directory: did you mean `door.rv`?"),
+        (["door.rv", "PP.csv"], "did you mean `P.csv`?"),
+        (["door.rv", "./NTT.csv"], "did you mean `NT.csv`?"),
         (["door.rv", "P.csv", "--only", "D9"], "no requirement `D9`"),
         (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
         (["door.rv", "P.csv", "--only", ""], "there are D1"),
         (["door.rv", "P.csv", "--jobs", "0"], "at least 1, not 0"),
         (["door.rv", "P.csv", "--until", "nan"], "a time in seconds, such as 12.5, not nan"),
         (["door.rv", "P.csv", "--until", "1e30"], "a time in seconds"),
+        (["door.rv", "P.csv", "--until=-1"], "no sample up to --until -1 s"),
         (["door.rv", "P.csv", "--junit", "gone/out.xml"], "error: cannot write gone/out.xml"),
     ],
 )
@@ -351,99 +317,6 @@ def test_an_absent_column_is_told(files, capsys):
     assert "less.csv has no column for `knock`" in shown.err
 
 
-def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
-    """Text, JSON and JUnit name the part of the trigger that lacked."""
-    spec, trace, junit = tmp_path / "s.rv", tmp_path / "t.csv", tmp_path / "j.xml"
-    spec.write_text(
-        'spec s\nsignal a, b : bool\nevent e\nrequirement R1 "x"\n'
-        "  upon e and a\n  then within 1 s b\n"
-    )
-    trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
-    miss = "`a` was never true while `e` was (first at 1 s)"
-    assert main(["run", str(spec), str(trace), "--junit", str(junit)]) == 0
-    assert miss in capsys.readouterr().out
-    assert miss in junit.read_text()
-    main(["run", str(spec), str(trace), "--format", "json"])
-    text = capsys.readouterr().out
-    assert json.loads(text)["requirements"]["R1"]["nearest_miss"] == miss
-    assert Report.from_json(text).misses == {"R1": miss}
-
-
-def test_a_forecast_is_shown_beside_the_verdict(tmp_path, capsys):
-    """An open attempt that no continuation can fulfil stays I, and says so."""
-    spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
-    spec.write_text(
-        'spec s\nsignal a : bool\nrequirement R1 "x"\n  upon start\n'
-        "  then (within 3 s a) and for 5 s not a\n"
-    )
-    trace.write_text("t,a\n0,false\n1,false\n")
-    assert main(["run", str(spec), str(trace)]) == 0
-    shown = capsys.readouterr().out
-    assert "R1   I" in shown
-    assert "forecast F: no continuation can fulfil it" in shown
-    assert main(["why", str(spec), str(trace), "R1"]) == 0
-    assert "forecast F" in capsys.readouterr().out
-    assert main(["run", str(spec), str(trace), "--report", str(tmp_path / "pages")]) == 0
-    pages = [page.read_text() for page in (tmp_path / "pages").rglob("*.html")]
-    assert any("forecast F: no continuation can fulfil it" in page for page in pages)
-
-
-def test_robustness_is_shown_on_demand(tmp_path, capsys):
-    """Text shows the least figure and that of a failed attempt, JSON that of each."""
-    (tmp_path / "s.rv").write_text(
-        'spec s\nsignal x : real [cm]\nevent e\nrequirement R1 "x"\n'
-        "  upon e then within 3 s x > 10 cm\n"
-    )
-    (tmp_path / "t.csv").write_text("t,x,e\n0,2,1\n1,12,\n9,3,1\n20,,\n")
-    words = ["run", str(tmp_path / "s.rv"), str(tmp_path / "t.csv"), "--robustness"]
-    assert main(words) == 1
-    shown = capsys.readouterr().out
-    assert "robustness" in shown
-    assert "decided 12.000000001 s, robustness -0.07" in shown
-    main([*words, "--format", "json"])
-    [attempts] = json.loads(capsys.readouterr().out)["requirements"].values()
-    figures = [attempt["robustness"] for attempt in attempts["attempts"]]
-    assert figures == pytest.approx([0.02, -0.07])
-
-
-def test_cover_goals_are_shown_or_open(tmp_path, capsys):
-    """A run shows a goal, or could still have, or cannot any more; several make it met or open."""
-    spec = tmp_path / "s.rv"
-    spec.write_text(
-        'spec s\nsignal a : bool\nevent e\nrequirement R1 "x"\n  upon e\n  then immediately a\n'
-        "cover met = e and a\ncover never = a and not a\n"
-    )
-    traces = []
-    for name, last in (("one", "1"), ("two", "0")):
-        trace = tmp_path / f"{name}.csv"
-        trace.write_text(f"t,a,e\n0,1,0\n1,{last},{last}\n")
-        traces.append(str(trace))
-    assert main(["run", str(spec), *traces]) == 0
-    shown = capsys.readouterr().out
-    assert "met  P ✓  shown" in shown
-    assert "met  I ?  not shown, still possible at the end" in shown
-    assert "never  NT –  not shown" in shown
-    assert "cover goal met: met, shown by 1 of 2" in shown
-    assert "cover goal never: open" in shown
-    main(["run", str(spec), traces[0], "--format", "json"])
-    text = capsys.readouterr().out
-    assert json.loads(text)["goals"] == {"met": "P", "never": "NT"}
-    assert Report.from_json(text).goals == {"met": "P", "never": "NT"}
-
-
-def test_a_specification_without_requirements_is_told(tmp_path, capsys):
-    """An empty table does not speak for itself."""
-    (tmp_path / "empty.rv").write_text("spec empty\nsignal b : bool\n")
-    (tmp_path / "one.jsonl").write_text('{"t": 0, "b": true}\n')
-    spec, trace = str(tmp_path / "empty.rv"), str(tmp_path / "one.jsonl")
-    assert main(["run", spec, trace]) == 0
-    assert "empty has no requirement: there is nothing to check" in capsys.readouterr().err
-    assert main(["run", spec, trace, "--only", "R1"]) == 2
-    assert "there are none" in capsys.readouterr().err
-    assert main(["explain", spec]) == 2
-    assert "there is nothing to explain" in capsys.readouterr().err
-
-
 def test_a_failure_says_how_late_what_it_awaited_came(files, capsys):
     """Text, JSON and JUnit name the instant where the recording shows it."""
     (files / "slow.csv").write_text("t,closed,knock\n0,1,\n1,,1\n3.02,0,\n5,,\n")
@@ -470,3 +343,59 @@ def test_of_captured_values_it_is_told_of_the_failures_that_are_shown(captured, 
     found = json.loads(capsys.readouterr().out)["requirements"]["R"]
     assert found["counts"]["F"] == 5
     assert found["late"] == {str(k): (10 * k + 5) * 10**9 for k in (1, 2, 3)}
+
+
+def run(files, capsys, spec, rows, *words):
+    """The exit code of another specification on another recording, and what is printed."""
+    (files / "s.rv").write_text(f"signal a, b : bool\nsignal x : real [cm]\nevent e\n{spec}\n")
+    (files / "t.csv").write_text(rows)
+    return main(["run", "s.rv", "t.csv", *words]), capsys.readouterr().out
+
+
+def test_what_was_never_triggered_says_how_near_it_came(files, capsys):
+    """Text, JSON and JUnit name the part of the trigger that lacked."""
+    given = "requirement R1 upon e and a then within 1 s b", "t,a,b,e\n0,false,false,\n1,,,1\n"
+    miss = "`a` was never true while `e` was (first at 1 s)"
+    code, shown = run(files, capsys, *given, "--junit", "j.xml")
+    assert (code, miss in shown, miss in (files / "j.xml").read_text()) == (0, True, True)
+    _, text = run(files, capsys, *given, "--format", "json")
+    assert json.loads(text)["requirements"]["R1"]["nearest_miss"] == miss
+    assert Report.from_json(text).misses == {"R1": miss}
+
+
+def test_a_forecast_is_shown_beside_the_verdict(files, capsys):
+    """An open attempt that no continuation can fulfil stays I, and says so."""
+    spec = "requirement R1 upon start then (within 3 s a) and for 5 s not a"
+    code, shown = run(files, capsys, spec, "t,a\n0,false\n1,false\n", "--report", "pages")
+    said = "forecast F: no continuation can fulfil it"
+    assert (code, "R1   I" in shown, said in shown) == (0, True, True)
+    assert any(said in page.read_text() for page in (files / "pages").rglob("*.html"))
+    assert main(["why", "s.rv", "t.csv", "R1"]) == 0
+    assert "forecast F" in capsys.readouterr().out
+
+
+def test_robustness_is_shown_on_demand(files, capsys):
+    """Text shows the least figure and that of a failed attempt, JSON that of each."""
+    given = (
+        "requirement R1 upon e then within 3 s x > 10 cm",
+        "t,x,e\n0,2,1\n1,12,\n9,3,1\n20,,\n",
+        "--robustness",
+    )
+    code, shown = run(files, capsys, *given)
+    assert (code, "robustness" in shown) == (1, True)
+    assert "decided 12.000000001 s, robustness -0.07" in shown
+    _, text = run(files, capsys, *given, "--format", "json")
+    figures = [one["robustness"] for one in json.loads(text)["requirements"]["R1"]["attempts"]]
+    assert figures == pytest.approx([0.02, -0.07])
+
+
+def test_a_specification_without_requirements_is_told(files, capsys):
+    """An empty table does not speak for itself."""
+    (files / "empty.rv").write_text("spec empty\nsignal closed : bool\n")
+    for words, code, told in (
+        (["run", "empty.rv", "P.csv"], 0, "empty has no requirement: there is nothing to check"),
+        (["run", "empty.rv", "P.csv", "--only", "R1"], 2, "there are none"),
+        (["explain", "empty.rv"], 2, "there is nothing to explain"),
+    ):
+        assert main(words) == code
+        assert told in capsys.readouterr().err

@@ -173,3 +173,28 @@ def test_a_full_disk_is_told_and_takes_nothing_away(tmp_path, kilobytes):
     )
     assert done.returncode == 2
     assert [entry.record for entry in read([database]).entries] == kept
+
+
+def test_cover_goals_are_shown_or_open(tmp_path, capsys):
+    """A run shows a goal, or could still have, or cannot any more; several make it met or open."""
+    spec = tmp_path / "s.rv"
+    spec.write_text(
+        'spec s\nsignal a : bool\nevent e\nrequirement R1 "x"\n  upon e\n  then immediately a\n'
+        "cover met = e and a\ncover never = a and not a\n"
+    )
+    traces = []
+    for name, last in (("one", "1"), ("two", "0")):
+        trace = tmp_path / f"{name}.csv"
+        trace.write_text(f"t,a,e\n0,1,0\n1,{last},{last}\n")
+        traces.append(str(trace))
+    assert main(["run", str(spec), *traces]) == 0
+    shown = capsys.readouterr().out
+    assert "met  P ✓  shown" in shown
+    assert "met  I ?  not shown, still possible at the end" in shown
+    assert "never  NT –  not shown" in shown
+    assert "cover goal met: met, shown by 1 of 2" in shown
+    assert "cover goal never: open" in shown
+    main(["run", str(spec), traces[0], "--format", "json"])
+    text = capsys.readouterr().out
+    assert json.loads(text)["goals"] == {"met": "P", "never": "NT"}
+    assert Report.from_json(text).goals == {"met": "P", "never": "NT"}

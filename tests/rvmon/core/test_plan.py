@@ -53,30 +53,15 @@ signal x : real   stale after 2 s
 signal mode : {red, green}
 event e(k: int)
 event f
-requirement R1
-  upon e.k > 2 and once[1 s, 3 s] p
-  then within 3 s held(q or x > 1, 1 s)
-requirement R2
-  whenever (p since[0 s, 5 s] q) or held(q, 2 s)
-  then within 2 s mode == green
-requirement R3
-  upon rise(p) or changed(x)
+requirement R1 upon e.k > 2 and once[1 s, 3 s] p then within 3 s held(q or x > 1, 1 s)
+requirement R2 whenever (p since[0 s, 5 s] q) or held(q, 2 s) then within 2 s mode == green
+requirement R3 upon rise(p) or changed(x)
   then (abs(delta(x)) < 1 or rate(x) > 2 or prev(x) + 1 > max(x, 2))
     until[0 s, 4 s] (f or not known(x))
-requirement R4
-  upon end
-  then p
-requirement R5
-  upon f
-  then F[0 s, 2 s] once[0 s, 2 s] (q and within 1 s p)
-requirement R6
-  whenever p
-  then within 2 s x > abs(v) + w
-  let v = delta(x)
-  let w = x
-requirement R7
-  upon e and once[0 s, 2 s] e.k == i - 1
-  then F[0 s, 2 s] once[0 s, 2 s] x > v
+requirement R4 upon end then p
+requirement R5 upon f then F[0 s, 2 s] once[0 s, 2 s] (q and within 1 s p)
+requirement R6 whenever p then within 2 s x > abs(v) + w let v = delta(x) let w = x
+requirement R7 upon e and once[0 s, 2 s] e.k == i - 1 then F[0 s, 2 s] once[0 s, 2 s] x > v
   for each i in e.k
   let v = x
 """

@@ -24,22 +24,13 @@ from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 
 REQUIREMENTS = """
-requirement R1
-  whenever p or once[0 s, 3 ns] q
+requirement R1 whenever p or once[0 s, 3 ns] q
   then eventually[2 ns, 7 ns] (x > 1 or rate(x) < 2)
-requirement R2
-  upon g.k == key
-  then within 6 ns (e or (s since[1 ns, 4 ns] p))
+requirement R2 upon g.k == key then within 6 ns (e or (s since[1 ns, 4 ns] p))
   for each key in g.k
-requirement R3
-  upon g
-  then within 5 ns x == value
-  let value = x
-requirement R4
-  upon rise(q)
-  then always[1 ns, 4 ns] (eventually[0 ns, 3 ns] p)
-requirement R5
-  whenever mean(x, 5 ns) >= 1 or count(g, 6 ns) >= 3
+requirement R3 upon g then within 5 ns x == value let value = x
+requirement R4 upon rise(q) then always[1 ns, 4 ns] (eventually[0 ns, 3 ns] p)
+requirement R5 whenever mean(x, 5 ns) >= 1 or count(g, 6 ns) >= 3
   then within 4 ns (sum(x, 5 ns) > 2 or integral(x) >= 9 ns)
 """
 

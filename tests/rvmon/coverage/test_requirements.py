@@ -7,9 +7,7 @@ from rvmon.coverage import score
 from rvmon.spec.checked.goals import BinKind
 
 ANSWER = """signal a, b, c : bool
-requirement R
-  upon a
-  then within 2 s b
+requirement R upon a then within 2 s b
 """
 
 
@@ -50,9 +48,7 @@ def test_what_only_a_failure_shows_has_no_goal():
 def test_parts_that_decide():
     """A part of a trigger, and of what is required, in instants as in verdicts."""
     text = """signal a, b, c : bool
-requirement R
-  upon a and c
-  then within 2 s (b and c)
+requirement R upon a and c then within 2 s (b and c)
 """
     always_c = [(0, {"a": False, "b": False, "c": True}), (1, {"a": True}), (2, {"b": True})]
     assert seen(text, always_c) == {
@@ -66,18 +62,10 @@ requirement R
 
 
 FORMS = """signal a, b, c : bool
-requirement A1
-  upon rise(a)
-  then immediately (b and not (a and c) or once[0 s, 2 s] (b and c))
-requirement A2
-  upon rise(a)
-  then always (b and (a -> c) and not (a xor b and c))
-requirement A3
-  upon rise(a)
-  then always[1 s, 3 s] not (b or c)
-requirement A4
-  upon a and b
-  then always[0 s, 2 s] once[0 s, 3 s] (b and c)
+requirement A1 upon rise(a) then immediately (b and not (a and c) or once[0 s, 2 s] (b and c))
+requirement A2 upon rise(a) then always (b and (a -> c) and not (a xor b and c))
+requirement A3 upon rise(a) then always[1 s, 3 s] not (b or c)
+requirement A4 upon a and b then always[0 s, 2 s] once[0 s, 3 s] (b and c)
 """
 
 
@@ -136,12 +124,8 @@ def test_requirements_without_automaton_and_with_instances():
     text = """signal a, b : bool
 event pick(id: int)
 event put(id: int)
-requirement Net
-  whenever a then F[2 s, 5 s] b
-requirement Each
-  upon pick.id == i
-  then within 2 s put.id == i
-  for each i in pick.id
+requirement Net whenever a then F[2 s, 5 s] b
+requirement Each upon pick.id == i then within 2 s put.id == i for each i in pick.id
 """
     spec = loads(text)
     assert {"Net", "Each", "`Each` edges"} <= spec.coverage_model.model.groups.keys()
