@@ -91,9 +91,7 @@ REPORTED = {
         {"/cub1/pose": POSE},
         "signal x, y, z : real [m]\nsignal heading : real [rad]",
         {
-            "x": ("/cub1/pose pose.position.x",),
-            "y": ("/cub1/pose pose.position.y",),
-            "z": ("/cub1/pose pose.position.z",),
+            **{axis: (f"/cub1/pose pose.position.{axis}",) for axis in "xyz"},
             "heading": ("/cub1/pose yaw(pose.orientation)",),
         },
     ),
@@ -150,9 +148,7 @@ REPORTED = {
         {"/joint_states": joints(*(f"joint_{number}" for number in range(1, 7)))},
         "signal shoulder, elbow, wrist, joint_3_position : real [rad]",
         {
-            "shoulder": OPEN,
-            "elbow": OPEN,
-            "wrist": OPEN,
+            **dict.fromkeys(("shoulder", "elbow", "wrist"), OPEN),
             "joint_3_position": ("/joint_states position[joint_3]",),
         },
     ),
