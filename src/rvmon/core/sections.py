@@ -27,6 +27,7 @@ class Packed:
         fields: kind of value by event and field, in the order of their numbers.
         labels: by label, its number in the core.
         ids: of the requirements, by number.
+        numbers: of the requirements, by id.
     """
 
     data: bytes
@@ -35,6 +36,7 @@ class Packed:
     fields: Mapping[tuple[str, str], Kind]
     labels: Mapping[str, int]
     ids: tuple[str, ...]
+    numbers: Mapping[str, int]
 
 
 def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
@@ -56,6 +58,7 @@ def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
         },
         Numbering(spec).labels,
         ids,
+        {one: number for number, one in enumerate(ids)},
     )
 
 

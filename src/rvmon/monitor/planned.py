@@ -223,16 +223,16 @@ class PlannedCore:
         # What tells of attempts is imported now: many are never asked.
         from rvmon.monitor.notes import NotesReader
 
-        ids = self.packed.ids
         compiled = self._specification
-        reader = compiled.forms.get(("told", ids))
+        key = "told", self.packed.data  # which keeps its hash, as a tuple of ids does not
+        reader = compiled.forms.get(key)
         if not isinstance(reader, NotesReader):
-            reader = NotesReader(compiled, ids)
-            compiled.forms["told", ids] = reader
+            reader = NotesReader(compiled, self.packed.ids)
+            compiled.forms[key] = reader
         values = () if captured is None else captured
         return {
             **reader.details(attempt, note),
-            "captured": self.captured.of(ids.index(attempt.requirement), values),
+            "captured": self.captured.of(self.packed.numbers[attempt.requirement], values),
             "robustness": None,
         }
 

@@ -89,9 +89,10 @@ class RecordedAttempts(LazyAttempts):
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """See `LazyAttempts`."""
-        if requirement not in self._ids:
+        number = self._planned.packed.numbers.get(requirement)
+        if number is None:
             return iter(())
-        kind = self._ids.index(requirement) * len(VERDICTS) + VERDICTS.index(verdict)
+        kind = number * len(VERDICTS) + VERDICTS.index(verdict)
         kinds, order = self._by_kind
         first, stop = kinds.searchsorted([kind, kind + 1]).tolist()
         return (self[index] for index in order[first:stop].tolist())
