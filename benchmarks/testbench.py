@@ -1,6 +1,7 @@
 """The testbench at work: faults that it sees, holes that it closes, failures that it shrinks.
 
     python -m benchmarks.testbench faults --tests 60
+    python -m benchmarks.testbench gates --seeds 10
     python -m benchmarks.testbench closing --seeds 3
     python -m benchmarks.testbench shrinking --failures 20
 
@@ -9,10 +10,14 @@ forgotten, two in the wrong order, a rule misunderstood, or a change that is mea
 and disturbed tests are played on each until a requirement fails. Prints what sees it: a
 requirement, a signal that nobody judges, or nothing.
 
-`closing`: tests that it takes to close the holes of two campaigns, those after which each share of
-the goals was met, the size of the suite, and CPU seconds of all processes. With `--random DB`, a
-database of `handover run --strategy pseudorandom,constrained --tests 5000`, the share of the same
-goals (but for the edges of the model, which only tests of its runs can show) that random tests met.
+`gates`: the tests of each strategy on each robot as it is, against its gate, for some seeds, with
+the share of the coverage model that they cover. Exits with 1 if anything is not as expected.
+
+`closing`: tests that it takes to close the holes of two campaigns, of the handover with and without
+the tests that people have written; those that added a goal, those after which each share was met,
+the size of the suite, and CPU seconds of all processes. With `--random DB`, a database of
+`handover run --strategy pseudorandom,constrained --tests 5000`, the share of the same goals (but
+for the edges of the model, which only tests of its runs can show) that random tests met.
 
 `shrinking`: failing tests of robots with a planted fault, those of the model and the first of each
 random strategy: actions before and after, tests that were played, CPU seconds of this process.
@@ -27,7 +32,9 @@ import os
 import resource
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain, islice
 from pathlib import Path
 from statistics import median
@@ -35,22 +42,27 @@ from statistics import median
 from benchmarks.planted_faults import FAULTS
 from msgspec import structs
 
-from handover.campaign.campaign import handover_campaign
+from handover.campaign.campaign import ROBOTS, handover_campaign
+from handover.checker import spec_path
 from handover.generator.abstract_test import AbstractTest
-from handover.robot import handover
+from handover.robot import handover as code
 from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
-from rvmon.cdv import Campaign
+from rvmon.cdv import Campaign, Gate
 from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.goals import EDGES
+from rvmon.cdv.coverage import covered_share
+from rvmon.cdv.gate import judge_campaign
 from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.play import play_mutants
 from rvmon.cdv.mutation.python_mutants import Mutant
+from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.cdv.plan import Job, plan
-from rvmon.cdv.play import player
+from rvmon.cdv.play import execute, player
 from rvmon.cdv.shrink import Shrunk, shrink
 from rvmon.coverage.database import read
 from rvmon.coverage.questions import Answers
+from rvmon.session import load
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
 LOOKED_AT = (25, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
@@ -66,25 +78,61 @@ def faults(options: argparse.Namespace) -> int:
     tests = [test for several in chosen.values() for test in several]
     suite = record_suite(campaign, "correct", tests, jobs=jobs)
     tried = play_mutants(suite, [_mutant(name) for name in FAULTS], jobs=jobs)
-    unseen = 0
+    sees: Counter[str] = Counter()
     for name, one in zip(FAULTS, tried, strict=True):
-        seen = next((found for found in one.findings), None)
-        unseen += seen is None
-        if one.invalid:
-            what = f"invalid: {one.invalid}"
-        elif seen is not None:
-            what = f"{seen.how} {', '.join(seen.what)} ({seen.test})"
-        elif one.difference is not None:
-            what = f"a signal that nothing judges: {one.difference}"
-        else:
-            what = f"nothing, {one.reaching} tests run it"
-        print(f"{name:45} {what}", flush=True)
-    print(f"{len(tried) - unseen} of {len(tried)} faults are seen")
+        by, what = _seen(one)
+        sees[by] += 1
+        print(f"{name:48} {by}{what}")
+    print(", ".join(f"{count} of {len(tried)} by {by}" for by, count in sees.most_common()))
     return int(any(one.invalid for one in tried))
 
 
+def _seen(one: Tried) -> tuple[str, str]:
+    """By what a fault is seen, and what more is to be said: the strongest of what the tests say."""
+    if one.invalid:
+        return "invalid", f": {one.invalid}"
+    if one.findings:
+        best = min(one.findings, key=lambda found: found.how is not How.REQUIREMENT)
+        return best.how, f" {', '.join(best.what)} ({best.test})"
+    if one.difference is not None:
+        found = one.difference
+        return "a signal that nothing judges", f" {found.name} ({found.test})"
+    return "nothing", f", {one.reaching} tests run it"
+
+
+def gates(options: argparse.Namespace) -> int:
+    """Play, judge, print; 1 if something is not as expected."""
+    print(
+        "robot    strategy              seeds that pass  covered, of which wanted  to be triggered"
+    )
+    all_wrong = 0
+    for robot in ROBOTS:
+        campaign = handover_campaign((robot,))
+        names = tuple(load(spec_path(robot)).requirements)
+        for strategy in campaign.strategies:
+            passed, shares, wrong = 0, [], []
+            for seed in range(options.seed, options.seed + options.seeds):
+                chosen = plan(campaign, (strategy,), tests=options.tests or 100, seed=seed)
+                results = execute(chosen, controls=False)
+                found = judge_campaign(results, {robot: names}, strict=True).wrong
+                passed += not found
+                wrong += [f"  seed {seed}: {what}" for what in found]
+                own = [one for one in results.played if one.job.test.mutation is None]
+                shares.append(100 * covered_share(campaign, robot, own))
+            if not chosen.jobs():
+                continue
+            gate = campaign.gates.get(strategy, Gate())
+            covered = f"{min(shares):.1f} to {max(shares):.1f} %, {gate.coverage:g} %"
+            triggered = f"{len(names) - len(gate.untriggered)} of {len(names)}"
+            passing = f"{passed} of {options.seeds}"
+            print(f"{robot:8} {strategy:21} {passing:15}  {covered:24}  {triggered}", flush=True)
+            print(*wrong, sep="\n", end="\n" * bool(wrong))
+            all_wrong += len(wrong)
+    return int(all_wrong > 0)
+
+
 def _mutant(name: str) -> Mutant:
-    path = Path(inspect.getsourcefile(handover) or "")
+    path = Path(inspect.getsourcefile(code) or "")
     source = path.read_text(encoding="utf-8")
     before, after = FAULTS[name]
     at = source.index(before)
@@ -104,14 +152,17 @@ def _place(source: str, line: int) -> str:
 
 
 def closing(options: argparse.Namespace) -> int:
-    """Close both campaigns for some seeds."""
+    """Close both campaigns for some seeds, that of the handover also without written tests."""
     sys.path.insert(0, str(EXAMPLE))
     from campaign import campaign as people
 
     closed = None
+    handover = handover_campaign(("correct",))
+    unwritten = replace(handover.closing, written=())
     for campaign, robot, strategies in (
         (people, "base", ("anyone", "in-the-way")),
-        (handover_campaign(("correct",)), "correct", ()),
+        (replace(handover, name="handover, nothing written", closing=unwritten), "correct", ()),
+        (handover, "correct", ()),
     ):
         for seed in range(options.seed, options.seed + options.seeds):
             closed = _timed(campaign, robot, strategies, seed, options.tests or 400)
@@ -133,7 +184,8 @@ def _timed(
     shares = "  ".join(f"{percent} % after {at}" for percent, at in reached.items())
     print(
         f"{campaign.name}, seed {seed}: {closed.met} of {closed.goals} goals by "
-        f"{len(closed.tests)} tests, {_cpu_s() - before:.1f} s of CPU; {shares}; suite "
+        f"{len(closed.tests)} tests, {sum(bool(one.goals) for one in closed.tests)} of which added "
+        f"one, {_cpu_s() - before:.1f} s of CPU; {shares}; suite "
         f"{closed.needed} ({closed.sizes}), at least {closed.fewest}",
         flush=True,
     )
@@ -201,17 +253,22 @@ def failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], fl
                     yield faulty, found, time.process_time() - began
 
 
+TASKS = {"faults": faults, "gates": gates, "closing": closing, "shrinking": shrinking}
+
+
 def main() -> int:
     """Play and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=("faults", "closing", "shrinking"))
+    parser.add_argument("what", choices=tuple(TASKS))
     parser.add_argument("--seed", type=int, default=1, help="the first")
-    parser.add_argument("--seeds", type=int, default=3, help="closing: so many")
-    parser.add_argument("--tests", type=int, help="disturbed ones (60), or of a campaign (400)")
+    parser.add_argument("--seeds", type=int, default=3, help="closing, gates: so many")
+    parser.add_argument(
+        "--tests", type=int, help="disturbed ones (60), of a strategy (100), of a campaign (400)"
+    )
     parser.add_argument("--failures", type=int, default=20, help="shrinking: so many")
     parser.add_argument("--random", metavar="DB", help="closing: of random tests of the handover")
     options = parser.parse_args()
-    return {"faults": faults, "closing": closing, "shrinking": shrinking}[options.what](options)
+    return TASKS[options.what](options)
 
 
 if __name__ == "__main__":

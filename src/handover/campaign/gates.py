@@ -13,7 +13,7 @@ _NEEDS = {
     "a release": ("R1", "T1", "T2", "T3", "T4", "T5", "T6", "T31", "T45", "T46"),
     "a reading": ("R2", "T7", "T9", "T10", "T11", "T17", "T43", "T44", "T47", "T57"),
     "a scene that surprises": ("T36", "T38", "T52", "T53", "T54", "T55", "T56"),
-    "a person beside the way": ("T63", "T65"),
+    "a person beside the way": ("T63", "T65", "T66"),
     "a human who does not come": ("T22", "T24", "T49", "T50"),
     "a robot that gives up": ("T1", "T26", "T48", "T51"),
 }

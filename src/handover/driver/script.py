@@ -84,10 +84,13 @@ class Script:
         yield SEND_PAUSE_S
 
     def _wait_for_robot(self) -> Program:
+        self._node.publish("person_waits", True)
         for _ in range(POLL_LIMIT):
             self._node.subscribe(INFORMED)
             yield POLL_S
             if self._node.receive(INFORMED) is not None:
+                self._node.publish("person_told")
+                self._node.publish("person_waits", False)
                 return
 
     def _take_posture(self, param: str, *, ok: bool) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator
 from itertools import pairwise
 
 from handover.world import parameters as p
-from handover.world.building import person_ahead
+from handover.world.measures import beside_distance
 from handover.world.motion import Joints, Trajectory, grip_point, joints_for, min_jerk
 from handover.world.scene import Scene
 
@@ -120,7 +120,7 @@ class Arm:
                 motor.rate = rate
 
     def _is_blocked(self) -> bool:
-        return person_ahead(self._scene, *grip_point(self.joints()), p.CLEARANCE[1])
+        return beside_distance(self._scene, *grip_point(self.joints())) < p.CLEARANCE[1]
 
     def _start(self) -> Joints:
         """Where the arm was sent to last; where it is, if it is still on its way."""
@@ -139,7 +139,7 @@ class Arm:
             )
             for share in (min_jerk(i / steps) for i in range(steps + 1))
         ]
-        if any(person_ahead(self._scene, *point, p.CLEARANCE[0]) for point in points):
+        if any(beside_distance(self._scene, *point) < p.CLEARANCE[0] for point in points):
             return None
         fastest = max(math.dist(a, b) for a, b in pairwise(points)) * steps
         return Trajectory(start, goal, max(p.SHORTEST_MOTION_S, fastest / p.TOOL_SPEED_LIMIT))

@@ -69,24 +69,6 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     )
 
 
-def person_ahead(scene: Scene, x: float, z: float, clearance: float) -> bool:
-    """Whether forearm or other hand of a person is where the gripper would be, or close to it.
-
-    Args:
-        scene: where the bodies are.
-        x: of the grip, m.
-        z: of the grip, m.
-        clearance: from the gripper's axis, m.
-    """
-    if scene.beside is None:
-        return False
-    low, high = p.GRIPPER_REACH
-    return any(
-        scene.space.point_query_nearest((x, at), clearance, pymunk.ShapeFilter(mask=_BESIDE))
-        for at in (z - low, z, z + high)
-    )
-
-
 def _arms(faults: SceneFaults) -> tuple[float, float] | tuple[None, None]:
     """Where along x the arm that takes and the other one are, of a person beside the way."""
     if faults.beside_m is None:

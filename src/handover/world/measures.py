@@ -117,6 +117,22 @@ def person_distance(scene: Scene) -> float:
     return min(parts)
 
 
+def beside_distance(scene: Scene, x: float, z: float) -> float:
+    """Metres from the gripper's axis, its grip at a point, to forearm and other hand.
+
+    They are those of a person beside the way; nobody is there: infinite.
+    """
+    if scene.beside is None:
+        return math.inf
+    low, high = p.GRIPPER_REACH
+    return min(
+        shape.point_query((x, at)).distance
+        for body in (scene.beside.forearm, scene.beside.other_hand)
+        for shape in body.shapes
+        for at in (z - low, z, z + high)
+    )
+
+
 def tool_speed(scene: Scene) -> float:
     """Metres per second of the point between the pads."""
     return float(scene.links[2].velocity_at_local_point(_BETWEEN_PADS).length)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from handover.world import parameters as p
 from handover.world.human import Human
 from handover.world.measures import (
+    beside_distance,
     gaze_is_ok,
     gripper_force,
     gripper_opening,
@@ -40,6 +41,10 @@ class Recorder:
     def event(self, t_ns: int, name: str) -> None:
         """Note that an event occurred."""
         self._at(t_ns)[name] = True
+
+    def has(self, t_ns: int, name: str) -> bool:
+        """Whether this was noted at this instant before."""
+        return t_ns == self._t_ns and name in self._values
 
     def signal(self, t_ns: int, name: str, value: SampleValue) -> None:
         """Note a signal's value, if it is another than before."""
@@ -110,11 +115,18 @@ class Truth:
             "forearm_force": round(forearm),
             "true_distance": round(math.hypot(*hand_offset(scene)), 3),
             "person_distance": round(person_distance(scene), 3),
+            **self._beside(),
             "true_gaze": gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
             "true_location": location_is_ok(scene),
             "tool_speed": round(tool_speed(scene), 3),
         }
+
+    def _beside(self) -> dict[str, SampleValue]:
+        if self._scene.beside is None:
+            return {}
+        distance = beside_distance(self._scene, *tool_point(self._scene))
+        return {"beside_distance": round(distance, 3)}
 
     def places(self) -> dict[str, SampleValue]:
         """Where the piece is, and how far behind it and above it the grip is: m, to 1 mm."""

@@ -107,10 +107,12 @@ class World:
         if self._hidden > 0 and self._rng.random() < self._hidden:
             self._note("piece_hidden")
             return None
+        self._note("piece_seen")
         return seen_piece(self.scene)
 
     def hand_distance(self) -> float | None:
         """Metres between the mass centres of hand and gripper, as it is sensed."""
+        self._note("hand_looked_for")
         return self._measure_hand(self.schedule.now_ns)
 
     @property
@@ -203,6 +205,8 @@ class World:
         if topic in CLOSINGS and value is not False:
             self._measure_hand(now)
         if value is None:
+            if self.recorder.has(now, topic):
+                self.recorder.event(now, "said_twice")
             self._note(topic)
         elif isinstance(value, str):
             if topic == HUMAN_SIGNALS:

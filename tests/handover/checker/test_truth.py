@@ -174,6 +174,52 @@ class IgnoresHeight(HandoverRobot):
         return (yield from super().go_to(x, z - height + 0.05 if on_table else z))
 
 
+class TellsNobodyLate(HandoverRobot):
+    """Its message is gone for who comes to wait after it."""
+
+    def send_signal(self):
+        self.node.publish("informed")
+        return "receive_readiness"
+        yield
+
+
+class GoesOnIntoPeople(HandoverRobot):
+    def go_to(self, x, z):
+        self.behaviour = replace(self.behaviour, minds_hand=False)
+        return (yield from super().go_to(x, z))
+
+
+class TakesTheLongWay(HandoverRobot):
+    def go_to(self, x, z):
+        if x == HANDOVER_POINT[0]:
+            yield from super().go_to(x, z + 0.1)
+        return (yield from super().go_to(x, z))
+
+
+class ClosesBeside(HandoverRobot):
+    def go_to(self, x, z):
+        return (yield from super().go_to(x if x == HANDOVER_POINT[0] else x + 0.004, z))
+
+
+class LooksForNoHand(HandoverRobot):
+    def hand_is_close(self):
+        return False
+
+
+class HearsLate(HandoverRobot):
+    def receive_activation(self):
+        next_state = yield from super().receive_activation()
+        if next_state == "move":
+            yield 0.5
+        return next_state
+
+
+class SaysTwice(HandoverRobot):
+    def give_up(self, reason):
+        self.node.publish("timed_out")
+        return super().give_up(reason)
+
+
 class GivesNoReason(HandoverRobot):
     def give_up(self, reason):
         self.node.publish("timed_out")
@@ -238,6 +284,14 @@ PLANTED = {
     "ignores-height": (IgnoresHeight, "piece-stands-high", "T34"),
     "never-decides": (mutants.NeverDecides, "withheld-no-gaze", "T11"),
     "ends-silently": (mutants.EndsSilently, "released", "T19"),
+    "hears-late": (HearsLate, "activated-as-it-listens", "T71"),
+    "tells-nobody-late": (TellsNobodyLate, "released", "T67"),
+    "goes-on-into-people": (GoesOnIntoPeople, "arm-comes-in-the-way", "T66"),
+    "takes-the-long-way": (TakesTheLongWay, "released", "T69"),
+    "closes-beside": (ClosesBeside, "released", "T34 T68"),
+    "closes-beside-a-person": (ClosesBeside, "hand-beside-the-grip", "T68"),
+    "looks-for-no-hand": (LooksForNoHand, "released", "T39"),
+    "says-twice": (SaysTwice, "no-posture", "T70"),
 }
 """Fault, the directed test that meets it, and requirements of which each tells it."""
 
