@@ -60,7 +60,7 @@ def mavlogdump(path: Path, folder: Path, ours: MessageFile) -> Iterator[Record]:
         source = ("--show-source",) if path.suffix.lower() == ".tlog" else ()
         command = ("mavlogdump.py", "--format", "json", *source, str(path))
         subprocess.run(command, stdout=file, stderr=subprocess.DEVNULL, check=True)
-    for line in made.open():
+    for line in made.read_text().splitlines():
         if not line.startswith("{"):
             continue
         found = json.loads(line)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -65,7 +66,7 @@ class FrameMessages:
 
     Attributes:
         topics: by name, one a message of the database that the log has; the name says the channel
-            where a message comes on several.
+            where a message comes on several, and the identifier where another has its name.
         end: the last stamp.
         count: of the frames of these topics.
         outages: where lines cannot be read, and that it was cut off.
@@ -82,6 +83,7 @@ class FrameMessages:
         self._seen: dict[_Key, Any] = {}
         self.outages: list[Outage] = []
         self.count, self.end = 0, None
+        self._called = _names(self._known.values())
         channels: dict[str, set[Any]] = {}
         by_name: dict[str, Any] = {}
         others = 0
@@ -91,8 +93,9 @@ class FrameMessages:
             if message is None:
                 others += 1
             else:
-                by_name.setdefault(message.name, message)
-                channels.setdefault(message.name, set()).add(channel)
+                name = self._called[id(message)]
+                by_name[name] = message
+                channels.setdefault(name, set()).add(channel)
                 self.count += 1
         if not self.count:
             raise TraceError(
@@ -101,8 +104,8 @@ class FrameMessages:
             )
         self._several = {name for name, found in channels.items() if len(found) > 1}
         self.topics: Mapping[str, Topic] = {
-            (name := self._name(message, channel)): _topic(name, by_name[message])
-            for message, found in channels.items()
+            (topic := self._name(name, channel)): _topic(topic, by_name[name])
+            for name, found in channels.items()
             for channel in sorted(found, key=str)
         }
         if self.end is not None:
@@ -152,15 +155,16 @@ class FrameMessages:
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The frames of these topics, as they were recorded."""
-        readers: dict[Any, Callable[[bytes], Mapping[str, Any]]] = {}
+        readers: dict[int, Callable[[bytes], Mapping[str, Any]]] = {}
         for t, key, channel, data in self._frames():
             message = self._message(key)
-            if message is None or (name := self._name(message.name, channel)) not in topics:
+            which = id(message)
+            if message is None or (name := self._name(self._called[which], channel)) not in topics:
                 continue
-            if message.name not in readers:
-                readers[message.name] = _reader(message)
+            if which not in readers:
+                readers[which] = _reader(message)
             try:
-                yield name, t, readers[message.name](data)
+                yield name, t, readers[which](data)
             except Exception as error:  # noqa: BLE001 - the library has errors of its own
                 raise TraceError(
                     f"a frame of {name} at {t} ns does not fit the database ({first_line(error)})"
@@ -306,6 +310,20 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
             if message.protocol == "j1939" and message.is_extended_frame:
                 found.setdefault(_group(key), message)
     return found
+
+
+def _names(messages: Iterable[Any]) -> Mapping[int, str]:
+    """What messages are called, by identity: by their identifier, too, where two have one name."""
+    known = {id(message): message for message in messages}
+    counts = Counter(message.name for message in known.values())
+    digits = {
+        which: f"{message.frame_id:0{8 if message.is_extended_frame else 3}X}"
+        for which, message in known.items()
+    }
+    return {
+        which: message.name if counts[message.name] == 1 else f"{message.name}_{digits[which]}"
+        for which, message in known.items()
+    }
 
 
 def _group(key: _Key) -> _Key:
