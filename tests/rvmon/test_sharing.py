@@ -4,8 +4,7 @@ import asyncio
 import copy
 import multiprocessing
 import pickle
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
@@ -44,15 +43,6 @@ def trace(tmp_path: Path) -> Path:
     path = tmp_path / "trace.csv"
     path.write_text(_TRACE)
     return path
-
-
-@pytest.fixture
-def quick_turns() -> Iterator[None]:
-    """Threads take turns as often as they can."""
-    before = sys.getswitchinterval()
-    sys.setswitchinterval(1e-6)
-    yield
-    sys.setswitchinterval(before)
 
 
 def _stepped(spec: rvmon.Spec) -> str:

@@ -88,20 +88,6 @@ class Run:
         return found
 
 
-def at_each(condition: str, count: int) -> str:
-    """A requirement for each of the first instants: there the condition holds."""
-    return "\n".join(
-        f"requirement R{t}\n  upon start\n  then eventually[{t} ns, {t} ns] ({condition})"
-        for t in range(count)
-    )
-
-
-def marks(report: Report, count: int) -> str:
-    """`+`, `-`, or `?` where it is not known, for each of them."""
-    of = {"P": "+", "F": "-", "I": "?"}
-    return "".join(of[report.verdicts[f"R{t}"].value] for t in range(count))
-
-
 def test_what_is_lost_at_the_end_is_lost_up_to_there():
     """Nobody has to say that it was found."""
     run = Run("requirement R\n  always p").sample(0, p=True)

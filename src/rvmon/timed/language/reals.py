@@ -119,9 +119,3 @@ def _made(name: str, operands: Sequence[Expression], span: Span) -> Expression:
 def is_literal(value: Fractional) -> bool:
     """Whether it is a number as it is written."""
     return value.name == "=" and isinstance(value.operands[0], Constant)
-
-
-def refuse_reals(values: Sequence[Expression], calls: Calls, span: Span) -> None:
-    """Refuse numbers with a fraction where integers count."""
-    if any(is_real(value, calls) for value in values):
-        raise model_error("TA004", "an integer is expected here", span, "round it: fint(…)")
