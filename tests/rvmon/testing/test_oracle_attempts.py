@@ -13,6 +13,7 @@ from tests.tools.build import (
     end,
     eventually,
     f,
+    fall,
     false,
     g,
     k,
@@ -32,6 +33,7 @@ from tests.tools.build import (
 )
 
 from rvmon.errors import RvmonError
+from rvmon.spec.checked import classify
 from rvmon.spec.checked.formula import Captured, Formula
 from rvmon.spec.checked.specification import Capture, ForEach, TimeModel
 from rvmon.testing.law.attempts import is_pulse
@@ -136,7 +138,9 @@ def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: An
         (no(two(e, "<->", f)), True),
         (two(e, "xor", p), False),
         (rise(p), True),
+        (two(rise(p), "or", fall(q)), True),
         (no(rise(p)), False),
+        (two(p, "S", e), False),
         (once(e), False),
         (probe("changed", "x"), True),
         (probe("updated", "x"), True),
@@ -145,8 +149,8 @@ def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: An
     ],
 )
 def test_pulse_by_syntax(trigger: Formula, expected: bool) -> None:
-    """The class of a trigger is that of its negation normal form."""
-    assert is_pulse(trigger) is expected
+    """The class of a trigger is that of its negation normal form, for the law as in a check."""
+    assert is_pulse(trigger) is classify.is_pulse(trigger) is expected
 
 
 def test_pulse_is_cross_checked() -> None:

@@ -39,41 +39,6 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
 
 
 @pytest.mark.parametrize(
-    ("trigger", "pulse"),
-    [
-        ("e", True),
-        ("a", False),
-        ("not e", False),
-        ("e and a", True),
-        ("a and not b", False),
-        ("e or f", True),
-        ("e or a", False),
-        ("not (not e or not f)", True),
-        ("not (e -> a)", True),
-        ("e <-> f", False),
-        ("e xor not f", False),
-        ("rise(a) or fall(b)", True),
-        ("changed(x)", True),
-        ("updated(x)", True),
-        ("known(x)", False),
-        ("pick.id == 3", True),
-        ("pick.x - d < 3 m", True),
-        ("not pick.id == 3", False),
-        ("x < 3", False),
-        ("once e", False),
-        ("false", True),
-        ("not true", True),
-        ("true", False),
-        ("start", False),
-        ("a since e", False),
-    ],
-)
-def test_pulse(requirement, trigger, pulse):
-    """A trigger is a pulse by its negation normal form."""
-    assert requirement(f"upon {trigger} then eventually b").pulse is pulse
-
-
-@pytest.mark.parametrize(
     ("text", "code"),
     [
         ("upon F a then eventually b", "RV040"),
