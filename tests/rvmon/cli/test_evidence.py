@@ -199,7 +199,7 @@ def test_a_sample_follows_from_its_seed(base, capsys):
 )
 def test_what_another_rvmon_made_is_not_wholly_checked(base, capsys, key, value, told):
     """Which parts, is told."""
-    run(*TRACES)
+    run("a.csv")
 
     def change(entries):
         about = json.loads(entries["evidence.json"])
@@ -223,7 +223,7 @@ def test_what_another_rvmon_made_is_not_wholly_checked(base, capsys, key, value,
 )
 def test_a_hostile_one_is_refused(base, capsys, change, told):
     """Names that lead out, descriptions and verdicts that are none: a sentence, nothing written."""
-    run(*TRACES)
+    run("a.csv")
     rewritten("e.zip", lambda entries: entries.update(change))
     code, said = verify(capsys)
     assert code in (1, 2)

@@ -12,7 +12,7 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 
-@pytest.mark.parametrize("seed", [f"tests/{number}" for number in range(60)])
+@pytest.mark.parametrize("seed", [f"tests/{number}" for number in range(40)])
 def test_random_bins(seed):
     """In all time models, with dropouts and names without a source."""
     tally = Counter()

@@ -112,7 +112,7 @@ def test_damage_of_any_byte_is_survived(path):
     rng = random.Random(3)
     victim = path.with_name("victim.cov")
     refusals = 0
-    for _ in range(300):
+    for _ in range(150):
         body = bytearray(whole)
         for _ in range(rng.choice([1, 3, 30])):
             body[rng.randrange(len(body))] = rng.randrange(256)

@@ -70,7 +70,7 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
         assert rows(small) <= rows(original)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_reduction_is_idempotent(formula):
     """What is reduced cannot be reduced further."""
@@ -84,7 +84,7 @@ def test_reduction_is_idempotent(formula):
         assert (once.edges, once.class_of, rows(once)) == (twice.edges, twice.class_of, rows(twice))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_what_people_are_told_stays(formula):
     """No text of what is required gets lost, and none is told of another location."""

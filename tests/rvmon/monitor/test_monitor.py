@@ -161,7 +161,7 @@ requirement K
 def test_what_is_decided_together_is_made_as_it_is_read(keep):
     """More attempts than a call makes itself: all are told once, as few would be."""
     spec = rvmon.loads(MANY)
-    count = 5_000
+    count = 2_500
     monitor, heard = spec.monitor(keep=keep), []
     monitor.step_ns(0, {"p": False})
     for t in range(1, count + 1):
