@@ -90,7 +90,8 @@ def by_progression(case: Case) -> Told:
     machine = Progression(factory.next(required), alphabet)
     told: dict[int, tuple[int, int | None, Verdict | None]] = {}
     going: dict[Token, list[int]] = {}
-    last = case.samples[-1].t
+    # Where only samples are positions, that none follows is known an instant behind the end.
+    last = case.samples[-1].t + (not is_held)
     before = False
     for sample, until in zip(case.samples, _until(case.samples, last), strict=True):
         starts = sample.t == 0 if requirement.trigger != TRIGGER else bool(sample.values["p"])

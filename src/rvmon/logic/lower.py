@@ -120,7 +120,7 @@ def lower(
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
         # An episode is over where its trigger is FALSE, by whatever distance.
         truth = _running(in_truth.four(requirement.trigger).read(FALSE), requirement, factory)
-        required = lowering.episode(truth, lowering.required(implied), requirement.consequent)
+        required = lowering.episode(truth, lowering.required(implied), requirement)
         ahead = begin(opened=True).core(requirement.consequent, True)
         again = None if looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
@@ -139,7 +139,7 @@ def lower(
         running = _running(doubt, requirement, factory)
         here = factory.state_any([factory.negation(running), factory.sure(running)])
         either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.required(required)])
-        whole = lowering.episode(running, either, requirement.consequent)
+        whole = lowering.episode(running, either, requirement)
         return Obligation(doubt, whole, lowering.origins, running)
 
     return Obligation(

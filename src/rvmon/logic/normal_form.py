@@ -38,6 +38,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
 from rvmon.spec.checked.rewrite import rewritten
+from rvmon.spec.checked.specification import Requirement
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,12 +89,13 @@ class Lowering:
             return self.reader.literal(formula, UNKNOWN)
         return self.reader.literal(formula, TRUE if positive else FALSE)
 
-    def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
+    def episode(self, trigger: State, implied: Core, requirement: Requirement) -> Core:
         """`implied` until the trigger is known to be false, where the obligation ends."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
+        self.origins.setdefault(over, Origin(requirement.trigger, False))
         required = self.factory.release(over, implied, 0, None)
         for node in (implied, required):
-            self.origins[node] = Origin(consequent, True)
+            self.origins[node] = Origin(requirement.consequent, True)
         return required
 
     def core(self, formula: Formula, positive: bool) -> Core:

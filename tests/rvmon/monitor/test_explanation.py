@@ -273,3 +273,22 @@ def test_what_is_owed_in_a_loop_is_that_of_now():
         [left] = monitor.open
         assert left.required.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
         assert left.deadline == now
+
+
+@pytest.mark.parametrize(
+    ("requirement", "over"),
+    [
+        ("whenever near\nthen within 3 s released", "`near` was false at 2 s"),
+        ("always (near -> within 3 s released)", "`near` was false at 2 s"),
+        ("whenever not slow\nthen within 3 s released", "`slow` was true at 2 s"),
+    ],
+)
+def test_what_ended_an_episode_is_named(requirement, over):
+    """The trigger as it is written, not a proposition."""
+    samples = [
+        (0, {"near": True, "slow": False}),
+        (2, {"near": False, "slow": True, "released": True}),
+    ]
+    _, (attempt,) = run(requirement, samples, 9)
+    assert attempt.verdict is rvmon.Verdict.PASS
+    assert attempt.reason == f"{over}; after that no obligation was left"
