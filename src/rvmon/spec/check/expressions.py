@@ -340,6 +340,8 @@ class Checker:
             return None
         if op.entry.window is Window.NONE:
             if self.table.time is TimeModel.HELD:
+                if op.entry.tense is Tense.PAST:
+                    raise Refusal(time_rules.step_back_in_held_time(span.text, span))
                 raise Refusal(time_rules.step_in_held_time(span.text, span))
             if window is not None:
                 raise Refusal(time_rules.no_window(span.text, window.span))

@@ -11,6 +11,7 @@ from rvmon.spec.checked.formula import (
     Arithmetic,
     Binary,
     BinaryOp,
+    Bound,
     BoundAtom,
     Captured,
     Compare,
@@ -103,6 +104,10 @@ def _formula(formula: Formula, level: int) -> str:
             return _amount(formula, denied=False)
         case Unary(op=UnaryOp.NOT, operand=Amount() as denied):
             return _amount(denied, denied=True)
+        case Unary(op=UnaryOp.ONCE) if (age := _age(formula, denied=False)) is not None:
+            return age
+        case Unary(op=UnaryOp.NOT, operand=one) if (age := _age(one, denied=True)) is not None:
+            return age
         case Unary():
             return _unary(formula)
         case Passed(since=since, after=after, strict=strict):
@@ -113,6 +118,26 @@ def _formula(formula: Formula, level: int) -> str:
             return f"({text})" if op.entry.level < level else text
         case _:
             assert_never(formula)
+
+
+def _age(formula: Formula, *, denied: bool) -> str | None:
+    """That an age is so much at most, or denied; `None`: that is not what it says."""
+    match formula:
+        case Unary(
+            op=UnaryOp.ONCE,
+            operand=Binary(
+                op=BinaryOp.OR,
+                left=ProbeAtom(probe=Probe.UPDATED, name=name),
+                right=BoundAtom(bound=Bound.START),
+            ),
+            interval=Interval(low=0, high=int() as high),
+        ):
+            most = (CompareOp.LE, format_duration(high))
+            below = (CompareOp.LT, format_duration(high + 1))
+            op, limit = min(most, below, key=lambda one: len(one[1]))
+            return f"age({_name(name)}) {op.denied if denied else op} {limit}"
+        case _:
+            return None
 
 
 def _amount(formula: Amount, *, denied: bool) -> str:

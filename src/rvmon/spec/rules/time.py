@@ -75,6 +75,12 @@ step_in_held_time = Breach(
     "`{1}` has no meaning in `time held`: it would speak of the next nanosecond",
     "give a duration (`within`, `once[0, D]`) or declare `time sampled`",
 )
+step_back_in_held_time = Breach(
+    STEP_IN_HELD_TIME,
+    "`{1}` has no meaning in `time held`: it would speak of the nanosecond before",
+    "of a value before its last change speaks `prev(x)`; else give a duration (`once[0, D]`), or "
+    "declare `time sampled`",
+)
 ago_of_samples = Breach(
     STEP_IN_HELD_TIME,
     "`{}` asks for an instant at which there may be no sample",
