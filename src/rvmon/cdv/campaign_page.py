@@ -131,7 +131,11 @@ def campaign_page(
     for robot in summary.robots.values():
         for requirement in robot.requirements.items():
             robots_of.setdefault(requirement, []).append(robot.title.lower())
-    common = [one for one, of in robots_of.items() if len(of) == len(summary.robots)]
+    common = [
+        one
+        for one, of in robots_of.items()
+        if len(of) == len(summary.robots) and one[0] in (presentation.foremost or (one[0],))
+    ]
     others = [one for one in robots_of if one not in common]
     return render(
         "campaign.html",

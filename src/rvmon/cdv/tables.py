@@ -309,7 +309,8 @@ class Presentation:
         sections: further ones of the page, from the tests that were played and the addresses of
             their pages.
         foremost: requirements that the terminal shows: with others only those that failed or were
-            left open somewhere, and shares of code as one line; default: it shows all of all.
+            left open somewhere, and shares of code as one line. The page folds the texts of others
+            up. Default: both show all of all.
         write_more: writes further files to a campaign's folder, given the strategies of its tests.
     """
 

@@ -1,8 +1,11 @@
 """Files and pages of a campaign."""
 
+from dataclasses import replace
+
 import pytest
 
 from rvmon import cdv
+from rvmon.cdv.tables import Presentation
 from rvmon.cdv.test import load
 from rvmon.cli.campaign import main
 
@@ -98,6 +101,24 @@ def test_names_of_tests_do_not_steer_a_terminal(campaign, capsys):
     told = capsys.readouterr()
     assert "\x1b" not in told.err + told.out
     assert "[bold]not[/]" in told.err
+
+
+def test_the_texts_of_foremost_requirements_come_first(campaign, tmp_path, spec):
+    """Those of others are folded up; where none is foremost, all are there at once."""
+    spec.write_text(f'{spec.read_text()}requirement Far "Up high"\n  always level < 50\n')
+    made = campaign(("low", {"level": 3.0}))
+    heads = []
+    for foremost in (("Far",), ()):
+        shown = replace(made, presentation=Presentation(foremost=foremost))
+        main(shown, ["run", "--jobs", "1", "--out", f"out{len(heads)}"])
+        page = (tmp_path / f"out{len(heads)}/report.html").read_text()
+        heads.append(page.partition("</header>")[0].partition("<header>")[2].partition("<details>"))
+    (first, _, folded), (whole, fold, _) = heads
+    assert "Up high" in first
+    assert "Up high" not in folded
+    assert "more of toy" in folded
+    assert "Up high" in whole
+    assert not fold
 
 
 def test_a_requirement_that_no_test_triggers_is_pointed_out(campaign, tmp_path, spec, capsys):
