@@ -285,6 +285,8 @@ def main(words: list[str]) -> int:
     parser.add_argument("--pairs", type=int, default=1_200)
     parser.add_argument("--cases", type=Path, metavar="FILE", help="write the cases, and no more")
     options = parser.parse_args(words)
+    if unknown := set(options.files) - {path.name for path in sources()}:
+        parser.error(f"no file of the core is called {', '.join(sorted(unknown))}")
     if options.cases:
         options.cases.write_bytes(recorded(options.pairs, options.seed))
         return 0
