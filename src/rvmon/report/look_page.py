@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.report.pages import e, render
+from rvmon.report.time_axis import View, moment, round_instants
 from rvmon.report.wording import duration_text, first_of
 from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile, Stretch
@@ -45,8 +46,7 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
         for column in columns:
             kind, rate, gap, told = facts(column)
             rate = f"{rate}, gap {gap}" if gap else rate
-            name = column.name.removeprefix(f"{title.strip('/').replace('/', '.')}.")
-            table.add_row(name, kind, told, rate, spark(column, profile))
+            table.add_row(_short(column.name, title), kind, told, rate, spark(column, profile))
         yield table
     for why in dict.fromkeys(profile.left_out.values()):
         names = [name for name, reason in profile.left_out.items() if reason == why]
@@ -168,7 +168,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         {
             "title": title or "names",
             "is_open": place < max(_OPEN, len(requirements)),
-            "rows": [_row(column, profile) for column in columns],
+            "rows": [_row(column, title, profile) for column in columns],
         }
         for place, (title, columns) in enumerate(grouped(profile, requirements))
     ]
@@ -182,16 +182,33 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         told=f"{profile.samples:,} samples in {duration_text(span)}, "
         f"{len(profile.columns):,} names.",
         lost=[f"Lost: {_lost(one, profile.start)}." for one in profile.outages],
-        marks=[duration_text(span * part // 4) for part in range(5)],
+        marks=_marks(profile.start, profile.end),
         groups=groups,
         left_out=left_out,
     )
 
 
-def _row(column: Column, profile: Profile) -> dict[str, object]:
+_LAST = 0.95
+"""Marks behind this share of the time would not find room."""
+
+
+def _marks(start: int, end: int) -> list[tuple[str, str]]:
+    """Round instants since the start, each with its place in per cent."""
+    view = View(start, max(end, start + 1))
+    shares = [(view.fraction(t), t) for t in round_instants(view, start, count=5)]
+    return [(f"{100 * share:.2f}", moment(t, start, view)) for share, t in shares if share < _LAST]
+
+
+def _short(name: str, title: str) -> str:
+    """A name without that of the topic that it stands under."""
+    return name.removeprefix(f"{title.strip('/').replace('/', '.')}.")
+
+
+def _row(column: Column, title: str, profile: Profile) -> dict[str, object]:
     kind, rate, gap, values = facts(column)
     return {
         "name": column.name,
+        "short": _short(column.name, title),
         "told": ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one),
         "range": values,
         "drawing": None if is_constant(column) else _drawing(column, profile),
@@ -200,13 +217,13 @@ def _row(column: Column, profile: Profile) -> dict[str, object]:
 
 def _drawing(column: Column, profile: Profile) -> ET.Element:
     stretches = column.course.until(profile.end)
-    count = len(stretches)
-    svg = e("svg", {"viewBox": f"0 0 {count} {_HEIGHT}", "preserveAspectRatio": "none"})
+    wide = max(1.0, (profile.end - profile.start) / column.course.length)
+    svg = e("svg", {"viewBox": f"0 0 {wide:.2f} {_HEIGHT}", "preserveAspectRatio": "none"})
     for outage in profile.outages:
         if outage.names is None or column.name in outage.names:
             left = (outage.since - profile.start) / column.course.length
-            wide = max(1.0, (outage.until - outage.since) / column.course.length)
-            box = {"x": f"{left:.1f}", "width": f"{wide:.1f}", "y": 0, "height": _HEIGHT}
+            long = max(1.0, (outage.until - outage.since) / column.course.length)
+            box = {"x": f"{left:.1f}", "width": f"{long:.1f}", "y": 0, "height": _HEIGHT}
             svg.append(e("rect", {**box, "class": "lost"}))
     if column.is_event:
         for place, one in enumerate(stretches):

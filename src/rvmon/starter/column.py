@@ -107,17 +107,20 @@ class Course:
             times: int64[n] ticks, ascending, not before the start.
             numbers: [n] what was said; what is not finite is not drawn.
         """
+        self._reach(int(times[-1]))
         places = (times - self.start) // self.length
-        while places[-1] >= MOST:
-            self._updates = _halved(np.add, self._updates, 0)
-            self._lows = _halved(np.minimum, self._lows, inf)
-            self._highs = _halved(np.maximum, self._highs, -inf)
-            self.length *= 2
-            places //= 2
         self._updates += np.bincount(places, minlength=MOST)
         drawn = np.isfinite(numbers)
         np.minimum.at(self._lows, places[drawn], numbers[drawn])
         np.maximum.at(self._highs, places[drawn], numbers[drawn])
+
+    def _reach(self, t: int) -> None:
+        """Make the stretches so long that they go on to an instant."""
+        while (t - self.start) // self.length >= MOST:
+            self._updates = _halved(np.add, self._updates, 0)
+            self._lows = _halved(np.minimum, self._lows, inf)
+            self._highs = _halved(np.maximum, self._highs, -inf)
+            self.length *= 2
 
     @property
     def extremes(self) -> set[float]:
@@ -125,8 +128,9 @@ class Course:
         return {*self._lows.tolist(), *self._highs.tolist()} - {-inf, inf}
 
     def until(self, end: int) -> list[Stretch]:
-        """The stretches up to an instant, those in which nothing was said too."""
-        count = max(1, min(MOST, -(-(end - self.start + 1) // self.length)))
+        """The stretches up to an instant, however much later it is than what was said last."""
+        self._reach(end)
+        count = max(1, -(-(end - self.start + 1) // self.length))
         told = zip(
             *(one[:count].tolist() for one in (self._updates, self._lows, self._highs)), strict=True
         )

@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -80,7 +81,28 @@ def test_what_a_log_lost_is_told_and_shaded(tmp_path, capsys):
     assert main(["look", str(path)]) == 0
     assert "lost: everything from 0.1 s (stamp 1.1 s) on:" in capsys.readouterr().out
     assert main(["look", str(path), "-o", str(tmp_path / "a.html")]) == 0
-    assert 'class="lost"' in (tmp_path / "a.html").read_text()
+    page = (tmp_path / "a.html").read_text()
+    assert 'class="lost"' in page
+    assert '<code title="drive.speed">speed</code>' in page  # it stands under its topic
+
+
+def test_what_falls_silent_is_drawn_up_to_there(tmp_path, monkeypatch, capsys):
+    """At the instants of the axis, which are round."""
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{k / 100},{k % 7}," for k in range(100)] + [f"{1 + k},,{k}" for k in range(200)]
+    Path("a.csv").write_text("\n".join(["t,early,late", *rows, ""]))
+    assert main(["look", "a.csv"]) == 0
+    early, late = capsys.readouterr().out.splitlines()[1:3]
+    assert [sum(one in "▁▂▃▄▅▆▇█" for one in line) for line in (early, late)] == [1, 20]
+    assert main(["look", "a.csv", "-o", "a.html"]) == 0
+    text = Path("a.html").read_text()
+    marks = re.findall(r'<span style="left:([\d.]+)%">([^<]*)<', text)
+    assert marks == [("0.00", "0 s"), ("25.00", "50 s"), ("50.00", "100 s"), ("75.00", "150 s")]
+    ends = [
+        max(map(float, re.findall(r"([\d.]+) [\d.]+", d))) for d in re.findall(r' d="M(.*?)Z', text)
+    ]
+    wide = float(re.search(r'viewBox="0 0 ([\d.]+) ', text)[1])
+    assert [round(end / wide, 1) for end in ends] == [0.0, 1.0]
 
 
 def test_a_course_is_bounded_and_loses_no_peak():
