@@ -228,6 +228,42 @@ def timeline(**rows: str) -> tuple[Sample, ...]:
     return tuple(samples)
 
 
+def actions(text: str) -> tuple[Sample | int, ...]:
+    """What a monitor is given, in few words: instants with what is so, `!` behind an `advance`.
+
+    `p` is true or occurs, `-p` is false, `?p` unknown; `x=2.5` is a number, and `g=1` an event with
+    that field, `g=1/0` with two, `g=?` with one that is unknown, `g=1,2` twice.
+
+    >>> actions("0 p -q x=1; 4!; 9 ?p g=3")[0].values
+    {'p': True, 'q': False, 'x': 1.0}
+    """
+    found: list[Sample | int] = []
+    for one in text.split(";"):
+        instant, *words = one.split()
+        if instant.endswith("!"):
+            found.append(int(instant[:-1]))
+        else:
+            found.append(Sample(int(instant), dict(map(_said, words))))
+    return tuple(found)
+
+
+def _said(word: str) -> tuple[str, Value]:
+    name, sign, text = word.partition("=")
+    if not sign:
+        return name.lstrip("-?"), {"-": False, "?": None}.get(name[0], True)
+    if name in NUMBERS or name == "unread":
+        return name, float(text)
+    payloads = [
+        {
+            field: None if one == "?" else int(one)
+            for field, one in zip("km", own.split("/"), strict=False)
+            if one
+        }
+        for own in text.split(",")
+    ]
+    return name, payloads[0] if len(payloads) == 1 else tuple(payloads)
+
+
 def _value(name: str, character: str) -> Value:
     match character:
         case "u":

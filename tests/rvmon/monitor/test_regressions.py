@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.build import actions
 from tests.tools.differential import disagreements
 from tests.tools.forms import FORMS, Maker
 
@@ -12,148 +13,82 @@ from rvmon.trace.sample import Sample
 
 CASES = {
     "a window that is to hold up to the left operand and with it is not met before it is over": (
-        "held",
-        "upon start\n  then e R (for 0 s true)",
-        [(0, {"e": True})],
-        0,
+        *("held", "upon start then e R (for 0 s true)", "0 e", 0),
     ),
     "a window fails where the left operand holds": (
-        "sampled",
-        "upon start\n  then e R (within 2 ns p)",
-        [(0, {"e": True, "p": False}), (5, {})],
-        5,
+        *("sampled", "upon start then e R (within 2 ns p)", "0 e -p; 5", 5),
     ),
     "a row met younger later leads on younger": (
-        "held",
-        "upon start\n  then (always p) R (e R[3 ns, 5 ns] true)",
-        [(0, {})],
-        5,
+        *("held", "upon start then (always p) R (e R[3 ns, 5 ns] true)", "0", 5),
     ),
     "a signal that nothing reads grows stale between two ticks": (
-        "sampled every 3 ns",
-        "upon e\n  then true",
-        [(8, {}), (13, {"unread": 1.0}), (16, {"e": True})],
-        16,
+        *("sampled every 3 ns", "upon e then true", "8; 13 unread=1; 16 e", 16),
     ),
     "a value grows stale between two ticks that was as good as unknown": (
-        "sampled every 3 ns",
-        "upon e\n  then 1 / x < 2",
-        [(8, {}), (13, {"x": 0.0}), (16, {"e": True})],
-        16,
+        *("sampled every 3 ns", "upon e then 1 / x < 2", "8; 13 x=0; 16 e", 16),
     ),
     "a constant below an operator of the past is no cause of anything": (
-        "held",
-        "upon start\n  then once[1 ns, 1 ns] (F[0 ns, 0 ns] false)",
-        [(0, {})],
-        0,
+        *("held", "upon start then once[1 ns, 1 ns] (F[0 ns, 0 ns] false)", "0", 0),
     ),
     "what is asked at the end was known before": (
-        "held",
-        "upon end\n  then once[0 ns, 0 ns] (F true)",
-        [(0, {})],
-        1,
+        *("held", "upon end then once[0 ns, 0 ns] (F true)", "0", 1),
     ),
     "an attempt begins where what was open before is settled": (
-        "sampled every 1 ns",
-        "upon e\n  then G[1 ns, 1 ns] p",
-        [(0, {"e": True}), (4, {"e": True}), (5, {"p": True})],
-        6,
+        *("sampled every 1 ns", "upon e then G[1 ns, 1 ns] p", "0 e; 4 e; 5 p", 6),
     ),
     "a loop without a boundary ahead, before the instant 0": (
-        "held",
-        "whenever true\n  then F[1 ns, 1 ns] true",
-        [(-3, {}), (11, {"unread": 1.0})],
-        11,
+        *("held", "whenever true then F[1 ns, 1 ns] true", "-3; 11 unread=1", 11),
     ),
     "what is never for good is open at the end": (
-        "held",
-        "upon start\n  then eventually always p",
-        [(0, {"p": True}), (1, {"p": False})],
-        None,
+        *("held", "upon start then eventually always p", "0 p; 1 -p", None),
     ),
     "what comes again and again is open at the end": (
-        "sampled every 3 ns",
-        "upon e\n  then always eventually (p until q)",
-        [(0, {"p": False, "q": True, "e": True}), (6, {"q": False})],
+        *("sampled every 3 ns", "upon e then always eventually (p until q)", "0 -p q e; 6 -q"),
         None,
     ),
     "an occurrence whose key is not known says nothing in an instance": (
-        "held",
-        "upon g\n  then within 3 ns (g.m > 1)\n  for each v in g.k",
-        [(0, {"g": {"k": 1, "m": 1}}), (2, {"g": {"m": 0}})],
-        9,
+        *("held", "upon g then within 3 ns (g.m > 1) for each v in g.k", "0 g=1/1; 2 g=/0", 9),
     ),
     "an instance begins after its trigger was known, and is not now": (
-        "held",
-        "upon p\n  then within 3 ns q\n  for each v in g.k",
-        [(0, {"p": False, "q": False}), (3, {"p": None}), (5, {"g": {"k": 1}}), (7, {"p": True})],
-        12,
+        *("held", "upon p then within 3 ns q for each v in g.k", "0 -p -q; 3 ?p; 5 g=1; 7 p", 12),
     ),
     "an instance begins between two ticks of the clock": (
-        "sampled every 3 ns",
-        "upon g\n  then start\n  for each v in g.k",
-        [(1, {}), (10, {"g": ({"k": 1}, {"k": 0})})],
-        12,
+        *("sampled every 3 ns", "upon g then start for each v in g.k", "1; 10 g=1,0", 12),
     ),
     "what was met at the near end of a window need not have been led up to there": (
-        "held",
-        "upon e\n  then q since[2 ns, 3 ns] (F[0 ns, 1 ns] p)",
-        [(0, {"p": True, "q": False}), (1, {"p": False, "q": True}), (2, {"e": True}), (5, {})],
-        9,
+        *("held", "upon e then q since[2 ns, 3 ns] (F[0 ns, 1 ns] p)", "0 p -q; 1 -p q; 2 e; 5", 9),
     ),
     "samples are farther apart than the shorter of two windows is long": (
-        "sampled",
-        "upon e\n  then immediately once[1 ns, 2 ns] p and once[1 ns, 9 ns] q",
-        [
-            (0, {"p": True, "q": True}),
-            (4, {}),
-            (8, {"e": True}),
-            (9, {"e": True}),
-            (13, {"e": True}),
-        ],
-        20,
+        *("sampled", "upon e then immediately once[1 ns, 2 ns] p and once[1 ns, 9 ns] q"),
+        *("0 p q; 4; 8 e; 9 e; 13 e", 20),
     ),
     "what was met does not count where it is cut, though it is met there again": (
-        "held",
-        "upon e\n  then immediately q since[1 ns, 3 ns] p",
-        [(0, {"p": False, "q": True}), (2, {"p": True, "q": False, "e": True}), (4, {"e": True})],
-        9,
+        *("held", "upon e then immediately q since[1 ns, 3 ns] p", "0 -p q; 2 p -q e; 4 e", 9),
     ),
     "a window that has not opened does not count as held to the end": (
-        "held",
-        "upon e\n  then always[5 ns, inf) p",
-        [(0, {"p": True, "e": True}), (3, {})],
-        3,
+        *("held", "upon e then always[5 ns, inf) p", "0 p e; 3", 3),
     ),
     "an episode goes on where its trigger is unknown, also if that is a pulse": (
-        "held",
-        "whenever e and q\n  then within 3 ns p",
-        [
-            (0, {"p": False, "q": True, "e": True}),
-            (1, {"q": None, "e": True}),
-            (2, {"q": True, "e": True}),
-            (3, {}),
-        ],
-        12,
+        *("held", "whenever e and q then within 3 ns p", "0 -p q e; 1 ?q e; 2 q e; 3", 12),
     ),
     "what has held for less than its duration since the start is not held, ahead neither": (
-        "held",
-        "upon e\n  then held(F[0 ns, 1 ns] p, 3 ns)",
-        [(0, {"p": True}), (2, {"e": True}), (5, {})],
-        9,
+        *("held", "upon e then held(F[0 ns, 1 ns] p, 3 ns)", "0 p; 2 e; 5", 9),
     ),
-    "one update is no change yet": (
-        "held",
-        "whenever true\n  then delta(x) <= 1",
-        [(0, {"x": 1.0}), (1, {"x": 1.0})],
-        1,
-    ),
+    "one update is no change yet": ("held", "whenever true then delta(x) <= 1", "0 x=1; 1 x=1", 1),
     "of two occurrences at a tick one is not known, and a signal is not born": (
-        "sampled every 3 ns",
-        "whenever true\n  then not g.k > x",
-        [(0, {}), (1, {"g": None}), (2, {"g": {"k": 1, "m": 1}}), (4, {"x": 5.0})],
-        9,
+        *("sampled every 3 ns", "whenever true then not g.k > x", "0; 1 ?g; 2 g=1/1; 4 x=5", 9),
     ),
+    "one deadline after the other passes without a sample": (
+        *("sampled", "upon e then within 3 ns p", "0 -p e; 2 e; 4!; 6!; 8!", 20),
+    ),
+    "in sampled time an advance into a window is no position; the sample after it is one": (
+        *("sampled", "upon p then always [5 ns, 9 ns] q", "0 p -q; 4 r; 7!; 8 -r; 12", 20),
+    ),
+} | {
+    f"time comes to a tick of the clock and passes it: {steps}": (
+        *("sampled every 3 ns", "upon e then next next p", f"0 p e; {steps}", 10),
+    )
+    for steps in ("3!; 8!", "3!; 6!; 8!", "6!; 8!")
 }
 
 
@@ -161,50 +96,15 @@ CASES = {
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", CASES)
 def test_forms_agree_with_the_law(name, form):
-    """Each form gives the oracle's verdicts and decision instants, if it judges such a spec."""
-    time, requirement, samples, end = CASES[name]
+    """Each form gives the oracle's verdicts and decision instants, by each call."""
+    time, requirement, told, end = CASES[name]
     spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal p, q : bool\nsignal unread : real stale after 1 ns\n"
+        f"spec s\ntime {time}\nsignal p, q, r : bool\nsignal unread : real stale after 1 ns\n"
         f"signal x : real stale after 1 ns\nevent e\nevent g(k: int, m: int)\n"
         f"requirement R1\n  {requirement}\n"
     )
-    case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), end)
-    assert not disagreements(case, Maker(form))
-
-
-@pytest.mark.parametrize("form", FORMS)
-def test_a_window_opens_between_samples_that_change_nothing(form):
-    """In sampled time, `advance` into a window is no position; the sample after it is one."""
-    spec = rvmon.loads(
-        "spec s\ntime sampled\nsignal p, q, r : bool\n"
-        "requirement R1\n  upon p\n  then always [5 ns, 9 ns] q\n"
-    )
-    told = [Sample(0, {"p": True, "q": False}), Sample(4, {"r": True}), 7, Sample(8, {"r": False})]
-    case = Case(spec.checked, (*told, Sample(12, {})), 20)
-    assert not disagreements(case, Maker(form))
-
-
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("steps", [(3, 8), (3, 6, 8), (6, 8)])
-def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
-    """What a tick decides, to which time had come before, is told when time has passed it."""
-    spec = rvmon.loads(
-        "spec s\ntime sampled every 3 ns\nsignal p : bool\nevent e\n"
-        "requirement R1\n  upon e\n  then next next p\n"
-    )
-    case = Case(spec.checked, (Sample(0, {"p": True, "e": True}), *steps), 10)
+    case = Case(spec.checked, actions(told), end)
     assert not disagreements(case, Maker(form), online=True)
-
-
-@pytest.mark.parametrize("form", FORMS)
-def test_one_deadline_after_the_other_passes_without_a_sample(form):
-    """Each attempt is decided by the `advance` that passes its deadline."""
-    spec = rvmon.loads(
-        "spec s\ntime sampled\nsignal p : bool\nevent e\n"
-        "requirement R1\n  upon e\n  then within 3 ns p\n"
-    )
-    told = (Sample(0, {"p": False, "e": True}), Sample(2, {"e": True}), 4, 6, 8)
-    assert not disagreements(Case(spec.checked, told, 20), Maker(form), online=True)
 
 
 @pytest.mark.law
