@@ -15,8 +15,19 @@ def drawn(*sums):
     return {"withdrawn": [{"user": user, "sum": amount} for user, amount in sums]}
 
 
+def logged_in(user, host):
+    """A user comes to a host."""
+    return {"login": {"user": user, "host": host}}
+
+
+LOGINS = [(1, 7), (2, 9), (1, 8)]
 BEATS = [{"beat": {"ms": ms}} for ms in (900, 400, 400, 900, 400, 400, 400, 900)]
 BEAT = {"beat": True}
+FAILED = [{"failed": {"user": user}} for user in (1, 2, 1, 1)]
+ASKED = [
+    (0.0, {"asked": {"wait": 2.0, "stay": 3.0}, "closed": False}),
+    (2.0, {"opened": True}),
+]
 STILL = [{"north": 47.0, "east": 8.0}] * 3
 
 CASES = {
@@ -42,28 +53,8 @@ CASES = {
         "event failed(user: int), locked(user: int)",
         "upon failed.user == u and count(failed.user == u, 1 min) >= 3 then "
         "within 2 s locked.user == u for each u in failed.user",
-        ticks(
-            [
-                {"failed": {"user": 1}},
-                {"failed": {"user": 2}},
-                {"failed": {"user": 1}},
-                {"failed": {"user": 1}},
-                {"locked": {"user": 1}},
-                {},
-                {},
-            ]
-        ),
-        ticks(
-            [
-                {"failed": {"user": 1}},
-                {"failed": {"user": 2}},
-                {"failed": {"user": 1}},
-                {"failed": {"user": 1}},
-                {"locked": {"user": 2}},
-                {},
-                {},
-            ]
-        ),
+        ticks([*FAILED, {"locked": {"user": 1}}, {}, {}]),
+        ticks([*FAILED, {"locked": {"user": 2}}, {}, {}]),
     ),
     "five fast beats in eight seconds switch the mode": (
         "event beat(ms: int), switched",
@@ -130,22 +121,14 @@ CASES = {
         "event login(user: int, host: int)",
         "upon login.user == u then immediately distinct(login.host, 1 h) <= 2 "
         "for each u in login.user",
-        [
-            (t * 1900.0, {"login": {"user": u, "host": h}})
-            for t, (u, h) in enumerate([(1, 7), (2, 9), (1, 8), (1, 7), (1, 6), (1, 6)])
-        ],
-        [
-            (t * 1100.0, {"login": {"user": u, "host": h}})
-            for t, (u, h) in enumerate([(1, 7), (2, 9), (1, 8), (1, 6)])
-        ],
+        [(t * 1900.0, logged_in(*one)) for t, one in enumerate([*LOGINS, (1, 7), (1, 6), (1, 6)])],
+        [(t * 1100.0, logged_in(*one)) for t, one in enumerate([*LOGINS, (1, 6)])],
     ),
     "a burst has as many beats before its last as its head said": (
         "event head(beats: int), beat, last",
         "upon head then (not last) until (last and count(beat since trigger) >= n) "
         "let n = head.beats",
-        ticks(
-            [{"beat": True}, {"head": {"beats": 2}}, {"beat": True}, {"beat": True, "last": True}]
-        ),
+        ticks([BEAT, {"head": {"beats": 2}}, BEAT, {**BEAT, "last": True}]),
         ticks([BEAT, {"head": {"beats": 2}}, BEAT, {"last": True}]),
     ),
     "a drone hovers: its position spreads little over the last four fixes": (
@@ -163,16 +146,8 @@ CASES = {
     "a door that was asked for opens in the time that it says, and stays so": (
         "event asked(wait: real [s], stay: real [s]), opened\nsignal closed : bool",
         "upon asked then (within (asked.wait) opened) and (for (asked.stay) not closed)",
-        [
-            (0.0, {"asked": {"wait": 2.0, "stay": 3.0}, "closed": False}),
-            (2.0, {"opened": True}),
-            (3.5, {"closed": True}),
-        ],
-        [
-            (0.0, {"asked": {"wait": 2.0, "stay": 3.0}, "closed": False}),
-            (2.0, {"opened": True}),
-            (3.0, {"closed": True}),
-        ],
+        [*ASKED, (3.5, {"closed": True})],
+        [*ASKED, (3.0, {"closed": True})],
     ),
     "at most 500 are withdrawn in 31 days": (
         "event withdrawn(sum: int)",

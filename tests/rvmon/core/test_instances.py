@@ -165,9 +165,7 @@ def test_an_instance_looks_back_to_the_first_position_of_the_run():
         "time sampled\nevent g(k : int)\n"
         "requirement R\n  upon g\n  then (previous (next true))\n  for each n in g.k\n"
     )
-    monitor = spec.monitor()
-    monitor.step_ns(0, {})
-    (attempt,) = monitor.step_ns(1, {"g": {"k": 0}})
+    (attempt,) = spec.evaluate([(0, {}), (1e-9, {"g": {"k": 0}})]).attempts
     assert attempt.verdict == "P"
 
 
