@@ -15,15 +15,17 @@ from rvmon.report.tracks import blamed_names, concerned_names
 from rvmon.report.wording import value_text
 from rvmon.session import Spec
 from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Amount
-from rvmon.spec.checked.names_read import names_read
+from rvmon.spec.checked.formula import Amount, Compare, windows_in
+from rvmon.spec.checked.names_read import names_in, names_read
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.trace.sample import Sample
+from rvmon.spec.print import format_window
+from rvmon.trace.sample import Sample, Scalar, Trace
 from rvmon.trace.schema import Kind
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Question
+    from rvmon.analysis.window_values import Asked
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
     from rvmon.report.changes import RunChanges
@@ -92,9 +94,10 @@ def post_analysis(
 
     if not explains:
         return report
-    values = _Values(spec, report)
+    failures = list(_first_failures(report))
+    values, windows = _Values(spec, failures), _Windows(spec, failures, report.origin)
     late, silent = _missed(spec, report), _silent(report)
-    if not late and not silent and not values.names:
+    if not late and not silent and not values.names and not windows.names:
         return report
     from rvmon.analysis.near_miss import miss_in, parts_asked
     from rvmon.analysis.subformulas import late_in
@@ -102,13 +105,13 @@ def post_analysis(
 
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
-    until = end if questions else values.until
+    until = end if questions else max(values.until, windows.until)
     pieces: Iterable[Batch | Sample] | None = remembered.until(until)
     if pieces is None:
         asked = {name for one in questions for part in one.formulas for name in names_read(part)}
         asked |= {one.for_each.value.event for one in questions if one.for_each is not None}
-        pieces = _read_again(spec, recording, asked | values.names, until)
-    noted = values.noted(pieces)
+        pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
+    noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
     seen = look_through(
         spec.checked, questions, noted, end, names, spec.plans_of_truths, recording.outages
     )
@@ -116,7 +119,7 @@ def post_analysis(
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
         report,
-        values=values.told(),
+        values=_joined(values.told(), windows.told()),
         late={name: found for name, found in arrived.items() if found},
         misses={name: miss for name, miss in misses.items() if miss},
     )
@@ -130,12 +133,10 @@ class _Values:
         until: the last decision, ticks.
     """
 
-    def __init__(self, spec: Spec, report: Report) -> None:
+    def __init__(self, spec: Spec, failures: Sequence[Attempt]) -> None:
         self._spec = spec
         self._reads = [
-            (attempt, names)
-            for attempt in _first_failures(report)
-            if (names := _names_blamed(spec, attempt))
+            (attempt, names) for attempt in failures if (names := _names_blamed(spec, attempt))
         ]
         self.names: Set[str] = {name for _, names in self._reads for name in names}
         self.until = max((attempt.decided or 0 for attempt, _ in self._reads), default=0)
@@ -183,6 +184,73 @@ class _Values:
         return told
 
 
+class _Windows:
+    """What windows of the past came to of which the first failures speak.
+
+    Attributes:
+        names: that they read.
+        until: the last decision, ticks.
+    """
+
+    def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
+        from rvmon.analysis.window_values import windows_blamed
+
+        self._spec = spec
+        self._origin = origin
+        self._asked: dict[tuple[str, int], list[Asked]] = {}
+        for attempt in failures:
+            assert attempt.blame is not None, "only these are asked for"
+            requirement = spec.requirements[attempt.requirement]
+            found = windows_blamed(spec.checked, requirement, attempt.blame)
+            if found and len(found) <= MOST_VALUES:
+                key = attempt.requirement, attempt.number
+                self._asked[key] = [(attempt.decided or 0, one) for one in found]
+        asked = [one for own in self._asked.values() for one in own]
+        self.names: Set[str] = {name for _, window in asked for name in names_in(window)}
+        self.until = max((t for t, _ in asked), default=0)
+        self._values: Mapping[Asked, Scalar] = {}
+
+    def noted(self, pieces: Iterable[Batch | Sample], recording: Trace) -> Iterator[Batch | Sample]:
+        """The pieces of a recording, unchanged; of that only names, end and outages are taken."""
+        if not self._asked:
+            yield from pieces
+            return
+        from rvmon.analysis.window_values import WindowValues
+
+        asked = [one for own in self._asked.values() for one in own]
+        run = WindowValues(self._spec.checked, asked, self._origin, recording)
+        for piece in pieces:
+            run.take(piece)
+            yield piece
+        self._values = run.told()
+
+    def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+        """By requirement and number of the attempt, what they were at its decision."""
+        from rvmon.analysis.window_values import unit_of
+
+        told: dict[str, dict[int, dict[str, str]]] = {}
+        for (requirement, number), own in self._asked.items():
+            told.setdefault(requirement, {})[number] = {
+                format_window(one): value_text(value, unit_of(self._spec.checked, one) or "")
+                for t, one in own
+                if (value := self._values.get((t, one))) is not None
+            }
+        return told
+
+
+def _joined(
+    *told: Mapping[str, Mapping[int, Mapping[str, str]]],
+) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+    """What is told of attempts, together."""
+    found: dict[str, dict[int, dict[str, str]]] = {}
+    for one in told:
+        for requirement, numbers in one.items():
+            for number, values in numbers.items():
+                if values:
+                    found.setdefault(requirement, {}).setdefault(number, {}).update(values)
+    return found
+
+
 def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
     """The signals of which the value tells why it failed.
 
@@ -190,8 +258,13 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
     """
     assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]
-    windows = [one for one in subformulas(requirement.consequent) if isinstance(one, Amount)]
-    measured = {name for window in windows for name in names_read(window)}
+    measured: set[str] = set()
+    for one in subformulas(requirement.consequent):
+        if isinstance(one, Amount):
+            measured |= {*names_read(one)}
+        elif isinstance(one, Compare):
+            windows = windows_in(one.left, one.right)
+            measured |= {name for window in windows for name in names_in(window)}
     signals = spec.checked.signals
     told = {
         name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,11 @@ from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
+    from rvmon.readers.held import HeldRecording
+    from rvmon.spec.checked.specification import CheckedSpec
     from rvmon.trace.sample import Sample
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -105,6 +109,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     changes = changes_of(spec.checked, samples)
     tracks = tracks_of(spec.checked, requirement, changes, report.absent)
     values = values_told(tracks, attempt, report.end)
+    values |= _windows_told(spec.checked, attempt, samples, report, recording.names)
     if arguments.format == "json":
         import msgspec
 
@@ -117,3 +122,35 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     for line in why_lines(breakdown, requirement, values):
         console.print(line)
     return 0
+
+
+def _windows_told(
+    checked: CheckedSpec,
+    attempt: Attempt,
+    samples: HeldRecording,
+    report: Report,
+    names: frozenset[str] | None,
+) -> dict[str, Sequence[str]]:
+    """What the windows that failed came to, at the instants of the signals' values."""
+    from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
+    from rvmon.report.wording import value_text
+    from rvmon.spec.print import format_window
+    from rvmon.trace.sample import Trace
+
+    if attempt.blame is None or attempt.decided is None:
+        return {}
+    windows = windows_blamed(checked, checked.requirements[attempt.requirement], attempt.blame)
+    if not windows:
+        return {}
+    instants = sorted({attempt.triggered, attempt.decided})
+    asked = [(t, one) for one in windows for t in instants]
+    run = WindowValues(checked, asked, report.origin, Trace((), names, report.end, samples.outages))
+    for piece in samples.pieces:
+        run.take(piece)
+    values = run.told()
+    return {
+        format_window(one): [
+            value_text(values.get((t, one)), unit_of(checked, one) or "") for t in instants
+        ]
+        for one in windows
+    }

@@ -1,0 +1,116 @@
+"""What windows of the past, as `count(e, 10 s)`, came to at some instants of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rvmon.monitor import compile_spec
+from rvmon.monitor.planned import planned_core
+from rvmon.readers.source import Source
+from rvmon.spec.checked.classify import subformulas
+from rvmon.spec.checked.formula import (
+    Amount,
+    Compare,
+    Constant,
+    Interval,
+    SignalValue,
+    Unary,
+    UnaryOp,
+    WindowValue,
+    windows_in,
+)
+from rvmon.spec.checked.measured import Dimension
+from rvmon.spec.checked.specification import (
+    Capture,
+    CheckedSpec,
+    Mode,
+    Requirement,
+    TimeModel,
+)
+from rvmon.spec.print import format_formula
+from rvmon.trace.sample import Scalar, Trace
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
+    from rvmon.trace.sample import Sample
+    from rvmon.verdict.attempt import Blame
+
+Asked = tuple[int, WindowValue]
+"""An instant, ticks, and a window that is looked at there."""
+
+
+def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) -> list[WindowValue]:
+    """The windows of the part that failed, of which the value can be told.
+
+    None of an instance, or of what was captured; nor one that moves between samples: where that
+    fails, it has come to its limit.
+    """
+    if requirement.for_each is not None or requirement.captures:
+        return []
+    parts = list(subformulas(requirement.consequent))
+    failed = [one for one in parts if format_formula(one) == blame.subformula] or parts
+    found: dict[WindowValue, None] = {}
+    for one in subformulas(failed[0]):
+        match one:
+            case Amount(of=window):
+                found[window] = None
+            case Compare(left=left, right=right):
+                found |= dict.fromkeys(windows_in(left, right))
+    is_held = spec.time is TimeModel.HELD
+    return [one for one in found if not (is_held and one.moves) and unit_of(spec, one) is not None]
+
+
+def unit_of(spec: CheckedSpec, window: WindowValue) -> str | None:
+    """The unit of a window's value, empty if it has none; `None`: that is not known."""
+    match window.measured.dimension, window.value:
+        case Dimension.PLAIN, _:
+            return ""
+        case Dimension.SAME, SignalValue(name=name) if name in spec.signals:
+            return spec.signals[name].type.unit
+        case _:
+            return None
+
+
+class WindowValues:
+    """Looks at windows while a recording is read.
+
+    Args:
+        spec: the specification.
+        asked: what is to be looked at.
+        origin: the first instant of the recording, ticks.
+        recording: its names, end and outages; what it holds is taken piece by piece.
+    """
+
+    def __init__(
+        self, spec: CheckedSpec, asked: Sequence[Asked], origin: int, recording: Trace
+    ) -> None:
+        from rvmon.monitor.recording import RecordingRun  # which imports NumPy
+
+        self._asked = asked
+        requirements = {
+            str(place): _captured_at(str(place), t - origin, window)
+            for place, (t, window) in enumerate(asked)
+        }
+        own = replace(spec, requirements=requirements, properties={}, covers={}, max_delay=None)
+        planned = planned_core(compile_spec(own))
+        self._run = RecordingRun(own, planned, Source(recording), finds=False)
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Take what comes next."""
+        self._run.take(piece)
+
+    def told(self) -> Mapping[Asked, Scalar]:
+        """The values, where they are known; the recording is over."""
+        return {
+            self._asked[int(attempt.requirement)]: value
+            for attempt in self._run.report().attempts
+            if (value := attempt.captured["it"]) is not None
+        }
+
+
+def _captured_at(name: str, since_origin: int, window: WindowValue) -> Requirement:
+    """A requirement that captures a window at the first position from an instant on."""
+    there = Unary(UnaryOp.ONCE, Constant(True), Interval(since_origin))
+    return Requirement(name, Mode.UPON, there, Constant(True), captures=(Capture("it", window),))
