@@ -185,6 +185,9 @@ def print_closed(closed: Closed, console: Console) -> None:
         for goal, hole in closed.open.items():
             console.print(wrapped(name_of(goal), console.width))
             console.print(wrapped(f"  {hole}", console.width), style="dim")
+        group, item = next(iter(closed.open))
+        console.print("What no test can show goes to `Closing.unreachable`, with the reason:")
+        console.print(f'  cdv.Unreachable({group!r}, {item!r}, "…")', markup=False, soft_wrap=True)
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
     console.print(

@@ -11,9 +11,11 @@ from rvmon import cdv
 from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.close.goals import EDGES
+from rvmon.cdv.close.outcome import print_closed
 from rvmon.cdv.test import TestError
 from rvmon.coverage import Ending
 from rvmon.errors import ModelError, UnknownNameError
+from rvmon.report.terminal import Terminal
 from rvmon.timed.language.load import loads_network
 
 SPEC = """
@@ -138,6 +140,15 @@ def test_a_budget_ends_it_and_the_rest_is_open(dials):
     assert len(closed.open) == closed.goals - closed.met > 0
     closed = close(dials(), "machine", jobs=1, budget=Budget(seconds=0.0))
     assert closed.ended == "after 0 s"
+
+
+def test_what_is_open_can_be_called_unreachable_by_the_line_that_is_printed(dials, capsys):
+    """The line, with a reason, is taken as it stands."""
+    closed = close(dials(), "machine", jobs=1, budget=Budget(tests=3))
+    print_closed(closed, Terminal(width=100))
+    told = capsys.readouterr().out
+    (line,) = (one for one in told.splitlines() if "cdv.Unreachable" in one)
+    assert eval(line) == cdv.Unreachable(*next(iter(closed.open)), "…")  # noqa: S307 - our own line
 
 
 def test_tests_that_end_their_process_do_not_end_the_search(dials):
