@@ -16,7 +16,7 @@ from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.records import RecordedAttempts
-from rvmon.readers.places import without_copies
+from rvmon.readers.places import JOINT, without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec, load
@@ -252,7 +252,8 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to evaluate")
     except TraceError as error:
         message = str(error)
-        place = "" if trace in message else f"{trace}: "
+        is_named = any(one in message for one in filter(None, trace.split(JOINT)))
+        place = "" if is_named else f"{trace}: "
         return Judged(shown_path(trace), None, tuple(before), place + message)
     report = post_analysis(
         spec, recording, remembered, report, goals=options.only is None, explains=options.explains
