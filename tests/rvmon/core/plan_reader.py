@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import rvmon.core
+from rvmon.core.sections import HEADER as HEAD
+from rvmon.core.sections import hash_of
 
 HEADER = Path(rvmon.core.__file__).parent / "native" / "plan" / "plan.h"
 
@@ -95,6 +97,15 @@ def size_of_form(form: str) -> int:
 def size_of(name: str) -> int:
     """The size of a record."""
     return sum(size_of_form(form) for _, form in layouts()[name])
+
+
+def with_numbers(data: bytes, numbers: Mapping[int, int]) -> bytes:
+    """A plan with other numbers of 32 bits at some offsets, and the hash that fits."""
+    made = bytearray(data)
+    for at, number in numbers.items():
+        struct.pack_into("=i", made, at, number)
+    struct.pack_into("=Q", made, 24, hash_of(bytes(made[HEAD.size :])))
+    return bytes(made)
 
 
 class Plan:

@@ -22,6 +22,7 @@ from tests.rvmon.core.plan_reader import (
     layouts,
     size_of,
     size_of_form,
+    with_numbers,
 )
 
 import rvmon
@@ -30,7 +31,7 @@ from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp
 from rvmon.core.forms import Measure, Operator
 from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import pack
-from rvmon.core.sections import RECORDS, Packed, Section, hash_of
+from rvmon.core.sections import RECORDS, Packed, Section
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
@@ -292,10 +293,8 @@ def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
             end = offset + size_of_form(form)
             places = () if own in skipped else range(offset, end, 4)
             for at, value in product(places, (1 << 30, -7)):
-                changed = bytearray(data)
-                struct.pack_into("=i", changed, at, value)
-                struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
-                assert check(bytes(changed)) == Section.MARGINS, (name, own, value)
+                changed = with_numbers(data, {at: value})
+                assert check(changed) == Section.MARGINS, (name, own, value)
             offset = end
 
 
@@ -313,10 +312,7 @@ def test_values_are_captured_by_one_part_for_each_requirement(check):
     assert first < last < end
     assert struct.unpack_from("=i", data, last) == (1,)
     for number, wrong in ((1, -1), (0, Section.PARTS), (2, Section.PARTS)):
-        changed = bytearray(data)
-        struct.pack_into("=i", changed, last, number)
-        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
-        assert check(bytes(changed)) == wrong
+        assert check(with_numbers(data, {last: number})) == wrong
 
 
 @pytest.mark.compiler
@@ -327,11 +323,7 @@ def test_a_plan_of_too_many_fields_is_refused(check):
     place = sections.HEADER.size - 4 * 4
     assert struct.unpack_from("=i", data, end - 4) == struct.unpack_from("=i", data, place) == (1,)
     for fields, wrong in ((1 << 20, -1), ((1 << 20) + 1, 0), ((1 << 31) - 1, 0)):
-        changed = bytearray(data)
-        for at in (end - 4, place):
-            struct.pack_into("=i", changed, at, fields)
-        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
-        assert check(bytes(changed)) == wrong
+        assert check(with_numbers(data, {end - 4: fields, place: fields})) == wrong
 
 
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():

@@ -5,14 +5,13 @@ import struct
 from dataclasses import replace
 
 import pytest
-from tests.rvmon.core.plan_reader import Plan, layouts
+from tests.rvmon.core.plan_reader import Plan, layouts, with_numbers
 from tests.tools.coverage import with_random_coverage
 from tests.tools.watched import truths_plan
 
 import rvmon
-from rvmon.core import sections
 from rvmon.core.plan import pack
-from rvmon.core.sections import Section, hash_of
+from rvmon.core.sections import Section
 from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.formula import Factory
@@ -122,11 +121,8 @@ def changed(data, section, record, name, value):
     fields = layouts()[record]
     names = [one for one, _ in fields]
     before = "".join(form for _, form in fields[: names.index(name)])
-    made = bytearray(data)
     at = Plan(data).places[section][0] + struct.calcsize(f"={before}")
-    struct.pack_into(f"={len(value)}i", made, at, *value)
-    struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
-    return bytes(made)
+    return with_numbers(data, {at + 4 * number: one for number, one in enumerate(value)})
 
 
 def is_taken(data):
@@ -189,10 +185,8 @@ def test_axes_that_are_none_are_refused():
     at = plan.places[Section.LISTS][0] + 4 * first
     assert (count, plan.run("LISTS", first, count)) == (4, (0, 2, 2, 2))
     for axes in ((0, 0, 2, 2), (-1, 2, 2, 2), (6, 2, 2, 2), (0, 2, 2, 1 << 30)):
-        made = bytearray(data)
-        struct.pack_into("=4i", made, at, *axes)
-        struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
-        assert not is_taken(bytes(made))
+        wrong = with_numbers(data, {at + 4 * number: one for number, one in enumerate(axes)})
+        assert not is_taken(wrong)
     made = Bins(rvmon.loads(BINS).checked).plan
     large = replace(made, groups=(WatchGroup((range(7),) * 8, None),))
     with pytest.raises(RvmonError, match="combinations"):
