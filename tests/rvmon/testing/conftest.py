@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 from tests.tools.build import requirement, spec_of, timeline
-from tests.tools.differential import disagreements
+from tests.tools.compare import differences
+from tests.tools.drive import drive
 from tests.tools.forms import Maker
 
 from rvmon.spec.checked.formula import Formula
@@ -57,7 +58,7 @@ def judge(
     report = evaluate(spec, told, end=end, advances=advances, names=names, outages=outages)
     actions = sorted((*told, *advances), key=lambda one: one.t if isinstance(one, Sample) else one)
     case = Case(spec, tuple(actions), end, names, outages)
-    assert disagreements(case, Maker()) == []
+    assert differences(report, drive(Maker()(case), case)[0]) == []
     return [brief(attempt) for attempt in report.attempts]
 
 
