@@ -264,7 +264,10 @@ class FileRecording:
         if not self._unended:
             return []
         names = ", ".join(f"`{name}`" for name in sorted(self._unended))
-        remark = f"it has no end: if it was cut off, {names} was another value, so it is unknown"
+        remark = (
+            f"it has no end: if it was cut off, {names} was another value, so it is unknown; "
+            "if not, end the line"
+        )
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
