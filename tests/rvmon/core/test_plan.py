@@ -326,6 +326,16 @@ def test_a_plan_of_too_many_fields_is_refused(check):
         assert check(with_numbers(data, {end - 4: fields, place: fields})) == wrong
 
 
+@pytest.mark.compiler
+def test_a_constant_that_is_no_number_is_refused(check):
+    """An infinite one is a number."""
+    text = "spec s\nsignal x, y : real\nrequirement R\n  always x < y + 0.25\n"
+    data = packed(text).data
+    at = data.index(struct.pack("=d", 0.25), *Plan(data).places[Section.NUMBERS])
+    for high, wrong in ((0x7FF00000, -1), (0x7FF80000, Section.NUMBERS), (0x3FE00000, -1)):
+        assert check(with_numbers(data, {at: 0, at + 4: high})) == wrong
+
+
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():
     """A power of two is a double; its neighbour is not."""
     text = "spec s\nsignal n : int\nrequirement R\n  always n < {}\n"

@@ -205,11 +205,14 @@ static bool check_part(const plan *p, const part_plan *x)
                    && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));
 }
 
+/* Constants are known, so that none is NaN. */
 static bool check_numbers(const plan *p)
 {
     int64_t i;
     for (i = 0; i < p->counts[SEC_NUMBERS]; i++) {
-        if (!is_within(p->numbers[i].kind, RV_WHOLE, RV_REAL + 1)) {
+        const number_plan *own = &p->numbers[i];
+        if (!is_within(own->kind, RV_WHOLE, RV_REAL + 1)
+            || ((own->kind == RV_REAL) && (own->as.real != own->as.real))) {
             return false;
         }
     }
