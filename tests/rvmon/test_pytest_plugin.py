@@ -53,7 +53,7 @@ def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
 @pytest.mark.process
 def test_verdicts_can_be_wanted_and_recordings_checked(folder):
     """`expect` for one that has to fail, `strict` for all that have to be triggered."""
-    folder.makefile(".csv", run="t,closed,knock\n0,1,1\n3,,\n")
+    (folder.path / "run.csv").write_text("t,closed,knock\n0,1,1\n3,,\n")
     told = _run(
         folder,
         """
@@ -78,7 +78,8 @@ def test_verdicts_can_be_wanted_and_recordings_checked(folder):
 @pytest.mark.process
 def test_specifications_are_tests_of_recordings(folder):
     """One for each recording and requirement; verdicts stand in JUnit XML, also by xdist."""
-    folder.makefile(".csv", run="t,closed,knock\n0,0,1\n3,,\n", other="t,closed,knock\n0,1,\n3,,\n")
+    (folder.path / "run.csv").write_text("t,closed,knock\n0,0,1\n3,,\n")
+    (folder.path / "other.csv").write_text("t,closed,knock\n0,1,\n3,,\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
     told = folder.runpytest_subprocess("-n", "1", "--junitxml=out.xml", "-p", "no:cacheprovider")
     told.assert_outcomes(failed=1, passed=3)
