@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from itertools import pairwise
 from typing import overload
@@ -70,24 +71,21 @@ class HeldRecording(Sequence[Sample]):
         Args:
             names: all that a recording without names may lose.
         """
-        begins = sorted(self.outages, key=lambda one: one.since)
-        turns = sorted({t for one in begins for t in (one.since, one.until)})
+        waiting = deque(sorted(self.outages, key=lambda one: one.since))
+        turns = sorted({t for one in waiting for t in (one.since, one.until)})
+        lasting: list[tuple[int, Set[str]]] = []
         for piece in self.pieces:
             for part in _parts(piece, turns):
                 first = part.t if isinstance(part, Sample) else int(part.times[0])
-                while begins and begins[0].since <= first:
-                    one = begins.pop(0)
-                    lost = names if one.names is None else one.names
-                    yield Sample(one.since, dict.fromkeys(lost))
-                yield part.without(self._lost_at(first, names)) if turns else part
-
-    def _lost_at(self, t: int, names: Set[str]) -> Set[str]:
-        """What is lost at an instant, but for what is lost up to there."""
-        found: set[str] = set()
-        for one in self.outages:
-            if one.since <= t < one.until:
-                found |= names if one.names is None else one.names
-        return found
+                while waiting and waiting[0].since <= first:
+                    one = waiting.popleft()
+                    own = names if one.names is None else one.names
+                    lasting.append((one.until, own))
+                    yield Sample(one.since, dict.fromkeys(own))
+                # What comes at the last instant counts behind it.
+                lasting = [(until, own) for until, own in lasting if first < until]
+                lost = {name for _, own in lasting for name in own}
+                yield part.without(lost) if lost else part
 
 
 def _parts(piece: Batch | Sample, turns: Sequence[int]) -> Iterator[Batch | Sample]:

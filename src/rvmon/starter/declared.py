@@ -44,9 +44,9 @@ class Seen:
         match value:
             case bool():
                 self.kinds.add(Kind.BOOL)
-            case int():
+            case int() if abs(value) < 1 << 63:
                 self.kinds.add(Kind.INT)
-            case float():
+            case int() | float():
                 self.kinds.add(Kind.REAL)
             case str():
                 self.kinds.add(Kind.LABEL)

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch
+from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.readers.cells import cells_of_values
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
@@ -25,6 +25,7 @@ from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
 from rvmon.readers.places import bounded_lines, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
+from rvmon.readers.values import as_declared
 from rvmon.starter.column import Column, Profile, Shape, Shapes, Updates
 from rvmon.starter.declared import Seen, message_shapes, shapes_seen
 from rvmon.trace.sample import Sample, Value
@@ -241,10 +242,11 @@ def followed(path: str, schema: Schema, shapes: Shapes) -> Profile:
     Raises:
         TraceError: it cannot be read, or none of them has a value.
     """
-    try:
-        return _followed(FileRecording(path, schema), shapes)
-    except TimeOrderError:
-        return _followed(FileRecording(path, schema, ordered=False), shapes)
+    with named_errors(path):
+        try:
+            return _followed(FileRecording(path, schema), shapes)
+        except TimeOrderError:
+            return _followed(FileRecording(path, schema, ordered=False), shapes)
 
 
 def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
@@ -269,7 +271,7 @@ def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
     kept = tuple(one for one in columns.values() if one.updates)
     left_out = {**shapes.left_out, **silent}
     if not kept:
-        raise TraceError(f"{recording.path}: no signal or event is found ({_reasons(left_out)})")
+        raise TraceError(f"no signal or event is found ({_reasons(left_out)})")
     late, outages = recording.rows.lateness, tuple(recording.outages)
     return Profile(recording.path, kept, left_out, start, end, samples, late, outages)
 
@@ -325,10 +327,17 @@ def _of_samples(
             known = np.array([one is not None for one in values])
             found[name] = times, np.array(numbers), known
         else:
-            found[name] = columns[name].updates_in(
-                times, cells_of_values(values, kind, Gaps(), ...)
-            )
+            found[name] = columns[name].updates_in(times, _cells(values, kind))
     return np.array([one.t for one in samples], np.int64), found
+
+
+def _cells(values: Sequence[Value], kind: Kind) -> Cells:
+    """Values of a signal, none of which stands for no update; unsigned ones may take 64 bits."""
+    try:
+        return cells_of_values(values, kind, Gaps(), ...)
+    except NotPlainError:
+        reals = [one if one is None else as_declared(one, Kind.REAL) for one in values]
+        return cells_of_values(reals, Kind.REAL, Gaps(), ...)
 
 
 def _reasons(left_out: Mapping[str, str]) -> str:

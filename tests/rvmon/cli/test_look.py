@@ -4,6 +4,7 @@ import math
 import re
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from tests.tools.logs import write_ulog
@@ -153,3 +154,30 @@ def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, capsys):
     told = capsys.readouterr().out
     assert "x: numbers and text" in " ".join(told.split())
     assert "0 … 2" in told
+
+
+@pytest.mark.parametrize(
+    ("number", "code", "told"),
+    [
+        (2**63 + 5, 0, "id real always 9.22337204e+18"),
+        (10**400, 2, "large.jsonl: line 1: field `id`"),
+    ],
+    ids=["a double", "larger than one"],
+)
+def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, tmp_path, capsys):
+    """What is too large for that is an error with its line."""
+    path = tmp_path / "large.jsonl"
+    path.write_text("".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
+    assert main(["look", str(path)]) == code
+    assert told in " ".join("".join(capsys.readouterr()).split())
+
+
+def test_unsigned_numbers_take_64_bits(tmp_path, capsys):
+    """No signal of a specification has as many; they can be looked at."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["log/t"] = np.arange(2.0)
+        file["log/id"] = np.array([2**63 + 5, 2**64 - 1], np.uint64)
+    assert main(["look", str(tmp_path / "a.h5")]) == 0
+    assert "9223372036854775808 … 18446744073709551616" in re.sub(
+        r"…[^0-9]*1 Hz[^0-9]*", "… ", " ".join(capsys.readouterr().out.split())
+    )
