@@ -5,6 +5,7 @@ import sys
 from functools import partial
 from math import hypot
 from pathlib import Path
+from typing import Annotated
 
 import msgspec
 from base import Base, BrakesLate
@@ -20,9 +21,9 @@ CORRIDOR_M = 12.0
 class Person(msgspec.Struct, frozen=True):
     """Somebody who crosses the corridor."""
 
-    start_s: float
-    at_m: float
-    pace: float
+    start_s: Annotated[float, msgspec.Meta(ge=-10, le=60)]
+    at_m: Annotated[float, msgspec.Meta(ge=0, le=CORRIDOR_M)]
+    pace: Annotated[float, msgspec.Meta(ge=0.3, le=2)]
 
     def distance(self, x_m: float, seconds: float) -> float:
         """Metres from the base while the person is there."""
@@ -45,7 +46,8 @@ class Corridor:
         base = BrakesLate(CORRIDOR_M) if test.mutation == "brakes-late" else Base(CORRIDOR_M)
         states = []
         for t_ns in range(0, HORIZON_NS, STEP_NS):
-            person = min(one.distance(base.x_m, t_ns / 1e9) for one in test.people)
+            people = (one.distance(base.x_m, t_ns / 1e9) for one in test.people)
+            person = min(people, default=100.0)
             base.step(person, STEP_NS / 1e9)
             if not states or states[-1][1] != base.state:
                 states.append((t_ns, base.state))
@@ -72,17 +74,40 @@ def walks(strategy: str, count: int, seed: int) -> list[Walk]:
 
 
 def directed(_count: int, _seed: int) -> list[Walk]:
-    """Two people come so near that the base has to wait: one with a planted fault does not."""
-    people = (Person(0.0, 5.0, 0.4), Person(2.0, 3.4, 0.4))
+    """People in its way and at its goal: a base with a planted fault does not stop for them."""
+    crossing = (Person(0.0, 5.0, 0.4), Person(2.0, 3.4, 0.4))
     good = Walk(
         name="gives-way",
         strategy="directed",
         seed=0,
-        people=people,
+        people=crossing,
         expected={"B1": "P", "B2": "P", "B3": "P"},
     )
-    bad = {"name": "brakes-late", "mutation": "brakes-late", "expected": {"B2": "F"}}
-    return [good, msgspec.structs.replace(good, **bad)]
+    make = partial(msgspec.structs.replace, good, expected={"B3": "P"})
+    leaves, comes = Person(11.8, CORRIDOR_M, 1.0), Person(10.6, CORRIDOR_M, 0.5)
+    slow = {"transitions": ["slow → arrived"]}
+    late = {"transitions": ["wait → arrived"]}  # it waits as it crosses the line
+    return [
+        good,
+        make(name="brakes-late", mutation="brakes-late", expected={"B2": "F"}),
+        make(name="slow-at-the-goal", people=(leaves,), reaches=slow),
+        make(name="waits-at-the-goal", people=(comes,), reaches=late),
+    ]
+
+
+UNREACHABLE = {
+    "it stays where it has arrived": {
+        "transitions": ("arrived → drive", "arrived → slow", "arrived → wait")
+    },
+    "nobody comes or goes 1.5 m in a step of 50 ms": {
+        "transitions": ("drive → wait", "wait → drive")
+    },
+    "it is slow before anybody is near, and brakes in 0.2 s": {
+        "situation": ("near × fast", "beside × slow"),
+        "B2": ("just before the deadline", "at the deadline"),
+    },
+    "it begins far from its goal": {"`B3` edges": ("start → P",)},
+}
 
 
 campaign = cdv.Campaign(
@@ -97,10 +122,13 @@ campaign = cdv.Campaign(
     code=cdv.Code(cdv.blocks_of(HERE / "base.py")),
     states=("drive", "slow", "wait", "arrived"),
     closing=cdv.Closing(
+        written=("directed",),
         unreachable=[
-            cdv.Unreachable("transitions", f"arrived → {state}", "it stays where it has arrived")
-            for state in ("drive", "slow", "wait")
-        ]
+            cdv.Unreachable(group, item, reason)
+            for reason, groups in UNREACHABLE.items()
+            for group, items in groups.items()
+            for item in items
+        ],
     ),
     sources=(HERE,),
 )

@@ -37,13 +37,13 @@ def test_the_unmodified_robot_passes(played):
     """Exit 0: the planted fault was found, as its test knows."""
     folder, done = played
     assert (done.returncode, done.stderr) == (0, "")
-    assert "2 of 2 directed tests ended as they should" in done.stdout
+    assert "4 of 4 directed tests ended as they should" in done.stdout
     table = json.loads((folder / "out" / "table.json").read_text())
     strategies = table["robots"]["base"]["strategies"]
-    assert [one["tests"] for one in strategies.values()] == [20, 20, 1]
+    assert [one["tests"] for one in strategies.values()] == [20, 20, 3]
     assert all(one["statements"]["percent"] == 100 for one in strategies.values())
     root = ET.parse(folder / "junit.xml").getroot()  # noqa: S314 - our own
-    assert len(list(root.iter("testcase"))) == 43  # the last: nothing unreachable is hit
+    assert len(list(root.iter("testcase"))) == 45  # the last: nothing unreachable is hit
     assert not list(root.iter("failure"))
 
 
@@ -80,7 +80,18 @@ def test_a_fault_in_the_robot_fails(tmp_path):
     assert "(base): B2 #1 FAIL at" in done.stderr
 
 
+@pytest.mark.parametrize("seed", ["1", "2"])
+def test_it_closes(tmp_path, seed):
+    """Exit 0: all goals are met, and each of the others is in the list of what cannot be."""
+    words = ("close", "--tests", "150", "--jobs", "1", "--seed", seed, "--out", "out")
+    done = run(*words, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "100 % covered: 65 of 65 goals met" in done.stdout
+    closing = json.loads((tmp_path / "out" / "closing.json").read_text())
+    assert (len(closing["argued"]), closing["open"], closing["wrong"]) == (10, [], [])
+
+
 def test_it_is_small():
     """All of a second robot's testbench."""
     lines = sum(len(path.read_text().splitlines()) for path in EXAMPLE.glob("*.py"))
-    assert lines <= 160
+    assert lines <= 190

@@ -173,7 +173,8 @@ def print_closed(closed: Closed, console: Console) -> None:
     if useful:
         console.print(_table(useful, closed))
     if idle := len(closed.tests) - len(useful):
-        console.print(f"{counted(idle, 'further test')} added nothing.\n")
+        console.print(f"{counted(idle, 'further test')} added nothing.")
+    console.print()
     _print_reasons("cannot be met: the model proves it:", _by_text(closed.proved), console)
     _print_reasons("cannot be met, by the campaign's argument:", _by_text(closed.argued), console)
     if closed.wrong:
