@@ -79,6 +79,11 @@ CASES |= {
     for policy in ("strong", "weak", "pass", "fail", "strict")
 }
 
+CASES["an episode with a value that may be over at the last sample"] = case_of(
+    *("sampled", "whenever e then F[2 ns, inf) q\n  let v = x\n  at end: strong"),
+    *("0 e -q x=3; 4 e x=1; 8 e x=2; 12 ?e", 15),
+)
+
 BESIDE = "\nrequirement Q upon e then true"
 
 MANY = {

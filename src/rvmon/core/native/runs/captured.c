@@ -168,8 +168,7 @@ static void capture(run *r, rv_number *values)
     rv_number *now = r->value;
     int32_t i;
     if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
-        r->value = r->home->nothing;
-        (void)memset(r->amounts, 0, (size_t)r->part->plan->amounts * sizeof *r->amounts);
+        r->value = r->home->nothing; /* what windows come to is not known there: see left_number */
     }
     r->captured = values; /* one may be made of those before it */
     for (i = 0; i < captures.count; i++) {
