@@ -119,7 +119,7 @@ class Words:
         node = cause.node
         if cause.over and not isinstance(node, Literal):
             return self._window_over(node)
-        if cause.literal is None:
+        if cause.literal is None or cause.literal not in self._origins:
             became = "was fulfilled" if verdict else "could be fulfilled no more"
             return (f"{self._quoted(node)} {became} at ", Place(Base.DECISION))
         atom = self._atom(cause.literal)
@@ -215,6 +215,8 @@ class Words:
         if isinstance(node, Until | Release):
             low, high = self.window(node)
             window = (start + low, None if high is None else start + high)
+            if high is None and node in self._windows and not isinstance(node.left, Constant):
+                window = (t, None)  # open ones share one clock; the first may have been released
         at: tuple[int, ...] = ()
         if cause.literal is not None:
             at = (flow.since[cause.literal.proposition],)

@@ -1,0 +1,83 @@
+"""What a failure blames was false, as the law has it."""
+
+import pytest
+from tests.tools.differential import cases_of
+from tests.tools.drive import drive
+from tests.tools.forms import Compiler, Maker
+from tests.tools.judgement import Judgement
+
+import rvmon
+from rvmon.spec.checked.formula import Formula, Unary, UnaryOp
+from rvmon.spec.print import format_formula
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.attempts import Start
+from rvmon.testing.law.syntax import subformulas
+from rvmon.testing.law.truths import Truths
+from rvmon.testing.law.word import Truth
+from rvmon.verdict import Verdict
+from rvmon.verdict.attempt import Attempt, Blame, Decision
+
+PROFILE = Profile(depth=3, requirements=1, captures=False, for_each=False)
+
+
+@pytest.mark.law
+def test_what_is_blamed_was_false():
+    """Random failures: the part that the record names, at the instants that it names."""
+    make = Maker("c", Compiler())
+    blamed = 0
+    for seed in range(150):
+        for case in cases_of(f"blame/{seed}", PROFILE, TraceProfile(outages=10), 4):
+            judgement = Judgement(case)
+            report, _ = drive(make(case), case)
+            for attempt in report.attempts:
+                requirement = case.spec.requirements[attempt.requirement]
+                named = {
+                    format_formula(one): one
+                    for part in subformulas(requirement.consequent)
+                    for one in (Unary(UnaryOp.NOT, part), part)
+                }
+                blame = attempt.blame
+                if attempt.decision is Decision.PREFIX and blame and blame.subformula in named:
+                    blamed += 1
+                    start = start_of(judgement, attempt)
+                    assert was_false(start, named[blame.subformula], attempt, blame), attempt
+    assert blamed > 150
+
+
+def start_of(judgement: Judgement, attempt: Attempt) -> Start:
+    """Where an attempt began, by the law."""
+    assert attempt.verdict is Verdict.FAIL
+    followed = judgement.followings[attempt.requirement].attempts
+    return next(one.start for one in followed if one.number == attempt.number)
+
+
+def was_false(start: Start, formula: Formula, attempt: Attempt, blame: Blame) -> bool:
+    """Whether a formula was, where its window says that it began, or where it had to hold."""
+    truths = Truths(start.word, start.captured)
+    bare = formula
+    while isinstance(bare, Unary) and bare.op is UnaryOp.NOT:
+        bare = bare.operand
+    interval = getattr(bare, "interval", None)
+    first, last = blame.window
+    instants = {first, first - (interval.low if interval else 0)}
+    if last in (None, first):
+        instants |= {*blame.at, attempt.decided, attempt.decided - 1}
+    positions = [
+        max((i for i, letter in enumerate(start.word.letters) if letter.instant <= t), default=0)
+        for t in instants
+    ]
+    return any(truths.state(formula, position) is Truth.FALSE for position in positions)
+
+
+def test_an_obligation_that_was_released_is_not_blamed():
+    """That of 0 is met by `h` at 2; who knows when the one began that fails at 10."""
+    monitor = rvmon.loads(
+        "time held\nsignal p, q : bool\nevent h\n"
+        "requirement R\n  whenever p then h R[3 ns, inf) q\n"
+    ).monitor()
+    monitor.step_ns(0, {"p": True, "q": True})
+    monitor.step_ns(2, {"h": True})
+    (attempt,) = monitor.step_ns(10, {"q": False})
+    assert attempt.blame is not None
+    assert attempt.blame.window == (10, None)
