@@ -15,6 +15,8 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
+from operator import attrgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -192,11 +194,12 @@ def is_ours(path: Path) -> bool:
     return owners == {os.getuid()} and not found.st_mode & 0o022
 
 
-def file_stamps(folder: str) -> Iterator[tuple[str, int, int]]:
-    """What distinguishes the files of a folder of sources: path, bytes and time of change."""
-    for entry in _files(folder):
-        found = entry.stat()
-        yield entry.path, found.st_size, found.st_mtime_ns
+@cache
+def this_rvmon() -> str:
+    """Tells this version of rvmon from others: a checksum of its files' paths, sizes and times."""
+    files = ((one.path, one.stat()) for one in files_within(os.path.dirname(__file__)))
+    stamps = [(path, found.st_size, found.st_mtime_ns) for path, found in files]
+    return _checksum(repr(stamps).encode())
 
 
 def contents(path: Path) -> Iterator[tuple[str, str]]:
@@ -205,17 +208,18 @@ def contents(path: Path) -> Iterator[tuple[str, str]]:
     It is the same on every machine, wherever it is and whenever it was installed.
     """
     if path.is_dir():
-        for entry in _files(str(path)):
+        for entry in files_within(str(path)):
             yield os.path.relpath(entry.path, path), _checksum(Path(entry).read_bytes())
     else:
         yield path.name, _checksum(path.read_bytes())
 
 
-def _files(folder: str) -> Iterator[os.DirEntry[str]]:
+def files_within(folder: str) -> Iterator[os.DirEntry[str]]:
+    """The files of a folder of sources, and of those in it."""
     folders = [folder]
     for one in folders:  # grows
         with os.scandir(one) as entries:
-            for entry in sorted(entries, key=lambda entry: entry.name):
+            for entry in sorted(entries, key=attrgetter("name")):
                 if not entry.is_dir():
                     yield entry
                 elif entry.name != "__pycache__":

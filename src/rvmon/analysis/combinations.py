@@ -8,11 +8,16 @@ on what the shared sources show.
 
 from __future__ import annotations
 
+import operator
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
 from typing import Generic, TypeVar, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rvmon.analysis.choices import Silence, is_solved, truths_tried, values_of
 from rvmon.logic.state_formula import TRUE, Elapsed, Lapsed, Leaf, State, StateOp
@@ -37,9 +42,8 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Tru
     Returns:
         All that inputs can bring about, and perhaps more; `None` if there is too much to look at.
     """
-    letters = Letters(spec)
-    found = letters.joint([letters.table(states, lambda truths: truths)])
-    return None if found is None else frozenset(truths for (truths,) in found)
+    table = Letters(spec).table(states, lambda truths: truths)
+    return None if table is None else frozenset(table.rows.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,19 +78,25 @@ class Letters:
             size *= len(own)
         if size > MOST_COMBINATIONS:
             return None
-        read = [leaf for own in leaves.values() for leaf in own]
-        steady = {n: n.leaf.value for n in nodes if isinstance(n.leaf, Constant)}
-        # Nothing is unknown, and there is a position.
-        steady |= {n: False for n in nodes if isinstance(n.leaf, Lapsed)}
-        steady |= {n: True for n in nodes if n.leaf == Elapsed(0)}
-        derived = [node for node in nodes if not _is_free(node)]
-        rows = {}
-        for chosen in product(*shown):
-            values = dict(steady)
-            values.update(zip(read, (truth for own in chosen for truth in own), strict=True))
-            for node in derived:
-                values[node] = _value(node, values)
-            rows[chosen] = view(tuple(values[state] for state in states))
+        # Of each formula its truth in every row.
+        values: dict[State, NDArray[np.bool_]] = {}
+        for node in nodes:
+            if isinstance(node.leaf, Constant):
+                values[node] = np.full(size, node.leaf.value)
+            elif isinstance(node.leaf, Lapsed) or node.leaf == Elapsed(0):
+                # Nothing is unknown, and there is a position.
+                values[node] = np.full(size, node.leaf == Elapsed(0))
+        rest = np.arange(size)
+        for read, own in zip(reversed(leaves.values()), reversed(shown), strict=True):
+            rest, case = np.divmod(rest, len(own))
+            values.update(zip(read, np.array(own).T[:, case], strict=True))
+        for node in nodes:
+            if not _is_free(node):
+                values[node] = _value(node, [values[arg] for arg in node.args])
+        found = np.array([values[state] for state in states]).reshape(len(states), size)
+        truths = [*map(tuple, found.T.tolist())]
+        views = {one: view(one) for one in {*truths}}
+        rows = dict(zip(product(*shown), map(views.__getitem__, truths), strict=True))
         return Table(tuple(leaves), tuple(leaves.values()), rows)
 
     def joint(self, tables: Sequence[Table[T] | None]) -> frozenset[tuple[T, ...]] | None:
@@ -255,16 +265,16 @@ def _is_steady(name: str, spec: CheckedSpec) -> bool:
     return len(spec.events[name].fields) == 1 and not several
 
 
-def _value(node: State, values: Mapping[State, bool]) -> bool:
+def _value(node: State, args: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
     match node.op:
         case StateOp.NOT:
-            return not values[node.args[0]]
+            return ~args[0]
         case StateOp.AND:
-            return all(values[arg] for arg in node.args)
+            return reduce(operator.and_, args)
         case StateOp.SURE:  # nothing is unknown
-            return values[node.args[0]]
+            return args[0]
         case StateOp.OR:
-            return any(values[arg] for arg in node.args)
+            return reduce(operator.or_, args)
         case (
             StateOp.LEAF
             | StateOp.PREVIOUS

@@ -14,12 +14,13 @@ from rvmon.cdv.tables import Presentation
 from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
 from rvmon.coverage import Model, Subject
-from rvmon.errors import UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.session import load
 from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
+    from rvmon.session import Spec
     from rvmon.timed.model.network import Network
 
 
@@ -133,14 +134,23 @@ class Robot:
     spec_name: str = ""
 
     @cached_property
+    def requirements(self) -> Spec | None:
+        """What judges it, read once.
+
+        Raises:
+            SpecError: the file is wrong.
+        """
+        return None if self.spec is None else load(self.spec)
+
+    @cached_property
     def coverages(self) -> list[SpecCoverage]:
         """The coverage models of its specifications, `spec` first; their files are read once.
 
         Raises:
             RvmonError: one of the files is wrong.
         """
-        specs = [*([] if self.spec is None else [self.spec]), *self.coverage]
-        return [load(path).coverage_model for path in specs]
+        specs = [self.requirements, *map(load, self.coverage)]
+        return [one.coverage_model for one in specs if one is not None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,6 +249,27 @@ class Campaign:
     program: str = ""
     presentation: Presentation = field(default_factory=Presentation)
     closing: Closing = field(default_factory=Closing)
+
+    @property
+    def requirements(self) -> dict[str, Spec]:
+        """Of each robot that is judged, what judges it.
+
+        Raises:
+            SpecError: one of the files is wrong.
+        """
+        judging = ((name, robot.requirements) for name, robot in self.robots.items())
+        return {name: spec for name, spec in judging if spec is not None}
+
+    def requirements_of(self, robot: str) -> Spec:
+        """What judges a robot.
+
+        Raises:
+            RvmonError: nothing does, or it is wrong.
+        """
+        spec = self.robots[robot].requirements
+        if spec is None:
+            raise RvmonError(f"robot `{robot}` has no requirements: name some by --spec")
+        return spec
 
 
 _CODE = (Subject.STATEMENTS, Subject.BRANCHES)

@@ -15,7 +15,6 @@ from rvmon.cdv.summary import differences, missed
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
-from rvmon.session import load
 from rvmon.texts import shown
 from rvmon.verdict import Verdict
 
@@ -257,7 +256,7 @@ def refuse_unknown(campaign: Campaign) -> None:
         UnknownNameError: a failure is expected of what there is not, or a gate names it.
         SpecError: the requirements of a robot are wrong.
     """
-    specs = [load(robot.spec) for robot in campaign.robots.values() if robot.spec is not None]
+    specs = campaign.requirements.values()
     there_is = {
         "requirement": {name for spec in specs for name in spec.requirements},
         "strategy": {"", STRATEGY, *campaign.strategies},

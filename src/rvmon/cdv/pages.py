@@ -27,7 +27,7 @@ from rvmon.files import write_whole
 from rvmon.report.pages import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 
@@ -143,7 +143,7 @@ def write_pages(
     campaign = results.plan.campaign
     (folder / RUNS).mkdir(parents=True, exist_ok=True)
     shown = {(job.robot, job.test.name) for job in examples.jobs}
-    judged = {name: robot for name, robot in campaign.robots.items() if robot.spec is not None}
+    judged = campaign.requirements
     wanted = [
         one
         for one in results.played
@@ -151,7 +151,7 @@ def write_pages(
     ]
     written = parallel.execute(
         [_page_of(one, folder, results) for one in wanted],
-        partial(_writer, folder, judged, spool),
+        partial(_writer, folder, campaign.robots, judged, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
     )
@@ -217,11 +217,10 @@ def _page_of(one: Played, folder: Path, results: Results) -> _Page:
 
 
 def _writer(
-    folder: Path, robots: Mapping[str, Robot], spool: Path | None
+    folder: Path, robots: Mapping[str, Robot], specs: Mapping[str, Spec], spool: Path | None
 ) -> Callable[[_Page], Mapping[str, Verdict]]:
     """What writes a page, and returns the verdicts on its test."""
-    specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
-    benches = {name: Bench(name, robots[name], spec) for name, spec in specs.items()}
+    benches = {name: Bench(name, robots[name]) for name in specs}
     compared: dict[tuple[str, str], JudgedRun] = {}
 
     def compared_with(job: Job) -> JudgedRun:

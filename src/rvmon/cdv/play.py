@@ -22,14 +22,11 @@ from rvmon.cdv.test import TestError, blamed
 from rvmon.coverage import Ending, Hits
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
-from rvmon.session import load
 from rvmon.texts import shown_line
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test
-    from rvmon.coverage.monitor import SpecCoverage
-    from rvmon.session import Spec
     from rvmon.verdict.report import Report
 
 
@@ -37,7 +34,6 @@ def player(
     robots: Mapping[str, Robot],
     code: Code | None,
     control: Callable[[Any], Test | None] | None,
-    judges: Mapping[str, Judge] | None = None,
     spool: Path | None = None,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
     """What plays a job in this process: its outcome, and that of its control.
@@ -46,17 +42,12 @@ def player(
         robots: by name.
         code: whose coverage is measured.
         control: makes the control of a test.
-        judges: of the robots, where they are made already.
         spool: a folder of this user alone that gets what was recorded, for pages of all runs.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
     """
-    judges = judges or {name: judge_of(robot) for name, robot in robots.items()}
-    benches = {
-        name: Bench(name, robot, judges[name].spec, code, judges[name].coverages)
-        for name, robot in robots.items()
-    }
+    benches = {name: Bench(name, robot, code, covers=True) for name, robot in robots.items()}
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench, keeps = benches[job.robot], spool is not None
@@ -74,20 +65,6 @@ def player(
 def spooled(spool: Path, job: Job) -> Path:
     """The file of what was recorded of a test."""
     return spool / f"{job.robot}-{job.test.name}"
-
-
-class Judge(NamedTuple):
-    """What judges a robot's tests, and what is gathered of them."""
-
-    spec: Spec | None
-    coverages: Sequence[SpecCoverage]
-
-
-def judge_of(robot: Robot) -> Judge:
-    """The requirements of a robot and its coverage models, ready to watch runs."""
-    judge = Judge(None if robot.spec is None else load(robot.spec), robot.coverages)
-    Checker(*judge)  # what is compiled now is not compiled again in each process
-    return judge
 
 
 class Recorded(NamedTuple):
@@ -118,25 +95,19 @@ class Bench:
     Args:
         name: of the robot.
         robot: itself.
-        spec: judges it; `None`: nothing does.
         code: whose coverage is measured.
-        coverages: whose coverage models are gathered.
+        covers: whether what its coverage models count is gathered.
 
     Raises:
         RvmonError: what plays its tests cannot be made; the message says why.
     """
 
     def __init__(
-        self,
-        name: str,
-        robot: Robot,
-        spec: Spec | None,
-        code: Code | None = None,
-        coverages: Sequence[SpecCoverage] = (),
+        self, name: str, robot: Robot, code: Code | None = None, *, covers: bool = False
     ) -> None:
         with blamed(f"robot `{name}`: what plays its tests cannot be made", RvmonError):
             self._system: System[Any] = robot.system()
-        self._checker = Checker(spec, coverages)
+        self._checker = Checker(robot.requirements, robot.coverages if covers else ())
         self._meter = None if code is None else Meter(code)
         self._marked = code is not None and code.marked
 
@@ -295,13 +266,15 @@ def outcomes(
         RvmonError: a system cannot be made, or no process be begun.
     """
     control = campaign.control.make if campaign.control is not None and controls else None
-    judges = {name: judge_of(robot) for name, robot in campaign.robots.items()}
+    for robot in campaign.robots.values():
+        # What is compiled now is not compiled again in each process.
+        Checker(robot.requirements, robot.coverages)
     return parallel.execute(
         tests,
-        partial(player, campaign.robots, campaign.code, control, judges, spool),
+        partial(player, campaign.robots, campaign.code, control, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="test",
-        instead=partial(_without_result, judges),
+        instead=partial(_without_result, campaign.robots),
         timeout_s=campaign.timeout_s,
     )
 
@@ -321,9 +294,9 @@ def play_apart(campaign: Campaign, job: Job) -> Outcome:
         return next(results)[0]
 
 
-def _without_result(judges: Mapping[str, Judge], job: Job, ended: Ended) -> tuple[Outcome, None]:
+def _without_result(robots: Mapping[str, Robot], job: Job, ended: Ended) -> tuple[Outcome, None]:
     """The outcome of a test whose process was ended: nothing is known of it."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
-    spec = judges[job.robot].spec
+    spec = robots[job.robot].requirements
     verdicts = dict.fromkeys(spec.requirements if spec else (), Verdict.INCONCLUSIVE)
     return Outcome(verdicts, {}, (), {}, ending, ended.why, 0, {}, ended.seconds), None

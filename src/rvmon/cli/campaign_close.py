@@ -20,7 +20,7 @@ from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.output import TESTS, TEXT_COLUMNS, dated_files, left_over, typed
 from rvmon.cdv.plan import Plan, Results
 from rvmon.cdv.tables import to_json
-from rvmon.cli.campaign_run import specs_of, written
+from rvmon.cli.campaign_run import written
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.files import write_whole
 from rvmon.report.folder import made
@@ -49,7 +49,7 @@ def conduct_closing(
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
-    specs = specs_of(campaign)
+    specs = campaign.requirements
     with bar("goals", 1.0) as show:
         closed = close(
             campaign,

@@ -68,7 +68,7 @@ class _Mutants(NamedTuple):
 
 
 def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
-    from rvmon.cdv.mutation.baseline import mutated_code, mutated_spec
+    from rvmon.cdv.mutation.baseline import mutated_code
     from rvmon.cdv.mutation.python_mutants import code_mutants
     from rvmon.cdv.mutation.spec_mutants import spec_mutants
     from rvmon.cdv.mutation.tried import equivalents
@@ -83,7 +83,7 @@ def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
             equivalent = equivalents(mutated.equivalent, code)
         code = [one for one in code if arguments.only in one.identity]
     if arguments.of != "code":
-        spec = spec_mutants(mutated_spec(campaign, robot).checked)
+        spec = spec_mutants(campaign.requirements_of(robot).checked)
         spec = [one for one in spec if arguments.only in one.identity]
     if not code and not spec:
         raise UnknownNameError(f"no mutant has `{arguments.only}` in its name: --list lists all")
@@ -97,7 +97,7 @@ def _reported(
     found: _Mutants,
     arguments: Namespace,
 ) -> MutationReport:
-    from rvmon.cdv.mutation.baseline import mutated_spec, record_suite
+    from rvmon.cdv.mutation.baseline import record_suite
     from rvmon.cdv.mutation.output import MutationReport, SuiteTried
     from rvmon.cdv.mutation.play import play_mutants
     from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
@@ -105,7 +105,7 @@ def _reported(
 
     jobs = arguments.jobs or os.cpu_count() or 1
     begun = time.perf_counter()
-    spec = mutated_spec(campaign, robot)
+    spec = campaign.requirements_of(robot)
     suites = {}
     for name, tests in _suites(campaign, strategies, arguments).items():
         with bar(f"{name}: tests", len(tests)) as show:

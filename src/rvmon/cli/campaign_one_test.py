@@ -18,13 +18,13 @@ from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
 from rvmon.cli.output import busy, say_json, warn
 from rvmon.coverage import Ending
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.files import write_whole
 from rvmon.report.folder import made, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.verdict import Verdict
 
 
@@ -32,15 +32,13 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
     """Play a test file again, judge it, and return an exit code: 1 if a requirement failed."""
     job = _job(campaign, arguments)
     robot = campaign.robots[job.robot]
-    if robot.spec is None:
-        raise RvmonError(f"robot `{job.robot}` has no requirements: name some by --spec")
-    spec = load(robot.spec)
+    spec = campaign.requirements_of(job.robot)
     # A folder that cannot be written to is reported before anything is played.
     folder = made(arguments.out) if arguments.out else None
     if arguments.mcap is not None:
         refuse_mcap(arguments.mcap)
         refuse_no_file(arguments.mcap)
-    bench = Bench(job.robot, robot, spec)
+    bench = Bench(job.robot, robot)
     played = play_again(job.test, bench)
     judged = played.judged.report, played.judged.samples
     _show(arguments.format, spec, played)

@@ -29,7 +29,7 @@ from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ def conduct(
         else:
             chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
     # Wrong requirements, and coverage models, are reported before anything is played.
-    specs = specs_of(campaign)
+    specs = campaign.requirements
     for name in campaign.robots if folder is not None else ():
         coverage_model(campaign, name)
     planned = len(chosen.jobs())
@@ -151,17 +151,6 @@ def _refuse_nothing(chosen: Plan) -> None:
     made_by = ", ".join(f"`{name}`" for name in chosen.tests)
     why = f"all of {made_by} are for the robot {written_for}" if tests else f"{made_by} makes none"
     raise TestError(f"no test for the robot {robots}: {why}: choose another robot or strategy")
-
-
-def specs_of(campaign: Campaign) -> dict[str, Spec]:
-    """The requirements of its robots, of those that are judged.
-
-    Raises:
-        SpecError: one of the files is wrong.
-    """
-    return {
-        name: load(robot.spec) for name, robot in campaign.robots.items() if robot.spec is not None
-    }
 
 
 def written(

@@ -22,7 +22,7 @@ import rvmon
 from rvmon.coverage import Hits, Model, count_of, merged, share
 from rvmon.errors import RvmonError
 from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
-from rvmon.files import file_stamps, write_whole
+from rvmon.files import files_within, write_whole
 from rvmon.reproducer import (
     definition_files,
     expect_definitions_inside,
@@ -188,7 +188,7 @@ def sha256_of(path: Path, *more: Path) -> str:
     if path.is_file():
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
-    files = [Path(name) for name, _, _ in file_stamps(str(path))]
+    files = [Path(one) for one in files_within(str(path))]
     lines = sorted(f"{sha256_of(one)}  {one.relative_to(path).as_posix()}\n" for one in files)
     return hashlib.sha256("".join(lines).encode()).hexdigest()
 

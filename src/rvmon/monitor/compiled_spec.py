@@ -10,10 +10,9 @@ import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.files import cache_folder, file_stamps, keep, read_kept
+from rvmon.files import cache_folder, keep, read_kept, this_rvmon
 from rvmon.spec.checked.plain_data import told_apart
 from rvmon.spec.checked.specification import CheckedSpec
 
@@ -72,9 +71,6 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     return compiled
 
 
-_HERE = Path(__file__).parents[1]
-
-
 @dataclass(frozen=True, slots=True)
 class Kept:
     """A packed plan, as it is kept in the cache.
@@ -107,7 +103,7 @@ class Place:
         if folder is None:
             self._path = None
             return
-        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), *how])
+        content = json.dumps([this_rvmon(), told_apart(spec), *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"
 

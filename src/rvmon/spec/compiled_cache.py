@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.files import cache_folder, file_stamps, keep, read_kept
+from rvmon.files import cache_folder, keep, read_kept, this_rvmon
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.texts import text_of_file, tree_of
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from rvmon.diagnostics import Diagnostic
 
     Compiled = tuple[CheckedSpec, tuple[Diagnostic, ...]]
-
-_HERE = Path(__file__).parent
 
 
 def compile_cached(
@@ -30,7 +28,7 @@ def compile_cached(
 ) -> Compiled:
     """As `rvmon.spec.compile.compile_text`, which is asked once for each text.
 
-    What is kept is keyed by text, name, constants, folder, and the compiler's files by size and
+    What is kept is keyed by text, name, constants, folder, and rvmon's files by size and
     time. With it stand the texts of the files that were imported: it is good as long as these may
     be imported and say the same.
     """
@@ -43,8 +41,8 @@ def compile_cached(
 
     if folder is None:
         return _compiled(text, name, constants, directory, read)
-    about = [name, text, sorted((constants or {}).items()), str(directory or "")]
-    content = json.dumps([*file_stamps(str(_HERE)), *about])
+    about = name, text, sorted((constants or {}).items()), str(directory or "")
+    content = json.dumps([this_rvmon(), *about])
     path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
     found = _read(path, directory or Path())
     if found is None:

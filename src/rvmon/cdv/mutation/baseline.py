@@ -18,7 +18,7 @@ from rvmon.cdv.test import Test
 from rvmon.coverage import Subject
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.verdict import Verdict
 
 
@@ -62,11 +62,9 @@ class Difference:
     verdicts: tuple[tuple[str, str, str], ...] = ()
 
 
-def recorder(
-    name: str, robot: Robot, spec: Spec, code: Code | None = None
-) -> Callable[[Test], Recorded]:
+def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Test], Recorded]:
     """What plays tests of a robot in this process; `code`: whose statements are measured."""
-    bench = Bench(name, robot, spec, code)
+    bench = Bench(name, robot, code)
 
     def play(test: Test) -> Recorded:
         played = bench.play(test, keeps=True)
@@ -201,18 +199,6 @@ def mutated_code(campaign: Campaign) -> Code:
     return campaign.code
 
 
-def mutated_spec(campaign: Campaign, robot: str) -> Spec:
-    """The requirements of a robot.
-
-    Raises:
-        RvmonError: it has none, or they are wrong.
-    """
-    path = campaign.robots[robot].spec
-    if path is None:
-        raise RvmonError(f"robot `{robot}` has no requirements: name some by --spec")
-    return load(path)
-
-
 def record_suite(
     campaign: Campaign,
     robot: str,
@@ -237,14 +223,14 @@ def record_suite(
     """
     under_test = campaign.robots[robot]
     code = mutated_code(campaign)
-    spec = mutated_spec(campaign, robot)
+    spec = campaign.requirements_of(robot)
     own = [one for one in tests if one.mutation is None and one.robot in (None, robot)]
     recorded: dict[str, Recorded] = {}
     left_out: dict[str, str] = {}
     with closing(
         parallel.execute(
             own,
-            partial(recorder, robot, under_test, spec, code),
+            partial(recorder, robot, under_test, code),
             jobs=jobs,
             what="test",
             instead=_ended,

@@ -177,7 +177,7 @@ _Task = tuple[Mutant, Sequence[str]]
 def _load_what_runs_need(suite: Suite) -> None:
     """Play the quickest test here, so that not each process loads the same modules anew."""
     quickest = min(suite.recorded, key=lambda name: suite.recorded[name].cpu_s)
-    Bench(suite.name, suite.robot, suite.spec).play(suite.tests[quickest])
+    Bench(suite.name, suite.robot).play(suite.tests[quickest])
 
 
 def _begin(
@@ -196,7 +196,7 @@ def _tried(suite: Suite, sources: dict[str, str], every: bool, keep: bool, task:
     findings: list[Finding] = []
     first = failing = None
     played = 0
-    play = recorder(suite.name, suite.robot, suite.spec)
+    play = recorder(suite.name, suite.robot)
     for name in reaching:
         played += 1
         was = suite.recorded[name]

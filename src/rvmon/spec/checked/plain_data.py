@@ -9,7 +9,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from functools import cache
+from functools import cache, partial
 from types import ModuleType
 from typing import Any
 
@@ -77,8 +77,7 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
     if names is not None:
         return [name, *[_to_plain(getattr(value, one), sources) for one in names]]
     if isinstance(value, Mapping):
-        pairs = ([_to_plain(key, sources), _to_plain(one, sources)] for key, one in value.items())
-        return ["dict", *pairs]
+        return ["dict", *(_to_plain(pair, sources) for pair in value.items())]
     if type(value) in (tuple, frozenset):
         return [name, *(_to_plain(one, sources) for one in value)]
     raise TypeError(f"a {name} is no part of a specification")
@@ -94,24 +93,25 @@ def from_plain(data: Any) -> Any:
 
 
 def _from_plain(data: Any, sources: list[Source]) -> Any:
-    if not isinstance(data, list):
+    if type(data) is not list:
         return data
     name, *rest = data
+    if name == "same":
+        return sources[rest[0]]
+    values = [_from_plain(one, sources) if type(one) is list else one for one in rest]
     match name:
-        case "same":
-            return sources[rest[0]]
         case "dict":
-            return {_from_plain(key, sources): _from_plain(own, sources) for key, own in rest}
+            return dict(values)
         case "tuple":
-            return tuple([_from_plain(one, sources) for one in rest])
+            return tuple(values)
         case "frozenset":
-            return frozenset(_from_plain(one, sources) for one in rest)
+            return frozenset(values)
     class_ = _class_named(name)
     if class_ is None:
         raise LookupError(f"no class `{name}`")
     if issubclass(class_, Enum):
         return class_[rest[0]]
-    made = class_(*[_from_plain(one, sources) for one in rest])
+    made = class_(*values)
     if isinstance(made, Source):
         sources.append(made)
     return made
@@ -128,11 +128,10 @@ def told_apart(spec: specification.CheckedSpec) -> str:
 def _parts(value: Any) -> Any:
     """What something is made of, for a JSON text: one level, which is gone when it is written."""
     own: Any = type(value)
-    if own in (Source, Span):
-        return None
     names = _attributes(own)
     if names is not None:
-        return {own.__name__: [getattr(value, name) for name in names]}
+        parts = map(partial(getattr, value), names)
+        return {own.__name__: [None if type(one) in (Source, Span) else one for one in parts]}
     if own is frozenset:
         return sorted(value)
     raise TypeError(f"a {own.__name__} is no part of a specification")

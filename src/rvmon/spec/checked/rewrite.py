@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar, cast
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from rvmon.diagnostics import Span
 from rvmon.spec.checked.formula import Binary, Constant, Formula, Numeric, Unary
@@ -91,13 +91,12 @@ def without_spans(part: Part) -> Part:
     >>> without_spans(Constant(True, Span(Source("", ""), 0, 0)))
     Constant(value=True, span=None)
     """
-    changed: dict[str, Any] = {}
-    for one in fields(part):
-        value = getattr(part, one.name)
-        if one.name == "span":
-            changed["span"] = None
-        elif isinstance(value, tuple):
-            changed[one.name] = tuple(map(without_spans, value))
-        elif is_dataclass(value) and not isinstance(value, type):
-            changed[one.name] = without_spans(cast(Any, value))
-    return replace(part, **changed)
+    values: list[Any] = []
+    for name in part.__match_args__:
+        value = getattr(part, name)
+        if isinstance(value, tuple):
+            value = tuple(map(without_spans, value))
+        elif hasattr(value, "__match_args__"):
+            value = None if name == "span" else without_spans(value)
+        values.append(value)
+    return type(part)(*values)
