@@ -25,7 +25,7 @@ from rvmon.logic.formula import (
 from rvmon.logic.letters import TruthValue, holds
 from rvmon.logic.progress import Phase, after, instance, phase, step
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
-from rvmon.logic.state_formula import State
+from rvmon.logic.state_formula import FALSE, TRUE, State
 from rvmon.trace.time import format_instant, format_ticks
 
 AT_DECISION = -2
@@ -181,12 +181,17 @@ class Place:
 class Turned:
     """A placeholder: `was` or `became` true or false, as the proposition did at the decision.
 
+    It did not become so if it was at the trigger: with that, `whenever` may make one proposition of
+    it, which is otherwise while the trigger is not known.
+
     Attributes:
         proposition: which.
+        text: its text in the specification.
         seen: `true` or `false`.
     """
 
     proposition: State
+    text: str
     seen: str
 
 
@@ -223,6 +228,7 @@ class TruthValues:
         values: by proposition, its truth value.
         since: by proposition, the position since which it has had this value.
         before: by proposition and value, the last position at which it had another value.
+        at_trigger: by text, the truth value of what the requirement reads at the trigger.
     """
 
     origin: int
@@ -231,6 +237,7 @@ class TruthValues:
     values: Mapping[State, int]
     since: Mapping[State, int]
     before: Mapping[tuple[State, int], int | None]
+    at_trigger: Mapping[str, int]
 
     def last_with(self, proposition: State, value: int, t: int) -> int | None:
         """The last position up to `t`, not before the present one, with a value."""
@@ -269,7 +276,8 @@ def rendered(
                 return format_ticks(ticks) if base is Base.AGE else told(ticks)
             case Turned(proposition=proposition, seen=seen):
                 since = flow.since[proposition]
-                verb = "became" if start < since == decided else "was"
+                was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
+                verb = "became" if start < since == decided and not was_so else "was"
                 long = f" (since {told(since)})" if since < decided else ""
                 return f"{verb} {seen} at {told(decided)}{long}"
             case AfterTrigger():

@@ -166,10 +166,11 @@ class Told:
             before[state, FALSE], before[state, TRUE] = map(_instant, words[at + 1 : at + 3])
             at += 3
         held = dict(zip(propositions, values, strict=True))
+        then = dict(zip(self._texts, self._then(note), strict=True))
         return (
             leaves,
             values,
-            TruthValues(*(origin, self._gap, _instant(words[1]), held, since, before)),
+            TruthValues(*(origin, self._gap, _instant(words[1]), held, since, before), then),
         )
 
     def _letters(self, values: Sequence[int]) -> tuple[int, int]:

@@ -129,7 +129,8 @@ class Words:
         if atom.is_event:
             seen = (f"{atom.quoted} {atom.was(False)} at ", Place(Base.DECISION))
         else:
-            seen = (f"{atom.quoted} ", Turned(cause.literal.proposition, atom.truth(False)))
+            turned = Turned(cause.literal.proposition, atom.quoted.strip("`"), atom.truth(False))
+            seen = (f"{atom.quoted} ", turned)
         return (*seen, *self._asked(node, atom))
 
     def _in_time(self, node: Literal | Until | Release) -> Sentence:
