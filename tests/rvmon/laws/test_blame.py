@@ -86,10 +86,11 @@ def test_an_obligation_that_was_released_is_not_blamed():
 def test_what_was_false_at_the_trigger_did_not_become_so():
     """Whether `e` was there is known at 9 alone: `p` was false all the time."""
     monitor = rvmon.loads(
-        "time sampled\nsignal p : bool\nevent e\nrequirement R\n  whenever once[1 ns, 5 ns] e then p\n"
+        "time sampled\nsignal p : bool\nevent e\n"
+        "requirement R\n  whenever once[1 ns, 5 ns] e then p\n"
     ).monitor()
     for t, values in (1, {"p": True}), (4, {"e": None}), (5, {"p": False}), (8, {"e": True}):
-        assert monitor.step_ns(t, values) == []
+        assert not monitor.step_ns(t, values)
     (attempt,) = monitor.step_ns(9, {})
     assert attempt.triggered == 5
     assert attempt.reason == "`p` was false at 8 ns; it had to be true then"
