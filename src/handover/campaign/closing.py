@@ -103,5 +103,12 @@ def _unreachable() -> tuple[Unreachable, ...]:
     )
 
 
-UNREACHABLE = _unreachable()
+UNREACHABLE = (
+    *_unreachable(),
+    *(
+        Unreachable(name, item, f"the model proves it: {query}", robot="correct", by_model=True)
+        for name, query in _CLAIMS.items()
+        for item in (JUST_BEFORE, AT)
+    ),
+)
 """What no test of the correct robot can show: a test that does is an error of that file."""

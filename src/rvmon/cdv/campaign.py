@@ -40,12 +40,14 @@ class Unreachable:
             lead there, `text → text` for the branch between two.
         reason: for people.
         robot: of this robot only; empty: of any.
+        by_model: `close` asks the model for the proof; without it the item is open there.
     """
 
     group: str
     item: str
     reason: str
     robot: str = ""
+    by_model: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,7 +279,7 @@ _ARROW = " → "
 
 
 def unreachable_items(
-    campaign: Campaign, robot: str, model: Model, *, whole: bool = False
+    campaign: Campaign, robot: str, model: Model, *, closing: bool = False
 ) -> dict[tuple[str, str], str]:
     """The items of a model that a campaign calls unreachable, each with the reason.
 
@@ -285,8 +287,9 @@ def unreachable_items(
         campaign: what says so.
         robot: of its robots the one whose tests are meant.
         model: what there is to be covered.
-        whole: the model has all that is ever measured: what it lacks there is not. Of any other,
-            such as one without the edges that closing measures, that is passed over.
+        closing: the model has all that is ever measured: what it lacks there is not. Of any other,
+            such as one without the edges that closing measures, that is passed over. What is to be
+            proved is left out: that is for closing to ask.
 
     Raises:
         UnknownNameError: nothing in the model is called so.
@@ -296,7 +299,7 @@ def unreachable_items(
         if one.robot not in ("", robot):
             continue
         items = [*_named(one, model)]
-        if not items and whole:
+        if not items and closing:
             place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
             known = [
                 f"{name}: {item}" for name, group in model.groups.items() for item in group.items
@@ -306,7 +309,8 @@ def unreachable_items(
                 f"the campaign calls unreachable what there is not: {place}: nothing that is "
                 f"measured is called so; {fix}"
             )
-        found |= dict.fromkeys(items, one.reason)
+        if not (closing and one.by_model):
+            found |= dict.fromkeys(items, one.reason)
     return found
 
 

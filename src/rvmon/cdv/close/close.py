@@ -157,7 +157,7 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
     model = coverage_model(campaign, robot)
     if witnesses is not None:
         model = model_of([*model.groups.values(), *witnesses.groups])
-    return Goals(model, unreachable_items(campaign, robot, model, whole=True))
+    return Goals(model, unreachable_items(campaign, robot, model, closing=True))
 
 
 def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:

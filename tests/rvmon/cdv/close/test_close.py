@@ -8,10 +8,11 @@ import msgspec
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
+from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable, unreachable_items
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.close.goals import EDGES
 from rvmon.cdv.close.outcome import print_closed
+from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.test import TestError
 from rvmon.coverage import Ending
 from rvmon.errors import ModelError, UnknownNameError
@@ -251,6 +252,22 @@ def test_runs_of_the_model_become_tests_and_its_answers_proofs(dials):
     edges = {name for group, name in closed.tests[1].goals if group == EDGES}
     assert edges == {"person: choosing → left_is_up", "person: left_is_up → done"}
     assert ("edges of the model", "machine: off → on") not in closed.open
+
+
+@pytest.mark.parametrize(("query", "closed_by"), [("E<> left == 3", "proved"), ("", "open")])
+def test_what_the_model_is_to_prove_is_open_without_the_proof(dials, query, closed_by):
+    """A campaign that is only played takes the proof as given; `close` asks for it."""
+    goal = ("both", "one × two")
+    campaign = dials(model=model(lambda *names: query if names == goal else ""))
+    given = Unreachable(*goal, "the model proves it", by_model=True)
+    campaign = replace(campaign, closing=replace(campaign.closing, unreachable=[given]))
+    assert goal in unreachable_items(campaign, "machine", coverage_model(campaign, "machine"))
+    closed = close(campaign, "machine", jobs=1, budget=Budget(tests=1))
+    assert (goal in closed.proved, goal in closed.open) == (
+        closed_by == "proved",
+        closed_by == "open",
+    )
+    assert closed.argued == {}
 
 
 def test_edges_are_shown_only_by_tests_that_go_their_way(dials):
