@@ -41,7 +41,7 @@ bool grow_pool(home *h, int64_t wanted)
     return true;
 }
 
-int32_t place_taken(run *r)
+int32_t new_attempt(run *r)
 {
     home *h = r->home;
     int32_t at = h->free_slot;
@@ -56,7 +56,7 @@ int32_t place_taken(run *r)
     return at;
 }
 
-void give_back(home *h, int32_t at)
+void free_attempt(home *h, int32_t at)
 {
     attempt_at(h, at)->next = h->free_slot;
     h->free_slot = at;
@@ -90,7 +90,7 @@ bool is_sure(const run *r, int32_t index)
 }
 
 /* Take the truth of the trigger of the attempt that runs, at `t`. */
-static void see(run *r, int32_t index, int32_t at, int64_t t)
+static void update_doubt_of_trigger(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
     if (r->truth[r->part->judges[index].running] == IS_UNKNOWN) {
@@ -116,7 +116,7 @@ void leave_episode(run *r, int32_t index)
 }
 
 /* Take the truth of the trigger of an episode, before the attempts see the position. */
-void look_at(run *r, int32_t index, int64_t t)
+void take_episode_trigger(run *r, int32_t index, int64_t t)
 {
     const judge_plan *j = &r->part->judges[index];
     const int32_t current = r->judges[index].current;
@@ -127,7 +127,7 @@ void look_at(run *r, int32_t index, int64_t t)
         }
         leave_episode(r, index);
     } else if (current >= 0) {
-        see(r, index, current, t);
+        update_doubt_of_trigger(r, index, current, t);
     } else {
         /* None runs, or its attempt has failed. */
     }
@@ -193,11 +193,11 @@ static void unlink(run *r, int32_t index, int32_t before, int32_t at)
 }
 
 /* Take an attempt that is decided out of those of a judge. */
-void leave(run *r, int32_t index, int32_t before, int32_t at)
+void remove_attempt(run *r, int32_t index, int32_t before, int32_t at)
 {
     unlink(r, index, before, at);
     if (r->part->plan->captured == 0) {
-        give_back(r->home, at);
+        free_attempt(r->home, at);
     }
 }
 
@@ -208,14 +208,14 @@ bool is_undecidable(const attempt *x)
 }
 
 /* Put an attempt that stays open for good where nobody comes by until the end. */
-void lay_aside(run *r, int32_t index, int32_t before, int32_t at)
+void move_to_undecidable(run *r, int32_t index, int32_t before, int32_t at)
 {
     unlink(r, index, before, at);
-    lay_down(r, index, at);
+    add_undecidable(r, index, at);
 }
 
 /* Put an attempt there that is in no list. */
-void lay_down(run *r, int32_t index, int32_t at)
+void add_undecidable(run *r, int32_t index, int32_t at)
 {
     judge *j = &r->judges[index];
     attempt_at(r->home, at)->next = j->undecidable;
@@ -241,7 +241,7 @@ int32_t next_open(const run *r, int32_t index, int32_t at)
 }
 
 /* Whether the rule for the end of a trace makes an attempt true. */
-static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
+static bool holds_at_trace_end(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
     if (is_chained(r, index)) {
         return chain_outlasts(r, index, x, end, reached);
@@ -253,7 +253,7 @@ static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_
 }
 
 /* The number that an attempt is told of by: those in doubt have numbers of their own. */
-uint32_t told_number(const run *r, int32_t at)
+uint32_t reported_number(const run *r, int32_t at)
 {
     const attempt *x = attempt_at(r->home, at);
     const bool apart = r->part->plan->captured > 0;
@@ -269,11 +269,11 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
     const bool cannot_pass = x->cannot_pass || (runs && is_true(r, j->unborn));
     bool may_be_over = !x->sure || (runs && x->trigger_unknown);
     const int64_t now = stamp_of_end(end, reached);
-    int32_t state = (!cannot_pass && is_kept(r, index, x, end, reached)) ? 1 : 0;
+    int32_t state = (!cannot_pass && holds_at_trace_end(r, index, x, end, reached)) ? 1 : 0;
     may_be_over = may_be_over || ((r->cut < NEVER) && x->trigger_unknown);
     state |= (cannot_pass || (x->location == FAILED)) ? 2 : 0;
     state |= (may_be_over || (x->parted && (x->better == PASSED))) ? 4 : 0;
-    report(r, index, x, told_number(r, at), (uint8_t)(j->outcomes[state] & 3),
+    report(r, index, x, reported_number(r, at), (uint8_t)(j->outcomes[state] & 3),
            (uint8_t)(j->outcomes[state] >> 2), end,
            (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, cannot_pass, end));
 }

@@ -25,27 +25,27 @@ bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int
 bool is_true(const run *r, int32_t node);
 bool is_current(const run *r, int32_t index, int32_t at);
 bool grow_pool(home *h, int64_t wanted);
-int32_t place_taken(run *r);
-void give_back(home *h, int32_t at);
+int32_t new_attempt(run *r);
+void free_attempt(home *h, int32_t at);
 void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
 bool is_sure(const run *r, int32_t index);
 bool runs_on(const run *r, int32_t index);
 void leave_episode(run *r, int32_t index);
-void look_at(run *r, int32_t index, int64_t t);
+void take_episode_trigger(run *r, int32_t index, int64_t t);
 void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
               int64_t note);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
-void leave(run *r, int32_t index, int32_t before, int32_t at);
+void remove_attempt(run *r, int32_t index, int32_t before, int32_t at);
 bool is_undecidable(const attempt *x);
-void lay_down(run *r, int32_t index, int32_t at);
-void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
+void add_undecidable(run *r, int32_t index, int32_t at);
+void move_to_undecidable(run *r, int32_t index, int32_t before, int32_t at);
 int32_t next_open(const run *r, int32_t index, int32_t at);
-uint32_t told_number(const run *r, int32_t at);
+uint32_t reported_number(const run *r, int32_t at);
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
 
 /* ---- starts.c: attempts as they begin */
-bool starts(run *r, int32_t index, uint8_t truth);
-bool watches(const run *r, int32_t index);
+bool take_trigger(run *r, int32_t index, uint8_t truth);
+bool needs_every_position(const run *r, int32_t index);
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
 void enter(run *r, int32_t index, int32_t at, int64_t t);
@@ -68,7 +68,7 @@ void queue_visit(run *r, int32_t index, int64_t t);
 void queue_pass(run *r, int32_t index, int64_t t);
 void queue_reach(run *r, int32_t index, int64_t t);
 bool queue_begin(run *r, int32_t index, int64_t t);
-void loosen_queue(run *r, int32_t index);
+void dissolve_queue(run *r, int32_t index);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);
 const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
@@ -106,7 +106,7 @@ static inline queued *item(const queue *q, int32_t i)
 }
 
 /* ---- queue.c */
-queued *next_queued(rv_monitor *m, queue *q, int32_t i, bool append);
-void tell_of_decision(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t);
+queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append);
+void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t);
 
 #endif

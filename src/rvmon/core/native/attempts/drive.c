@@ -34,9 +34,9 @@ typedef struct {
     int32_t how;
     int64_t from;
     int64_t t;
-} journey;
+} drive_context;
 
-static int64_t drive_token(const journey *g, token *k, int32_t letter)
+static int64_t drive_token(const drive_context *g, token *k, int32_t letter)
 {
     const machine *a = g->a;
     int64_t due;
@@ -65,7 +65,7 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
 }
 
 /* Decide an attempt whose run, with a letter, has come to that at `t`. */
-static void decide_driven(const journey *g, int32_t at, bool passed, int32_t letter, int64_t t)
+static void decide_driven(const drive_context *g, int32_t at, bool passed, int32_t letter, int64_t t)
 {
     if ((g->r->truth_log != NULL) && (g->how == BY_RUN)) {
         hold_until(g->r->home->monitor, g->a, letter, g->from, t);
@@ -74,7 +74,7 @@ static void decide_driven(const journey *g, int32_t at, bool passed, int32_t let
 }
 
 /* Drive one attempt of which some reading of the unknown may differ; false if it was decided. */
-static bool drive_readings(const journey *g, int32_t at, attempt *x)
+static bool drive_readings(const drive_context *g, int32_t at, attempt *x)
 {
     const machine *a = g->a;
     const int32_t clocks = a->clocks;
@@ -124,7 +124,7 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
 }
 
 /* Drive one attempt, up to when it is due; false if it was decided. */
-static bool drive(const journey *g, int32_t at, attempt *x)
+static bool drive(const drive_context *g, int32_t at, attempt *x)
 {
     int64_t due;
     token k;
@@ -144,9 +144,9 @@ static bool drive(const journey *g, int32_t at, attempt *x)
     return true;
 }
 
-static journey journey_of(run *r, int32_t index, int32_t how, int64_t from, int64_t t)
+static drive_context drive_context_of(run *r, int32_t index, int32_t how, int64_t from, int64_t t)
 {
-    journey g;
+    drive_context g;
     g.r = r;
     g.j = &r->judges[index];
     g.a = &r->part->machines[index];
@@ -161,7 +161,7 @@ static journey journey_of(run *r, int32_t index, int32_t how, int64_t from, int6
  * stay as they are, too. */
 static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t t, bool was)
 {
-    const journey g = journey_of(r, index, how, from, t);
+    const drive_context g = drive_context_of(r, index, how, from, t);
     judge *j = g.j;
     const bool some = (g.a->gap > 0) && was && j->sorted;
     int64_t next_due = NEVER;
@@ -174,9 +174,9 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         const int32_t next = x->next;
         const bool waits = some && (x->due > t); /* and so do all behind it */
         if (!waits && !drive(&g, at, x)) {
-            leave(r, index, before, at);
+            remove_attempt(r, index, before, at);
         } else if (is_undecidable(x)) {
-            lay_aside(r, index, before, at);
+            move_to_undecidable(r, index, before, at);
         } else {
             next_due = least(next_due, x->due);
             j->sorted = j->sorted && (latest <= x->due);
@@ -227,7 +227,7 @@ void pass_ticks(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
     if (!queue_is_empty(j)) {
-        loosen_queue(r, index);
+        dissolve_queue(r, index);
     }
     if (has_attempts(j)) {
         drive_all(r, index, BY_RUN, j->position + 1, t, false);
@@ -275,7 +275,7 @@ void visit_judge(run *r, int32_t index, int64_t t)
             queue_pass(r, index, t - 1);
         }
         if (letter != other) {
-            loosen_queue(r, index);
+            dissolve_queue(r, index);
         }
     }
     if (!was || !has_attempts(j) || (r->rules.due[index] <= t) || j->restless || j->slides) {
@@ -328,7 +328,7 @@ void reach_judge(run *r, int32_t index, int64_t t)
 
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t)
 {
-    const journey g = journey_of(r, index, BY_STEP, t, t);
+    const drive_context g = drive_context_of(r, index, BY_STEP, t, t);
     attempt *x = attempt_at(r->home, at);
     if (x->sure && (g.j->letter == g.j->other)) {
         count_begin(r, index, t);

@@ -63,7 +63,7 @@ static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t
 }
 
 /* Tell of one that was decided, which stood in a location before. */
-void tell_of_decision(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
+void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
 {
     const attempt *x = attempt_of_queued(g->r, one, location);
     int64_t note = -1;
@@ -95,7 +95,7 @@ static bool widen_queue(rv_monitor *m, queue *q)
 }
 
 /* One that is queued; with `append`, it is put behind those that there are. NULL: memory is short. */
-queued *next_queued(rv_monitor *m, queue *q, int32_t i, bool append)
+queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
 {
     if (append) {
         if ((q->count == q->room) && !widen_queue(m, q)) {
@@ -128,10 +128,10 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     x.number = g.j->count;
     x.spare = 0;
     if (k.location <= PASSED) {
-        tell_of_decision(&g, &x, g.a->initial, k.location == PASSED, t);
+        report_queued(&g, &x, g.a->initial, k.location == PASSED, t);
         return true;
     }
-    made = next_queued(r->home->monitor, q, q->count, true);
+    made = queue_slot(r->home->monitor, q, q->count, true);
     if (made == NULL) {
         return false;
     }
@@ -155,7 +155,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
 }
 
 /* Drive those that are queued one by one from now on: something unknown matters. */
-void loosen_queue(run *r, int32_t index)
+void dissolve_queue(run *r, int32_t index)
 {
     const queueing g = queueing_of(r, index);
     int32_t from = 0;
@@ -164,7 +164,7 @@ void loosen_queue(run *r, int32_t index)
         const int32_t end = from + g.q->segments[k].count;
         for (; from < end; from++) {
             const queued *one = item(g.q, from);
-            const int32_t at = place_taken(r);
+            const int32_t at = new_attempt(r);
             attempt *x;
             if (at < 0) {
                 break;

@@ -60,7 +60,7 @@ static void tell_decided(const queueing *g, int32_t location, int32_t from, int3
 {
     int32_t i;
     for (i = from; i < end; i++) {
-        tell_of_decision(g, item(g->q, i), location, passed, t);
+        report_queued(g, item(g->q, i), location, passed, t);
     }
 }
 
@@ -79,9 +79,9 @@ typedef struct {
     int32_t count;
     int32_t base;              /* the place of the first item that stays */
     int32_t kept;
-} sorting;
+} regrouping;
 
-static void keep_items(const queueing *g, sorting *s, int32_t location, int32_t from, int32_t end)
+static void keep_items(const queueing *g, regrouping *s, int32_t location, int32_t from, int32_t end)
 {
     const int32_t count = end - from;
     int32_t i;
@@ -104,7 +104,7 @@ static void keep_items(const queueing *g, sorting *s, int32_t location, int32_t 
     s->kept += count;
 }
 
-static void take_sorted(const queueing *g, const sorting *s)
+static void replace_segments(const queueing *g, const regrouping *s)
 {
     queue *q = g->q;
     if (q->room > 0) {
@@ -169,9 +169,9 @@ static void set_queue_due(const queueing *g, int64_t t, bool moving)
 
 /* Take all that are queued through what the letter says at the position at `t`, or, between positions, what
  * time alone decides then. */
-static void sort_queue(const queueing *g, int64_t t, bool is_position)
+static void step_queue(const queueing *g, int64_t t, bool is_position)
 {
-    sorting s;
+    regrouping s;
     int32_t from = 0;
     int32_t k;
     s.count = s.base = s.kept = 0;
@@ -193,7 +193,7 @@ static void sort_queue(const queueing *g, int64_t t, bool is_position)
             from = until;
         }
     }
-    take_sorted(g, &s);
+    replace_segments(g, &s);
     set_queue_due(g, t, is_position);
 }
 
@@ -201,7 +201,7 @@ static void sort_queue(const queueing *g, int64_t t, bool is_position)
 void queue_visit(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
-    sort_queue(&g, t, true);
+    step_queue(&g, t, true);
 }
 
 /* Let time come to `t`; if there is a position at every tick, up to there with the letter as it is. */
@@ -211,10 +211,10 @@ void queue_pass(run *r, int32_t index, int64_t t)
     while ((g.q->count > 0) && (r->rules.due[index] <= t)) {
         const int64_t due = r->rules.due[index];
         if (GAP(r) == 0) {
-            sort_queue(&g, due, false);
+            step_queue(&g, due, false);
             set_restless(r, index);
         } else {
-            sort_queue(&g, due, true);
+            step_queue(&g, due, true);
         }
     }
     if (g.q->count == 0) {
@@ -227,7 +227,7 @@ void queue_reach(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     if ((g.q->count > 0) && (r->rules.due[index] <= t)) {
-        sort_queue(&g, t, false);
+        step_queue(&g, t, false);
         set_restless(r, index);
         if (GAP(r) > 0) {
             set_rule_due(r, index, (g.q->count > 0) ? least(r->rules.due[index], t) : NEVER);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Whether a judge has to see positions though no attempt is open. */
-bool watches(const run *r, int32_t index)
+bool needs_every_position(const run *r, int32_t index)
 {
     const judge_plan *judged = &r->part->judges[index];
     if ((judged->automaton >= 0) || (judged->form < 0) || (r->part->forms[judged->form].looks_back == 0)) {
@@ -18,7 +18,7 @@ bool watches(const run *r, int32_t index)
 }
 
 /* Whether the truth of its trigger starts an attempt of a judge. */
-bool starts(run *r, int32_t index, uint8_t truth)
+bool take_trigger(run *r, int32_t index, uint8_t truth)
 {
     const judge_plan *judged = &r->part->judges[index];
     const bool pulse = (judged->flags & JUDGE_PULSE) != 0;
@@ -74,7 +74,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         (void)queue_begin(r, index, t);
         return;
     }
-    at = place_taken(r);
+    at = new_attempt(r);
     if (at < 0) {
         leave_episode(r, index); /* or it would be tried again at each position */
         return;
@@ -111,7 +111,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         x->parted = true;
         x->location = FAILED;
         x->better = PASSED;
-        lay_down(r, index, at);
+        add_undecidable(r, index, at);
     } else {
         enter(r, index, at, t);
     }
@@ -124,7 +124,7 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
     attempt *x = attempt_at(r->home, at);
     const bool stays = remains(r, index, at, t);
     if (stays && is_undecidable(x)) {
-        lay_down(r, index, at);
+        add_undecidable(r, index, at);
     } else if (stays) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));
         if (j->last < 0) {
@@ -137,7 +137,7 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
         }
         j->last = at;
     } else if (r->part->plan->captured == 0) {
-        give_back(r->home, at);
+        free_attempt(r->home, at);
     } else {
         /* It is told of at the end of the call. */
     }

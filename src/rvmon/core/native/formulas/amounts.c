@@ -8,7 +8,7 @@
 
 /* ---- the least and the greatest: members that a later one outdoes matter no more */
 
-bool is_extreme(window *w, const rv_number *number)
+bool push_extreme(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     while (s->count > 0) {

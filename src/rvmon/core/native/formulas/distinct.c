@@ -76,7 +76,7 @@ static bool make_table(window *w)
 
 /* The place of the latest member with a number; -1: there is none. The window learns where the next one
  * is to be noted. */
-int32_t latest_with(window *w, const rv_number *number)
+int32_t find_latest(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     uint32_t slot;

@@ -129,7 +129,7 @@ double exact_roughly(const uint32_t *sum, int32_t *exponent)
 }
 
 /* n times the sum of squares, less the square of the sum. */
-static void off_mean(uint32_t *rest, const uint32_t *sum, const uint32_t *squares, int64_t count)
+static void scaled_variance(uint32_t *rest, const uint32_t *sum, const uint32_t *squares, int64_t count)
 {
     uint32_t size[SUM_LIMBS];
     const bool turned = is_negative(sum, SUM_LIMBS);
@@ -162,7 +162,7 @@ bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, c
 {
     const fixed_point p = fixed_of(limit);
     uint32_t rest[VARIANCE_LIMBS];
-    off_mean(rest, sum, squares, count);
+    scaled_variance(rest, sum, squares, count);
     add_square_product(rest, VARIANCE_LIMBS, p.size, (uint64_t)count, p.bit + LOWEST, !p.negative);
     return is_enough(rest, VARIANCE_LIMBS, strict);
 }
@@ -179,7 +179,7 @@ typedef struct {
 } quotient;
 
 /* The sign of what twice a quotient is above two numbers together. */
-static int beside(const quotient *q, double a, double b)
+static int compare_doubled(const quotient *q, double a, double b)
 {
     const double both[2] = {a, b};
     uint32_t rest[VARIANCE_LIMBS];
@@ -222,8 +222,8 @@ static double nearest(const quotient *q)
     for (steps = 0; steps < 64; steps++) { /* few; of what no snapshot of ours has, no more */
         const double above = nextafter(found, HUGE_VAL);
         const double below = nextafter(found, -HUGE_VAL);
-        const int up = beside(q, found, above);
-        const int down = beside(q, found, below);
+        const int up = compare_doubled(q, found, above);
+        const int down = compare_doubled(q, found, below);
         if ((up > 0) || ((up == 0) && is_odd(found))) {
             found = above;
         } else if ((down < 0) || ((down == 0) && is_odd(found))) {
@@ -248,7 +248,7 @@ double exact_variance(const uint32_t *sum, const uint32_t *squares, int64_t coun
 {
     uint32_t rest[VARIANCE_LIMBS];
     const quotient q = {rest, VARIANCE_LIMBS, 2 * LOWEST, (uint64_t)count, true};
-    off_mean(rest, sum, squares, count);
+    scaled_variance(rest, sum, squares, count);
     return nearest(&q);
 }
 

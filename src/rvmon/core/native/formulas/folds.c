@@ -97,7 +97,7 @@ typedef struct {
     rv_number comes;           /* at each step; unknown: nothing does */
     rv_number goes;
     bool strict;
-} asking;
+} comparison;
 
 /* A sum, or what is left of it. */
 typedef struct {
@@ -105,7 +105,7 @@ typedef struct {
 } exact_rest;
 
 /* What the sum is above that, after so many steps. */
-static exact_rest rest_after(const uint32_t *sum, const asking *a, int64_t steps)
+static exact_rest rest_after(const uint32_t *sum, const comparison *a, int64_t steps)
 {
     exact_rest found;
     (void)memcpy(found.limb, sum, sizeof found.limb);
@@ -119,7 +119,7 @@ static exact_rest rest_after(const uint32_t *sum, const asking *a, int64_t steps
     return found;
 }
 
-static bool is_enough_after(const uint32_t *sum, const asking *a, int64_t steps)
+static bool is_enough_after(const uint32_t *sum, const comparison *a, int64_t steps)
 {
     const exact_rest found = rest_after(sum, a, steps);
     return exact_is_enough(found.limb, a->strict);
@@ -127,7 +127,7 @@ static bool is_enough_after(const uint32_t *sum, const asking *a, int64_t steps)
 
 /* The first of some steps after which there is enough, or no longer; `most`: after so many it is so.
  * The rest is a line: where it crosses 0 is worked out roughly, then found among what is near. */
-static int64_t first_step(const uint32_t *sum, const asking *a, int64_t most, bool holds)
+static int64_t first_step(const uint32_t *sum, const comparison *a, int64_t most, bool holds)
 {
     const exact_rest now = rest_after(sum, a, 0);
     const exact_rest last = rest_after(sum, a, most);
@@ -159,7 +159,7 @@ static int64_t first_step(const uint32_t *sum, const asking *a, int64_t most, bo
 }
 
 /* The next instant at which the truth may be another though nothing comes. */
-static int64_t sum_flips_at(const window *w, const uint32_t *sum, asking *a, bool better, bool holds)
+static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a, bool better, bool holds)
 {
     const stretches *s = w->s;
     const bool mean = w->fold == FOLD_MEAN;
@@ -208,7 +208,7 @@ static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
     int32_t i;
     for (i = 0; i < readings; i++) {
         const uint32_t *sum = w->x->limb + i * SUM_LIMBS;
-        asking a = {*limit, 1, 0, UNKNOWN_NUMBER, UNKNOWN_NUMBER, (w->n->b & WINDOW_STRICT) != 0};
+        comparison a = {*limit, 1, 0, UNKNOWN_NUMBER, UNKNOWN_NUMBER, (w->n->b & WINDOW_STRICT) != 0};
         bool holds;
         a.asked = w->of_ticks ? INT64_C(1000000000) : ((w->fold == FOLD_MEAN) ? counted(w->s->total) : 1);
         holds = is_enough_after(sum, &a, 0);

@@ -15,8 +15,8 @@ static inline int64_t timers_next(const timers *h)
 int32_t timers_due(const timers *h, int64_t t, int32_t *found);
 
 /* ---- past.c */
-stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
-void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
+stretch *stretch_slot(rv_monitor *m, stretches *s, int32_t i, bool append);
+void split_stretches(rv_monitor *m, stretches *worse, stretches *better);
 bool edges_agree(const edge *a, const edge *b);
 bool stretches_agree(const stretches *a, const stretches *b);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
@@ -24,7 +24,7 @@ uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t
 
 /* ---- window.c; `blank`: there may be no such position */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
-void window_begins(run *r, const node_plan *n);
+void restart_window(run *r, const node_plan *n);
 
 /* ---- graph.c: the nodes of a part */
 void mark_dirty(run *r, int32_t node);
@@ -35,7 +35,7 @@ void work_out(run *r, int64_t t);
 bool has_dirty_nodes(const run *r);
 void remember_unknown(run *r, int64_t t);
 void blank_out(run *r, int64_t t);
-void vary(run *r, int64_t t, bool pending);
+void reevaluate_varying(run *r, int64_t t, bool pending);
 void settle_phase(run *r);
 
 #endif

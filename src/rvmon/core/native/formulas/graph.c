@@ -182,7 +182,7 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
     }
 }
 
-static bool tells_of_trigger(const run *r, const node_plan *n)
+static bool is_determined_node(const run *r, const node_plan *n)
 {
     return (n->links.count > 0) && ((PLAN(r)->links[n->links.first].kind & LINK_DETERMINED) != 0);
 }
@@ -209,7 +209,7 @@ void blank_out(run *r, int64_t t)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->nodes.count; i++) {
-        if (!tells_of_trigger(r, &r->part->nodes[i])) {
+        if (!is_determined_node(r, &r->part->nodes[i])) {
             const uint8_t value = blank_value(r, i, t);
             if (value != r->truth[i]) {
                 store(r, i, value, t);
@@ -264,7 +264,7 @@ void work_out(run *r, int64_t t)
 }
 
 /* Work out anew what depends on captured values; what remembers stands. */
-void vary(run *r, int64_t t, bool pending)
+void reevaluate_varying(run *r, int64_t t, bool pending)
 {
     const part_plan *p = r->part->plan;
     const int32_t *atoms = LIST(PLAN(r), p->varying_atoms);
@@ -280,7 +280,7 @@ void vary(run *r, int64_t t, bool pending)
             if ((n->since < 0) || (r->captured[n->since].kind == RV_UNKNOWN)) {
                 continue; /* it goes on */
             }
-            window_begins(r, n);
+            restart_window(r, n);
         }
         value = evaluated(r, nodes[i], t);
         if (value != r->truth[nodes[i]]) {

@@ -58,7 +58,7 @@ bool is_counted(const window *w, int32_t i, bool better)
 }
 
 /* From here on two sums are kept. */
-static void part_sums(window *w)
+static void split_sums(window *w)
 {
     if (!w->s[1].apart) {
         (void)memcpy(w->x->limb + SUM_LIMBS, w->x->limb, SUM_LIMBS * sizeof *w->x->limb);
@@ -70,7 +70,7 @@ static void add_number(window *w, const rv_number *number, bool maybe, int64_t c
 {
     const rv_number worse = read_as(number, maybe, false);
     if (maybe) {
-        part_sums(w);
+        split_sums(w);
     }
     w->s->left = w->s->left && (number->kind == RV_WHOLE);
     w->s[1].right = w->s[1].right || is_below_zero(number);
@@ -119,7 +119,7 @@ static void add_members(window *w, const stretch *kept, int64_t count, bool off)
 }
 
 /* Have the last member go on up to a position. */
-void members_go_on(window *w, int64_t end)
+void extend_last_member(window *w, int64_t end)
 {
     stretch *last = stretch_of(w->s, w->s->count - 1);
     if (end > last->end) {
@@ -133,8 +133,8 @@ static bool begin_member(window *w, const stretch *kept)
 {
     stretches *s = w->s;
     const bool grows = s->count == s->room;
-    stretch *last = next_stretch_of(w->r->home->monitor, s, s->count, true);
-    stretch *own = next_stretch_of(w->r->home->monitor, s + 1, s[1].count, true);
+    stretch *last = stretch_slot(w->r->home->monitor, s, s->count, true);
+    stretch *own = stretch_slot(w->r->home->monitor, s + 1, s[1].count, true);
     if ((last == NULL) || (own == NULL)) {
         s->count = 0;
         s[1].count = 0;
@@ -150,15 +150,15 @@ static bool begin_member(window *w, const stretch *kept)
 }
 
 /* Whether a member that is known has to be kept; of values that are told apart, the last one is. */
-static bool keeps_member(window *w, const rv_number *number)
+static bool admit_member(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     const bool ever = (w->n->high == NEVER) && (w->n->most == 0);
     if (keeps_extremes(w)) {
-        return is_extreme(w, number);
+        return push_extreme(w, number);
     }
     if (w->fold == FOLD_DISTINCT) {
-        const int32_t same = (number->kind == RV_UNKNOWN) ? -1 : latest_with(w, number);
+        const int32_t same = (number->kind == RV_UNKNOWN) ? -1 : find_latest(w, number);
         if (ever && (number->kind == RV_UNKNOWN)) {
             s->lost = 1;
         } else if ((same >= 0) && !ever) {
@@ -175,7 +175,7 @@ static bool keeps_member(window *w, const rv_number *number)
     return true;
 }
 
-bool member_comes(window *w, const rv_number *number, bool maybe)
+bool add_member(window *w, const rv_number *number, bool maybe)
 {
     stretches *s = w->s;
     stretch kept = {number->kind, 0};
@@ -202,24 +202,24 @@ bool member_comes(window *w, const rv_number *number, bool maybe)
     if ((s->count == 0) || (stretch_of(s, s->count - 1)->end != w->t - w->unit)
         || (kept_of(s, s->count - 1)->begin != kept.begin) || (kept_of(s, s->count - 1)->end != kept.end)) {
         const rv_number own = number_of(&kept);
-        if (!keeps_member(w, &own) || !begin_member(w, &kept)) {
+        if (!admit_member(w, &own) || !begin_member(w, &kept)) {
             return false;
         }
         if ((w->fold == FOLD_DISTINCT) && (own.kind != RV_UNKNOWN)) {
             note_latest(w);
         }
         if ((w->x != NULL) && ((kept.begin & MEMBER_MAYBE) != 0)) {
-            part_sums(w); /* from now on, though the first tick of it is still to come */
+            split_sums(w); /* from now on, though the first tick of it is still to come */
         }
     }
     if (!w->of_ticks) {
-        members_go_on(w, w->t);
+        extend_last_member(w, w->t);
     }
     return true;
 }
 
 /* Take off so much of the first one. */
-static void take_off(window *w, int64_t gone)
+static void remove_from_oldest(window *w, int64_t gone)
 {
     stretches *s = w->s;
     stretch *first = stretch_of(s, 0);
@@ -239,7 +239,7 @@ static void take_off(window *w, int64_t gone)
     s[1].count--;
 }
 
-void members_leave(window *w)
+void expire_members(window *w)
 {
     stretches *s = w->s;
     const bool counts = keeps_extremes(w) && (w->n->most > 0); /* instants are the numbers of members */
@@ -247,14 +247,14 @@ void members_leave(window *w)
     const int64_t from = (high < NEVER) ? w->t - high : INT64_MIN;
     while ((w->n->most > 0) && (s->count > 0) && (s->members > w->n->most)) {
         const stretch *first = stretch_of(s, 0);
-        take_off(w, least(s->members - w->n->most, (first->end - first->begin) / w->unit + 1));
+        remove_from_oldest(w, least(s->members - w->n->most, (first->end - first->begin) / w->unit + 1));
     }
     while ((s->count > 0) && (stretch_of(s, 0)->begin < from)) {
         const stretch *first = stretch_of(s, 0);
         const int64_t held = (first->end - first->begin) / w->unit + 1;
         const int64_t gone = least((from - first->begin + w->unit - 1) / w->unit, held);
         const bool goes_on = s->growing && (s->count == 1);
-        take_off(w, gone);
+        remove_from_oldest(w, gone);
         if ((gone < held) || goes_on) {
             return;
         }

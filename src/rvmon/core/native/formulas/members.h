@@ -36,17 +36,17 @@ rv_number member_number(const window *w, int32_t i, bool better);
 bool is_counted(const window *w, int32_t i, bool better);
 
 /* ---- members.c */
-void members_go_on(window *w, int64_t end);
-bool member_comes(window *w, const rv_number *number, bool maybe);
-void members_leave(window *w);
+void extend_last_member(window *w, int64_t end);
+bool add_member(window *w, const rv_number *number, bool maybe);
+void expire_members(window *w);
 void forget_members(window *w);
 
 /* ---- distinct.c */
-int32_t latest_with(window *w, const rv_number *number);
+int32_t find_latest(window *w, const rv_number *number);
 void note_latest(window *w);
 
 /* Whether a number is the least, or greatest, that matters; it lets go of those that do not any more. */
-bool is_extreme(window *w, const rv_number *number);
+bool push_extreme(window *w, const rv_number *number);
 
 /* ---- folds.c */
 uint8_t folded(window *w, int64_t *due);

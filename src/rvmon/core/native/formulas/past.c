@@ -23,7 +23,7 @@ static bool make_room(rv_monitor *m, stretches *s)
 }
 
 /* One of a ring; with `append`, it is put behind those that there are. NULL: memory is short. */
-stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append)
+stretch *stretch_slot(rv_monitor *m, stretches *s, int32_t i, bool append)
 {
     if (append) {
         if ((s->count == s->room) && !make_room(m, s)) {
@@ -90,7 +90,7 @@ static int64_t next_stretch(const stretches *s, int64_t t)
 }
 
 /* Make the second reading as the first one stands. */
-void part_stretches(rv_monitor *m, stretches *worse, stretches *better)
+void split_stretches(rv_monitor *m, stretches *worse, stretches *better)
 {
     int32_t i;
     while (better->room < worse->room) {
@@ -119,7 +119,7 @@ static uint8_t since_stretches(run *r, const node_plan *n, int64_t t, uint8_t le
     bool may_hold;
     int64_t due;
     if (((left == IS_UNKNOWN) || (right == IS_UNKNOWN)) && !worse->apart) {
-        part_stretches(r->home->monitor, worse, better);
+        split_stretches(r->home->monitor, worse, better);
     }
     holds = step_stretches(r, worse, n, t, left == IS_TRUE, right == IS_TRUE);
     due = next_stretch(worse, t);

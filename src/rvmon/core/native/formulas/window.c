@@ -10,7 +10,7 @@ static rv_number within_range(rv_number number)
 }
 
 /* The number that an occurrence adds, if the nodes from `from` on hold of it. */
-static void occurrence_comes(window *w, int32_t event, int32_t which, uint8_t operand)
+static void collect_occurrence(window *w, int32_t event, int32_t which, uint8_t operand)
 {
     run *r = w->r;
     const int32_t *nodes = LIST(PLAN(r), w->n->operands);
@@ -30,12 +30,12 @@ static void occurrence_comes(window *w, int32_t event, int32_t which, uint8_t op
         if (known) {
             number = within_range(program_value(r, r->part->atoms[w->n->a].left, r->chosen));
         }
-        w->s->growing = member_comes(w, &number, truth != IS_TRUE);
+        w->s->growing = add_member(w, &number, truth != IS_TRUE);
     }
 }
 
 /* Several occurrences of the event, or some that are chosen by what they say. */
-static void occurrences_come(window *w, int32_t event, uint8_t operand)
+static void collect_occurrences(window *w, int32_t event, uint8_t operand)
 {
     run *r = w->r;
     const int32_t *nodes = LIST(PLAN(r), w->n->operands);
@@ -47,12 +47,12 @@ static void occurrences_come(window *w, int32_t event, uint8_t operand)
         }
     }
     if ((r->silent[event] == IS_UNKNOWN) || (count == 0)) {
-        w->s->growing = member_comes(w, &UNKNOWN_NUMBER, true);
+        w->s->growing = add_member(w, &UNKNOWN_NUMBER, true);
     } else if ((w->n->most > 0) && (count > 1)) {
         forget_members(w); /* which of them is the last one nobody knows */
     } else {
         for (i = 0; i < count; i++) {
-            occurrence_comes(w, event, i, operand);
+            collect_occurrence(w, event, i, operand);
         }
     }
 }
@@ -78,7 +78,7 @@ static bool is_constant(const run *r, const atom_plan *a)
 }
 
 /* What there is at this position, where the first operand is not FALSE. */
-static void members_come(window *w, uint8_t operand, bool blank)
+static void collect_members(window *w, uint8_t operand, bool blank)
 {
     run *r = w->r;
     const node_plan *n = w->n;
@@ -89,25 +89,25 @@ static void members_come(window *w, uint8_t operand, bool blank)
     } else if ((n->b & WINDOW_COUNTED) != 0) {
         const uint8_t counted = r->truth[nodes[1]];
         number.as.whole = (counted == IS_FALSE) ? 0 : 1;
-        w->s->growing = member_comes(w, &number, counted == IS_UNKNOWN);
+        w->s->growing = add_member(w, &number, counted == IS_UNKNOWN);
     } else if (n->a < 0) {
-        w->s->growing = member_comes(w, &number, operand != IS_TRUE);
+        w->s->growing = add_member(w, &number, operand != IS_TRUE);
     } else {
         const atom_plan *a = &r->part->atoms[n->a];
         const int32_t event = (a->events.count == 1) ? LIST(PLAN(r), a->events)[0] : -1;
         if (blank && !is_constant(r, a)) {
-            w->s->growing = member_comes(w, &UNKNOWN_NUMBER, true);
+            w->s->growing = add_member(w, &UNKNOWN_NUMBER, true);
         } else if ((event >= 0) && ((n->chosen < n->operands.count) || (r->payloads[event].count > 1))) {
-            occurrences_come(w, event, operand);
+            collect_occurrences(w, event, operand);
         } else {
             number = number_now(r, a);
-            w->s->growing = member_comes(w, &number, operand != IS_TRUE);
+            w->s->growing = add_member(w, &number, operand != IS_TRUE);
         }
     }
 }
 
 /* Forget what was before. */
-void window_begins(run *r, const node_plan *n)
+void restart_window(run *r, const node_plan *n)
 {
     window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false, -1};
     forget_members(&w);
@@ -122,7 +122,7 @@ static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
 }
 
 /* Leave the number where others read it; they are to be worked out if it is another. */
-static uint8_t left_number(run *r, const node_plan *n, const rv_number *number, bool blank)
+static uint8_t publish_number(run *r, const node_plan *n, const rv_number *number, bool blank)
 {
     rv_number *place = &r->amounts[n->low];
     if (blank) {
@@ -151,16 +151,16 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
     }
     w.s->apart = true; /* there is a second ring */
     if (w.s->growing && (w.s->count > 0) && !counts) {
-        members_go_on(&w, of_ticks ? t - 1 : r->at.before);
+        extend_last_member(&w, of_ticks ? t - 1 : r->at.before);
     }
     w.s->growing = false;
     if ((operand != IS_FALSE) && !(blank && has_not_begun(r, n, t))) {
-        members_come(&w, operand, blank);
+        collect_members(&w, operand, blank);
     }
-    members_leave(&w);
+    expire_members(&w);
     if ((n->b & WINDOW_NUMBER) != 0) {
         const rv_number number = amount_of(&w, &due);
-        found = left_number(r, n, &number, blank);
+        found = publish_number(r, n, &number, blank);
     } else {
         found = folded(&w, &due);
     }

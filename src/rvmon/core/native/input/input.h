@@ -31,7 +31,7 @@ rv_number number_said(const rv_update *u);
 void apply_update(run *r, int64_t t, const incoming *in);
 
 /* Whether a signal can take a value and nothing else is to be done. */
-static inline bool means_the_same(const run *r, int32_t local, const rv_number *value)
+static inline bool stays_in_span(const run *r, int32_t local, const rv_number *value)
 {
     const span *s = &r->spans[local];
     const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
@@ -101,7 +101,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
     if (r->margins != NULL) {
         margins_mark_changed(r, in->event ? r->part->plan->signals.count + in->local : in->local);
     }
-    if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
+    if (!in->event && (u->says == RV_SAYS_YES) && stays_in_span(r, in->local, &u->value)) {
         r->value[in->local] = u->value;
     } else {
         apply_update(r, t, in);
@@ -111,23 +111,23 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 void forget(run *r);
 void go_stale(run *r, int64_t t, int32_t perishable);
 void mark_absent(run *r, bool event, int32_t local);
-void have_no_source(run *r, bool event, int32_t local);
+void declare_no_source(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
-void begin_unlost(run *r);
-bool take_amid(run *r, int64_t t, const incoming *in);
-void come_back(run *r, int64_t t);
-void stay_unknown(run *r, int32_t local);
+void clear_losses(run *r);
+bool take_while_lost(run *r, int64_t t, const incoming *in);
+void end_outages(run *r, int64_t t);
+void end_loss_when_stale(run *r, int32_t local);
 bool has_no_source(const run *r, int32_t name);
 bool is_lost_at(const run *r, int32_t name, int64_t t);
-void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
+void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count);
 int32_t names_to_lose(const run *r);
 
 /* ---- unknowns.c: positions that may not be there */
-void may_begin(run *r, int64_t t);
+void await_blank_start(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);
-void revive_all(run *r, int64_t t);
+void resume_episodes(run *r, int64_t t);
 
 /* ---- unknowns.c: what was not known of signals */
 bool begin_unknowns(home *h);

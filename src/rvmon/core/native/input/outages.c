@@ -19,7 +19,7 @@ int32_t names_to_lose(const run *r)
     return r->part->plan->signals.count + r->part->plan->events.count;
 }
 
-void begin_unlost(run *r)
+void clear_losses(run *r)
 {
     const int32_t names = names_to_lose(r);
     r->at.ends_at = NEVER;
@@ -129,7 +129,7 @@ static void end_loss(run *r, int32_t name)
 }
 
 /* Have what was lost up to `until` be behind. */
-static void leave_behind(run *r, int32_t name, int64_t until)
+static void end_outage(run *r, int32_t name, int64_t until)
 {
     const int32_t signals = r->part->plan->signals.count;
     r->absent[name] = 0;
@@ -147,10 +147,10 @@ static void leave_behind(run *r, int32_t name, int64_t until)
 }
 
 /* The same with nothing of it at the position that follows. */
-static void leave_wholly(run *r, int32_t name)
+static void end_outage_before(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
-    leave_behind(r, name, r->until[name]);
+    end_outage(r, name, r->until[name]);
     r->updated[name] = IS_FALSE;
     if (name < signals) {
         r->changed[name] = IS_FALSE;
@@ -171,10 +171,10 @@ static void leave_wholly(run *r, int32_t name)
 }
 
 /* The same between two ticks of a clock: what was lost counts at the next one, beside what came. */
-static void leave_for_tick(run *r, int32_t name)
+static void end_outage_at_tick(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
-    leave_behind(r, name, r->until[name]);
+    end_outage(r, name, r->until[name]);
     mark(r, name);
     r->updated[name] = at_least_unknown(r->updated[name]);
     if (name < signals) {
@@ -189,12 +189,12 @@ static void leave_for_tick(run *r, int32_t name)
     recheck_name(r, name);
 }
 
-static void leave_name(run *r, int32_t name, int64_t t)
+static void end_outage_of(run *r, int32_t name, int64_t t)
 {
     if (tick_from(step_of(r), r->until[name]) < tick_from(step_of(r), t)) {
-        leave_wholly(r, name);
+        end_outage_before(r, name);
     } else {
-        leave_for_tick(r, name);
+        end_outage_at_tick(r, name);
     }
 }
 
@@ -217,7 +217,7 @@ static void find_name(run *r, int32_t name, int64_t at)
 }
 
 /* Come to the position at `t`: what was lost up to the one before is behind. */
-void come_back(run *r, int64_t t)
+void end_outages(run *r, int64_t t)
 {
     const int32_t names = names_to_lose(r);
     int32_t i;
@@ -225,7 +225,7 @@ void come_back(run *r, int64_t t)
     for (i = 0; i < names; i++) {
         if (r->lost[i] == LOST_UNTIL) {
             if (r->until[i] < t) {
-                leave_name(r, i, t);
+                end_outage_of(r, i, t);
             } else {
                 r->at.ends_at = least(r->at.ends_at, position_behind(r, i));
             }
@@ -234,7 +234,7 @@ void come_back(run *r, int64_t t)
 }
 
 /* See to an update while something is lost; tells whether it does not count, or not yet. */
-bool take_amid(run *r, int64_t t, const incoming *in)
+bool take_while_lost(run *r, int64_t t, const incoming *in)
 {
     const int32_t name = in->event ? r->part->plan->signals.count + in->local : in->local;
     const rv_number *value = (in->update->says == RV_SAYS_YES) ? &in->update->value
@@ -253,7 +253,7 @@ bool take_amid(run *r, int64_t t, const incoming *in)
         return true;
     }
     if (r->lost[name] == LOST_UNTIL) {
-        leave_name(r, name, t);
+        end_outage_of(r, name, t);
     }
     if (r->lost[name] == LOST_SINCE) {
         end_loss(r, name);
@@ -263,7 +263,7 @@ bool take_amid(run *r, int64_t t, const incoming *in)
 }
 
 /* A signal that was lost, and not updated since, has become stale. */
-void stay_unknown(run *r, int32_t local)
+void end_loss_when_stale(run *r, int32_t local)
 {
     if (r->lost[local] == LOST_SINCE) {
         end_loss(r, local);
@@ -273,7 +273,7 @@ void stay_unknown(run *r, int32_t local)
 
 /* Tell a run what is lost, or found, at `t`, to which it has come; the position there is still to be
  * looked at. */
-void give_loss(run *r, int64_t t, const incoming *in, int32_t count)
+void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const int32_t signals = r->part->plan->signals.count;
     int32_t i;
@@ -298,7 +298,7 @@ void give_loss(run *r, int64_t t, const incoming *in, int32_t count)
     }
 }
 
-static void note_one(rv_monitor *m, int32_t name, bool lost)
+static void set_losing(rv_monitor *m, int32_t name, bool lost)
 {
     if ((m->losing[name] != 0U) != lost) {
         m->losing[name] = lost ? 1 : 0;
@@ -307,15 +307,15 @@ static void note_one(rv_monitor *m, int32_t name, bool lost)
 }
 
 /* Where only samples are positions, each tick may be one while anything is lost, be it nothing. */
-static bool note_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
+static bool update_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {
     const bool lost = says == SAYS_LOST;
     int32_t i;
     for (i = 0; i < count; i++) {
-        note_one(m, names[i], lost);
+        set_losing(m, names[i], lost);
     }
     if (count == 0) {
-        note_one(m, m->plan.header->signals + m->plan.header->events, lost);
+        set_losing(m, m->plan.header->signals + m->plan.header->events, lost);
     }
     if (lost && (m->dense_until == RV_NO_TIME)) {
         return begin_dense(m, t);
@@ -327,7 +327,7 @@ static bool note_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t 
 }
 
 /* Have some names be lost, or found, at `t`. */
-static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
+static int apply_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {
     const size_t size = (size_t)(count + 1) * sizeof(rv_update);
     rv_update *updates;
@@ -343,7 +343,7 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     if ((says == SAYS_FOUND) && (m->heard == RV_NO_TIME)) {
         return RV_OK; /* nothing was lost so far */
     }
-    if ((m->plan.header->gap == 0) && !note_losing(m, t, names, count, says)) {
+    if ((m->plan.header->gap == 0) && !update_losing(m, t, names, count, says)) {
         return RV_NO_MEMORY;
     }
     if ((m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME)) {
@@ -375,10 +375,10 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
 
 int rv_lose(rv_monitor *m, int64_t since, const int32_t *names, int32_t count)
 {
-    return tell_loss(m, since, names, count, SAYS_LOST);
+    return apply_loss(m, since, names, count, SAYS_LOST);
 }
 
 int rv_found(rv_monitor *m, int64_t at, const int32_t *names, int32_t count)
 {
-    return tell_loss(m, at, names, count, SAYS_FOUND);
+    return apply_loss(m, at, names, count, SAYS_FOUND);
 }

@@ -173,7 +173,7 @@ void put_unknowns(const run *r, int64_t doubt, int64_t *to)
  * Source: the law, section 1 (Outage). */
 
 /* Before the first sample something was lost from `t` on: the trace may begin there. */
-void may_begin(run *r, int64_t t)
+void await_blank_start(run *r, int64_t t)
 {
     r->at.presence = MAY_BE_THERE;
     r->at.awaited = tick_from(GAP(r), t);
@@ -201,10 +201,10 @@ void begin_blank(run *r, int64_t t)
     }
     for (i = 0; i < r->part->plan->judges.count; i++) {
         const int32_t trigger = followed(r, i);
-        if (watches(r, i)) {
+        if (needs_every_position(r, i)) {
             visit_judge(r, i, t);
         }
-        if ((trigger >= 0) && starts(r, i, IS_UNKNOWN)) {
+        if ((trigger >= 0) && take_trigger(r, i, IS_UNKNOWN)) {
             begin(r, i, t, t);
         }
     }
@@ -225,7 +225,7 @@ void end_blank(run *r, int64_t t)
 }
 
 /* Have the episode that runs be judged from here on. */
-static void revive(run *r, int32_t index, int64_t t)
+static void resume_episode(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
     const int32_t at = j->current;
@@ -246,12 +246,12 @@ static void revive(run *r, int32_t index, int64_t t)
     enter(r, index, at, t);
 }
 
-void revive_all(run *r, int64_t t)
+void resume_episodes(run *r, int64_t t)
 {
     int32_t i;
     for (i = 0; (GAP(r) > 0) && (i < r->part->plan->judges.count); i++) {
         if (runs_on(r, i) && (r->judges[i].current >= 0)) {
-            revive(r, i, t);
+            resume_episode(r, i, t);
         }
     }
     r->at.presence = ARE_THERE;

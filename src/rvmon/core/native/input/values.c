@@ -244,7 +244,7 @@ rv_number number_said(const rv_update *u)
 void apply_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
-    if ((r->at.lost_count > 0) && take_amid(r, t, in)) {
+    if ((r->at.lost_count > 0) && take_while_lost(r, t, in)) {
         return;
     }
     if (!in->event) {
@@ -279,7 +279,7 @@ void go_stale(run *r, int64_t t, int32_t perishable)
     stale.as.whole = IS_STALE;
     count_stale(r, t, r->part->signals[local].name);
     if (r->at.lost_count > 0) {
-        stay_unknown(r, local);
+        end_loss_when_stale(r, local);
     }
     margins_mark_changed(r, local);
     hold(r, t, local, &stale);
@@ -306,7 +306,7 @@ void mark_absent(run *r, bool event, int32_t local)
 }
 
 /* Take it, before the first position, that a name has no source. */
-void have_no_source(run *r, bool event, int32_t local)
+void declare_no_source(run *r, bool event, int32_t local)
 {
     mark_absent(r, event, local);
     if (!event) {

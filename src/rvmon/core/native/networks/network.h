@@ -25,10 +25,10 @@ int64_t up_to(const form *f, const network *w, int64_t position, int64_t distanc
 bool knows(const operator_state *o, uint8_t value, int64_t position);
 void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last);
 void unlearn(const form *f, network *w);
-void start_over(const form *f, network *w, int64_t t, int64_t position);
+void reset_network(const form *f, network *w, int64_t t, int64_t position);
 void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
-void tidy(const form *f, network *w, int64_t position);
+void prune(const form *f, network *w, int64_t position);
 
 /* ---- network_search.c: the first instant at which something new of a formula can be known, or before */
 int64_t earliest_change(const form *f, networks *net, int32_t reading);
@@ -101,9 +101,9 @@ static inline int64_t due_of(const judging *g)
 judging judging_of(run *r, int32_t index);
 
 /* ---- network_nodes.c, network_sweeps.c */
-void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
-void lead(const form *f, const network *w, const operator_plan *n, operator_state *o);
-void follow(const form *f, const network *w, const operator_plan *n, operator_state *o);
+void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
+void update_until(const form *f, const network *w, const operator_plan *n, operator_state *o);
+void update_since(const form *f, const network *w, const operator_plan *n, operator_state *o);
 
 /* ---- network_search.c */
 void learn_all(judging *g, int64_t now, int64_t last);
@@ -115,9 +115,9 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last);
 int64_t earliest(const judging *g, int64_t now);
 
 /* ---- network_search.c: what becomes of attempts */
-bool weigh(judging *g, int32_t at, int64_t t);
-int64_t decided_one(const judging *g);
-void hear_news(judging *g, int64_t t);
+bool judge_attempt(judging *g, int32_t at, int64_t t);
+int64_t decided_position(const judging *g);
+void judge_news(judging *g, int64_t t);
 
 /* Ranges of positions, in order, none touching another. */
 int32_t range_from(const ranges *r, int64_t position);

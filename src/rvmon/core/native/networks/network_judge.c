@@ -81,7 +81,7 @@ static bool parts(const judging *g)
 }
 
 /* Tidy up now and then. The networks may still have to be told of the letter up to here. */
-static void tidy_up(judging *g, int64_t position)
+static void prune_sometimes(judging *g, int64_t position)
 {
     const int32_t at = g->j->first;
     int32_t i;
@@ -91,7 +91,7 @@ static void tidy_up(judging *g, int64_t position)
     }
     g->net->visits = 0;
     for (i = 0; i < readings(g); i++) {
-        tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(attempt_of(g, at)) : position);
+        prune(&g->f, &g->net->readings[i], (at >= 0) ? position_of(attempt_of(g, at)) : position);
     }
     if (g->net->parted && !parts(g)
         && networks_agree(&g->f, &g->net->readings[0], &g->net->readings[1])) {
@@ -158,7 +158,7 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
             set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
             return;
         }
-        hear_news(g, decided);
+        judge_news(g, decided);
         set_due(g, decided);
     }
     set_due(g, NEVER);
@@ -205,7 +205,7 @@ bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
 }
 
 /* Have the letters that were read stay. */
-static void turn_to_next(judging *g)
+static void adopt_next_letter(judging *g)
 {
     (void)memcpy(g->net->leaf, g->net->next_leaf, (size_t)g->f.form->leaves);
     g->net->turn = NEVER;
@@ -221,7 +221,7 @@ static void come_to(judging *g, int64_t t)
     int64_t position = (g->f.gap > 0) ? floored(t, g->f.step) : 0;
     int32_t i;
     if (fresh) {
-        start_over(&g->f, w, t, position);
+        reset_network(&g->f, w, t, position);
         g->net->begun = true;
         g->net->parted = false;
         set_due(g, t);
@@ -232,7 +232,7 @@ static void come_to(judging *g, int64_t t)
         return;
     } else {
         position = (g->f.gap > 0) ? position : w->last + 1;
-        tidy_up(g, position);
+        prune_sometimes(g, position);
     }
     g->j->position = t;
     g->j->restless = false;
@@ -252,7 +252,7 @@ static void come_to(judging *g, int64_t t)
     }
     g->net->turn = position;
     learn_all(g, t, position);
-    if ((due_of(g) - g->j->lag < t) && (decided_one(g) < NEVER)) {
+    if ((due_of(g) - g->j->lag < t) && (decided_position(g) < NEVER)) {
         /* See first what was decided by the letter that was. */
         unlearn_all(g);
         g->net->turn = NEVER;
@@ -260,8 +260,8 @@ static void come_to(judging *g, int64_t t)
         g->net->turn = position;
         learn_all(g, t, position);
     }
-    turn_to_next(g);
-    hear_news(g, t);
+    adopt_next_letter(g);
+    judge_news(g, t);
     set_due(g, (g->j->first < 0) ? NEVER : earliest(g, t + 1));
 }
 
@@ -286,11 +286,11 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
     }
     if (g.net->readings[0].last < last_at(&g, t)) {
         learn_all(&g, t, last_at(&g, t));
-        hear_news(&g, t);
+        judge_news(&g, t);
     }
     attempt_of(&g, at)->due = earliest(&g, t + 1);
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
-    return weigh(&g, at, t);
+    return judge_attempt(&g, at, t);
 }
 
 /* Apply the rule for the end of a trace, when time has come to `reached`. */
@@ -299,7 +299,7 @@ void network_close(run *r, int32_t index, int64_t end, int64_t reached)
     judging g = judging_of(r, index);
     if ((g.j->first >= 0) && !is_given_up(&g)) {
         learn_all(&g, reached, last_at(&g, end));
-        hear_news(&g, reached); /* who stays open for good */
+        judge_news(&g, reached); /* who stays open for good */
         g.net->readings[0].closed = end;
         learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
     }

@@ -56,7 +56,7 @@ bool knows(const operator_state *o, uint8_t value, int64_t position)
 }
 
 /* Take it that a node has a value at some positions, of which some may be known. */
-void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
+void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
 {
     ranges *known = &o->known[value];
     ranges *news = &o->news[value];
@@ -83,7 +83,7 @@ void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_
 }
 
 /* Tell of those of some positions at which all operands of a junction have a value. */
-static void meet(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
+static void add_where_all(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
                  const range *on)
 {
     const int32_t *operands = LIST(f->plan, n->operands);
@@ -103,13 +103,13 @@ static void meet(const form *f, const network *w, const operator_plan *n, operat
             }
         }
         if (all) {
-            note(f, o, value, at, end);
+            add_known(f, o, value, at, end);
         }
         at = end + 1;
     }
 }
 
-static void join(const form *f, const network *w, const operator_plan *n, operator_state *o)
+static void update_junction(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const int32_t *operands = LIST(f->plan, n->operands);
     const uint8_t some = (uint8_t)(n->turned ^ 1);
@@ -118,19 +118,19 @@ static void join(const form *f, const network *w, const operator_plan *n, operat
     for (i = 0; i < n->operands.count; i++) {
         const ranges *news = &w->nodes[operands[i]].news[some];
         for (j = news->first; j < news->end; j++) {
-            note(f, o, some, news->at[j].first, news->at[j].last);
+            add_known(f, o, some, news->at[j].first, news->at[j].last);
         }
     }
     for (i = 0; i < n->operands.count; i++) {
         const ranges *news = &w->nodes[operands[i]].news[n->turned];
         for (j = news->first; j < news->end; j++) {
-            meet(f, w, n, o, (uint8_t)n->turned, &news->at[j]);
+            add_where_all(f, w, n, o, (uint8_t)n->turned, &news->at[j]);
         }
     }
 }
 
 /* Tell of the windows, from one to another, that have one of some positions. */
-static void spread(const form *f, const network *w, const operator_plan *n, operator_state *o, const range *found,
+static void add_windows_with(const form *f, const network *w, const operator_plan *n, operator_state *o, const range *found,
                    int64_t first, int64_t last)
 {
     const uint8_t some = (uint8_t)(n->turned ^ 1);
@@ -140,7 +140,7 @@ static void spread(const form *f, const network *w, const operator_plan *n, oper
     const int64_t step = (f->gap > 0) ? found->last - found->first + 1 : 1;
     while (position <= found->last) {
         const int64_t start = from_on(f, w, position, -n->high);
-        note(f, o, some, (start > first) ? start : first,
+        add_known(f, o, some, (start > first) ? start : first,
              least(up_to(f, w, position + step - 1, -n->low), last));
         position += step;
     }
@@ -148,7 +148,7 @@ static void spread(const form *f, const network *w, const operator_plan *n, oper
 
 /* Tell of the windows, from one to another, of which all positions have a value; none comes to lie in
  * them any more. */
-static void exhaust(const form *f, const network *w, const operator_plan *n, operator_state *o, int64_t begin,
+static void add_windows_filled(const form *f, const network *w, const operator_plan *n, operator_state *o, int64_t begin,
                     int64_t last)
 {
     const ranges *known = &w->nodes[n->left].known[n->turned];
@@ -180,14 +180,14 @@ static void exhaust(const form *f, const network *w, const operator_plan *n, ope
             }
         }
         if (all) {
-            note(f, o, (uint8_t)n->turned, at, least(until, last));
+            add_known(f, o, (uint8_t)n->turned, at, least(until, last));
         }
         at = ((until > at) ? until : at) + 1;
     }
 }
 
 /* A window: some position decides, or all do together. */
-static void slide(const form *f, const network *w, const operator_plan *n, operator_state *o)
+static void update_window(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
     const ranges *news = &operand->news[(uint8_t)(n->turned ^ 1)];
@@ -196,7 +196,7 @@ static void slide(const form *f, const network *w, const operator_plan *n, opera
     const int64_t before = past ? w->was_last : position_by(f, w, w->was_now - n->over);
     int32_t i;
     for (i = news->first; i < news->end; i++) {
-        spread(f, w, n, o, &news->at[i], w->first, w->last);
+        add_windows_with(f, w, n, o, &news->at[i], w->first, w->last);
     }
     if (past && (w->was_last < w->last)) {
         /* What was known before is in the windows of positions that have come. */
@@ -209,31 +209,31 @@ static void slide(const form *f, const network *w, const operator_plan *n, opera
             range found = known->at[i];
             found.first = (found.first > first) ? found.first : first;
             found.last = least(found.last, last);
-            spread(f, w, n, o, &found, w->was_last + 1, w->last);
+            add_windows_with(f, w, n, o, &found, w->was_last + 1, w->last);
         }
     }
     news = &operand->news[n->turned];
     for (i = news->first; i < news->end; i++) {
-        exhaust(f, w, n, o, from_on(f, w, news->at[i].first, -n->high),
+        add_windows_filled(f, w, n, o, from_on(f, w, news->at[i].first, -n->high),
                 least(up_to(f, w, news->at[i].last, -n->low), before));
     }
-    exhaust(f, w, n, o, before + 1, front);
+    add_windows_filled(f, w, n, o, before + 1, front);
 }
 
 /* Tell of the positions that stand at one of some others, so far ahead or back. */
-static void stand(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
+static void add_shifted(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
                   const range *found)
 {
     if (n->low >= 0) {
-        note(f, o, value, from_on(f, w, found->first - 1, 1 - n->low), up_to(f, w, found->last, -n->low));
+        add_known(f, o, value, from_on(f, w, found->first - 1, 1 - n->low), up_to(f, w, found->last, -n->low));
     } else {
         const bool ends = (f->gap == 0) && (found->last >= w->last);
-        note(f, o, value, from_on(f, w, found->first, -n->low),
+        add_known(f, o, value, from_on(f, w, found->first, -n->low),
              ends ? w->last : least(w->last, up_to(f, w, found->last + 1, -n->low - 1)));
     }
 }
 
-static void displace(const form *f, const network *w, const operator_plan *n, operator_state *o)
+static void update_shift(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
     uint8_t value;
@@ -241,19 +241,19 @@ static void displace(const form *f, const network *w, const operator_plan *n, op
     for (value = 0; value < 2U; value++) {
         const ranges *news = &operand->news[value];
         for (i = news->first; i < news->end; i++) {
-            stand(f, w, n, o, value, &news->at[i]);
+            add_shifted(f, w, n, o, value, &news->at[i]);
         }
         if ((n->low < 0) && (w->was_last < w->last)) {
             const ranges *known = &operand->known[value];
             const int64_t last = up_to(f, w, w->last, n->low);
             i = range_from(known, up_to(f, w, w->was_last + 1, n->low));
             for (; (i < known->end) && (known->at[i].first <= last); i++) {
-                stand(f, w, n, o, value, &known->at[i]);
+                add_shifted(f, w, n, o, value, &known->at[i]);
             }
         }
     }
     if ((w->closed < NEVER) && (n->kept != 0)) {
-        note(f, o, 1U, from_on(f, w, w->last, 1 - n->low),
+        add_known(f, o, 1U, from_on(f, w, w->last, 1 - n->low),
              least(w->last, position_by(f, w, w->closed - n->over)));
     }
 }
@@ -275,16 +275,16 @@ void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t l
         ranges_empty(&o->news[1]);
         switch (n->kind) {
         case OP_LEAF:
-            note(f, o, (uint8_t)((net->leaf[n->left] >> reading) & 1), w->was_last + 1,
+            add_known(f, o, (uint8_t)((net->leaf[n->left] >> reading) & 1), w->was_last + 1,
                  least(w->last, net->turn - 1));
-            note(f, o, (uint8_t)((net->next_leaf[n->left] >> reading) & 1),
+            add_known(f, o, (uint8_t)((net->next_leaf[n->left] >> reading) & 1),
                  (net->turn > w->was_last) ? net->turn : w->was_last + 1, w->last);
             break;
-        case OP_JUNCTION: join(f, w, n, o); break;
-        case OP_WINDOW: slide(f, w, n, o); break;
-        case OP_SHIFT: displace(f, w, n, o); break;
-        case OP_UNTIL: lead(f, w, n, o); break;
-        default: follow(f, w, n, o); break;
+        case OP_JUNCTION: update_junction(f, w, n, o); break;
+        case OP_WINDOW: update_window(f, w, n, o); break;
+        case OP_SHIFT: update_shift(f, w, n, o); break;
+        case OP_UNTIL: update_until(f, w, n, o); break;
+        default: update_since(f, w, n, o); break;
         }
     }
 }

@@ -75,7 +75,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
     int32_t tries = GUESSES;
     int32_t count = 0;
     learn_all(g, now, last);
-    one = decided_one(g);
+    one = decided_position(g);
     if ((one == NEVER) || is_spoilt(g)) {
         return NEVER; /* what did not fit is not known: nothing is found by steps */
     }
@@ -95,7 +95,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
         unlearn_all(g);
         at = middle;
         learn_all(g, at, last_at(g, at));
-        one = decided_one(g);
+        one = decided_position(g);
         if (one == NEVER) {
             low = middle;
         } else {
@@ -133,7 +133,7 @@ static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t pos
     return has_from(o, value, position) ? now : o->earliest[value];
 }
 
-static void ask_junction(const form *f, network *w, const operator_plan *n, operator_state *o)
+static void earliest_of_junction(const form *f, network *w, const operator_plan *n, operator_state *o)
 {
     const int32_t *operands = LIST(f->plan, n->operands);
     const uint8_t all = (uint8_t)n->turned;
@@ -149,7 +149,7 @@ static void ask_junction(const form *f, network *w, const operator_plan *n, oper
     }
 }
 
-static void ask_window(const form *f, network *w, const operator_plan *n, operator_state *o)
+static void earliest_of_window(const form *f, network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
     const uint8_t all = (uint8_t)n->turned;
@@ -164,7 +164,7 @@ static void ask_window(const form *f, network *w, const operator_plan *n, operat
 
 /* `left until right`: what is new of it comes of something new on its right, or leads to what was met
  * there; where it fails both have to. */
-static void ask_until(network *w, const operator_plan *n, operator_state *o)
+static void earliest_of_until(network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *left = &w->nodes[n->left];
     const operator_state *right = &w->nodes[n->right];
@@ -190,14 +190,14 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
             const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U;
             o->earliest[other] = NEVER;
         } else if (n->kind == OP_JUNCTION) {
-            ask_junction(f, w, n, o);
+            earliest_of_junction(f, w, n, o);
         } else if ((n->kind == OP_WINDOW) && (n->over >= 0)) {
-            ask_window(f, w, n, o);
+            earliest_of_window(f, w, n, o);
         } else if ((n->kind == OP_SHIFT) && (n->low >= 0)) {
             o->earliest[0] = w->nodes[n->left].earliest[0];
             o->earliest[1] = w->nodes[n->left].earliest[1];
         } else if (n->kind == OP_UNTIL) {
-            ask_until(w, n, o);
+            earliest_of_until(w, n, o);
         } else {
             /* What looks back is not followed. */
         }
@@ -209,7 +209,7 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
 
 /* What becomes of an attempt by what is known; false if it is decided. None is once memory was short:
  * what then became known may be wrong. */
-bool weigh(judging *g, int32_t at, int64_t t)
+bool judge_attempt(judging *g, int32_t at, int64_t t)
 {
     attempt *x = attempt_of(g, at);
     const bool parted = g->net->parted;
@@ -250,7 +250,7 @@ static int32_t attempt_from(const judging *g, int64_t position)
 }
 
 /* The position of an attempt that what became known of a formula decides; NEVER: of none. */
-int64_t decided_one(const judging *g)
+int64_t decided_position(const judging *g)
 {
     uint8_t value;
     int32_t i;
@@ -286,12 +286,12 @@ static int64_t next_new(const judging *g, int64_t position)
 }
 
 /* Judge the attempts of which something became known, at `t`. */
-void hear_news(judging *g, int64_t t)
+void judge_news(judging *g, int64_t t)
 {
     int64_t asked = -NEVER;
     int32_t before = -1;
     int32_t at = g->j->first;
-    if (!g->net->parted && (decided_one(g) == NEVER)) {
+    if (!g->net->parted && (decided_position(g) == NEVER)) {
         return;
     }
     while (at >= 0) {
@@ -303,10 +303,10 @@ void hear_news(judging *g, int64_t t)
                 break;
             }
         }
-        if ((position >= asked) && !weigh(g, at, t)) {
-            leave(g->r, g->index, before, at);
+        if ((position >= asked) && !judge_attempt(g, at, t)) {
+            remove_attempt(g->r, g->index, before, at);
         } else if (is_undecidable(attempt_of(g, at))) {
-            lay_aside(g->r, g->index, before, at);
+            move_to_undecidable(g->r, g->index, before, at);
         } else {
             before = at;
         }

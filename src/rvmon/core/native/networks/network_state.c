@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Begin at a position, of which nothing is known yet. */
-void start_over(const form *f, network *w, int64_t t, int64_t position)
+void reset_network(const form *f, network *w, int64_t t, int64_t position)
 {
     int32_t i;
     for (i = 0; i < f->form->operators.count; i++) {
@@ -101,7 +101,7 @@ static void want(operator_state *o, int64_t position)
 }
 
 /* Drop what nobody can ask for: attempts wait from `position` on. */
-void tidy(const form *f, network *w, int64_t position)
+void prune(const form *f, network *w, int64_t position)
 {
     int64_t first = position;
     int32_t i;
@@ -165,7 +165,7 @@ void put_networks(situation *s, run *r, int32_t index)
     put_bytes(s, j->net->leaf, f.form->leaves);
     for (reading = 0; reading < (j->net->parted ? 2 : 1); reading++) {
         network *w = &j->net->readings[reading];
-        tidy(&f, w, oldest);
+        prune(&f, w, oldest);
         for (i = 0; i < f.form->operators.count; i++) {
             const operator_state *o = &w->nodes[i];
             const bool since = f.nodes[i].kind == OP_SINCE;

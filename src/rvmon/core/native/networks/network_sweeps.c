@@ -2,7 +2,7 @@
 #include "networks/network.h"
 
 /* `left until right`; of the dual, all is said of the other values. */
-void lead(const form *f, const network *w, const operator_plan *n, operator_state *o)
+void update_until(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const uint8_t yes = (uint8_t)(n->turned ^ 1);
     const uint8_t no = (uint8_t)n->turned;
@@ -14,14 +14,14 @@ void lead(const form *f, const network *w, const operator_plan *n, operator_stat
     for (i = news->first; i < news->end; i++) {
         const int64_t first = news->at[i].first;
         j = range_around(&left->known[yes], first - 1);
-        note(f, o, yes, (j < 0) ? first : left->known[yes].at[j].first, news->at[i].last);
+        add_known(f, o, yes, (j < 0) ? first : left->known[yes].at[j].first, news->at[i].last);
     }
     news = &left->news[yes];
     for (i = news->first; i < news->end; i++) {
         const int64_t met = last_up_to(&o->known[yes], news->at[i].last + 1);
         j = range_around(&left->known[yes], news->at[i].first);
         if (j >= 0) {
-            note(f, o, yes, left->known[yes].at[j].first, met - 1);
+            add_known(f, o, yes, left->known[yes].at[j].first, met - 1);
         }
     }
     news = &right->news[no];
@@ -32,7 +32,7 @@ void lead(const form *f, const network *w, const operator_plan *n, operator_stat
         }
         j = range_around(&right->known[no], news->at[i].first);
         if ((j >= 0) && (last >= news->at[i].first)) {
-            note(f, o, no, right->known[no].at[j].first, last);
+            add_known(f, o, no, right->known[no].at[j].first, last);
         }
     }
     news = &left->news[no];
@@ -40,23 +40,23 @@ void lead(const form *f, const network *w, const operator_plan *n, operator_stat
         const ranges *unmet = &right->known[no];
         j = range_from(unmet, news->at[i].first);
         for (; (j < unmet->end) && (unmet->at[j].first <= news->at[i].last); j++) {
-            note(f, o, no, unmet->at[j].first, least(unmet->at[j].last, news->at[i].last));
+            add_known(f, o, no, unmet->at[j].first, least(unmet->at[j].last, news->at[i].last));
         }
     }
     if ((w->closed < NEVER) && (n->kept != 0)) {
         /* Behind the end nothing is missed any more. */
         j = range_around(&right->known[no], w->last);
-        note(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
+        add_known(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
         if (o->swept > w->last) {
-            note(f, o, no, o->base, w->last);
+            add_known(f, o, no, o->base, w->last);
         }
     }
     if (o->swept > o->base) {
         /* What lies before only leads there. */
         if (knows(o, yes, o->swept)) {
-            note(f, o, yes, o->base, o->swept - 1);
+            add_known(f, o, yes, o->base, o->swept - 1);
         } else if (knows(o, no, o->swept)) {
-            note(f, o, no, o->base, o->swept - 1);
+            add_known(f, o, no, o->base, o->swept - 1);
         } else {
             /* It is open. */
         }
@@ -64,7 +64,7 @@ void lead(const form *f, const network *w, const operator_plan *n, operator_stat
 }
 
 /* `left since right`: its mirror image. */
-void follow(const form *f, const network *w, const operator_plan *n, operator_state *o)
+void update_since(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const uint8_t yes = (uint8_t)(n->turned ^ 1);
     const uint8_t no = (uint8_t)n->turned;
@@ -76,7 +76,7 @@ void follow(const form *f, const network *w, const operator_plan *n, operator_st
     for (i = news->first; i < news->end; i++) {
         const int64_t last = news->at[i].last;
         j = range_around(&left->known[yes], last + 1);
-        note(f, o, yes, news->at[i].first, (j < 0) ? last : left->known[yes].at[j].last);
+        add_known(f, o, yes, news->at[i].first, (j < 0) ? last : left->known[yes].at[j].last);
     }
     news = &left->news[yes];
     for (i = news->first; i < news->end; i++) {
@@ -85,7 +85,7 @@ void follow(const form *f, const network *w, const operator_plan *n, operator_st
         j = range_around(&left->known[yes], news->at[i].first);
         if ((j >= 0) && (met < o->known[yes].end)) {
             const int64_t since = o->known[yes].at[met].first;
-            note(f, o, yes, ((since > first) ? since : first) + 1, left->known[yes].at[j].last);
+            add_known(f, o, yes, ((since > first) ? since : first) + 1, left->known[yes].at[j].last);
         }
     }
     news = &right->news[no];
@@ -101,7 +101,7 @@ void follow(const form *f, const network *w, const operator_plan *n, operator_st
         }
         j = range_around(&right->known[no], news->at[i].last);
         if ((j >= 0) && (first <= news->at[i].last)) {
-            note(f, o, no, first, right->known[no].at[j].last);
+            add_known(f, o, no, first, right->known[no].at[j].last);
         }
     }
     news = &left->news[no];
@@ -110,7 +110,7 @@ void follow(const form *f, const network *w, const operator_plan *n, operator_st
         j = range_from(unmet, news->at[i].first);
         for (; (j < unmet->end) && (unmet->at[j].first <= news->at[i].last); j++) {
             const int64_t first = unmet->at[j].first;
-            note(f, o, no, (first > news->at[i].first) ? first : news->at[i].first,
+            add_known(f, o, no, (first > news->at[i].first) ? first : news->at[i].first,
                  unmet->at[j].last);
         }
     }

@@ -118,7 +118,7 @@ static int64_t needed_from(const run *r, int32_t index)
     if ((reach < LIMIT) && (n->last != NULL) && (n->last->before != NULL)) {
         found = n->last->before[0] - reach;
     }
-    if (!watches(r, index) && (j->first >= 0)) {
+    if (!needs_every_position(r, index) && (j->first >= 0)) {
         const int64_t begin = attempt_at(r->home, j->first)->triggered;
         found = (begin > found) ? begin : found;
     }
@@ -157,7 +157,7 @@ void keep_letter(run *r, int32_t index, int64_t t)
     const int32_t words = words_for(propositions.count);
     const int32_t stride = words + 1;
     int64_t *made;
-    if ((j->first < 0) && !watches(r, index)) {
+    if ((j->first < 0) && !needs_every_position(r, index)) {
         forget_letters(m, n);
     }
     if (n->first != n->last) {

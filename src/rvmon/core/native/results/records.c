@@ -282,7 +282,7 @@ static void drop_laid(run *r, int32_t index)
         } else {
             owner->inconclusive++;
         }
-        give_back(h, at);
+        free_attempt(h, at);
     }
     if (j->noting != NULL) { /* what was noted for those that went may go, too */
         int32_t at;

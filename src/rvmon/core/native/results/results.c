@@ -78,7 +78,7 @@ static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
         more = take(user, &one, NULL);
     }
     for (at = next_open(r, index, -1); more && (at >= 0); at = next_open(r, index, at)) {
-        const rv_record one = open_record(r, index, attempt_at(r->home, at), told_number(r, at));
+        const rv_record one = open_record(r, index, attempt_at(r->home, at), reported_number(r, at));
         more = take(user, &one, captured);
     }
     return more;

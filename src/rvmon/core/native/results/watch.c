@@ -46,7 +46,7 @@ static bool begin_truths(home *h, const form *f, int64_t t)
             return false;
         }
     }
-    start_over(f, &h->truths->readings[0], t, (f->gap > 0) ? floored(t, f->step) : 0);
+    reset_network(f, &h->truths->readings[0], t, (f->gap > 0) ? floored(t, f->step) : 0);
     h->truths->begun = true;
     h->truths->parted = false;
     h->truths->turn = NEVER;

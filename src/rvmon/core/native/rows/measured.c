@@ -100,7 +100,7 @@ static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
     }
     for (i = 0; i < n->links.count; i++) {
         if ((l[i].kind != LINK_LETTER)
-            || (now && (has_attempts(&r->judges[l[i].judge]) || watches(r, l[i].judge)))) {
+            || (now && (has_attempts(&r->judges[l[i].judge]) || needs_every_position(r, l[i].judge)))) {
             return false;
         }
     }

@@ -149,10 +149,10 @@ void flush_turns(home *h)
     while (at >= 0) {
         turn *own = &h->turns[at];
         const int32_t next = own->next_done;
-        report(own->judge, own->rule, attempt_at(h, at), told_number(own->judge, at), own->verdict,
+        report(own->judge, own->rule, attempt_at(h, at), reported_number(own->judge, at), own->verdict,
                own->decision, own->decided, own->note);
         own->judge = NULL;
-        give_back(h, at);
+        free_attempt(h, at);
         at = next;
     }
 }
@@ -286,7 +286,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
             through(made, t, false);
         }
     } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
-        vary(made, t, false);
+        reevaluate_varying(made, t, false);
     } else {
         /* Everything is unknown there. */
     }

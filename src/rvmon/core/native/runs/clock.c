@@ -107,24 +107,24 @@ void have_judged(run *r, int64_t t)
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {
-            look_at(r, index, t);
+            take_episode_trigger(r, index, t);
         }
     }
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_LETTER) != 0)
-            && (has_attempts(&r->judges[index]) || watches(r, index))) {
+            && (has_attempts(&r->judges[index]) || needs_every_position(r, index))) {
             visit_judge(r, index, t);
         }
     }
     if (r->at.presence == ARE_THERE_NEXT) {
-        revive_all(r, t);
+        resume_episodes(r, t);
     }
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
         if ((r->judges[index].touched & TOUCHED_TRIGGER) != 0) {
             const int32_t trigger = followed(r, index);
-            if ((trigger >= 0) && starts(r, index, r->truth[trigger])) {
+            if ((trigger >= 0) && take_trigger(r, index, r->truth[trigger])) {
                 begin(r, index, t, t);
             }
         }
@@ -174,7 +174,7 @@ void visit(run *r, int64_t t)
         mark_lapsed(r);
     }
     if (t >= r->at.ends_at) {
-        come_back(r, t);
+        end_outages(r, t);
     }
     ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
     if (r->at.fading_count + r->at.fresh_count > 0) {

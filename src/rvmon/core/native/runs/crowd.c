@@ -290,7 +290,7 @@ bool passes_repeats_over(run *r, int32_t index, int64_t t)
     int64_t many;
     int64_t counted;
     j->again_at = t;
-    if ((before <= silent) || has_attempts(j) || watches(r, index) || !is_sure(r, index)
+    if ((before <= silent) || has_attempts(j) || needs_every_position(r, index) || !is_sure(r, index)
         || !is_silent(r)) {
         return false;
     }

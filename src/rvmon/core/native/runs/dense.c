@@ -25,7 +25,7 @@ int64_t last_position(const rv_monitor *m)
 static bool is_slow(const run *r, int32_t index)
 {
     return is_networked(r, index) && !r->judges[index].blind
-           && (has_attempts(&r->judges[index]) || watches(r, index));
+           && (has_attempts(&r->judges[index]) || needs_every_position(r, index));
 }
 
 static bool goes_slowly(const run *r)
@@ -52,7 +52,7 @@ static void give_up_networks(run *r)
                 x->parted = true;
                 x->location = FAILED;
                 x->better = PASSED;
-                lay_aside(r, i, -1, j->first);
+                move_to_undecidable(r, i, -1, j->first);
             }
             j->blind = r->part->forms[r->part->judges[i].form].looks_back != 0;
             set_rule_due(r, i, NEVER);

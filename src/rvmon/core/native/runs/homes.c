@@ -173,7 +173,7 @@ bool home_reserve(home *h, int32_t attempts)
 
 void home_mark_absent(home *h, bool event, int32_t local)
 {
-    have_no_source(h->root, event, local);
+    declare_no_source(h->root, event, local);
     if (event && (h->part->plan->each != 0) && (local == h->part->plan->each_event)) {
         h->root->opens_at = -LIMIT; /* whatever occurs is unknown, from the first position on */
     }
@@ -254,7 +254,7 @@ void lose_inbox(home *h, int64_t t)
     keep_given(h, t);
     for (one = h->root; one != NULL; one = following(h, one)) {
         touch_run(one);
-        give_loss(one, t, h->inbox, h->inbox_count);
+        run_take_loss(one, t, h->inbox, h->inbox_count);
     }
     rest_all(h);
 }
@@ -263,7 +263,7 @@ void lose_inbox(home *h, int64_t t)
 void home_lose(home *h, int64_t t)
 {
     if (!is_apart(h)) {
-        give_loss(h->root, t, h->inbox, h->inbox_count);
+        run_take_loss(h->root, t, h->inbox, h->inbox_count);
         h->alarm = h->root->at.alarm;
     } else if (holds_back(h)) {
         hold_back(h, t);
@@ -285,7 +285,7 @@ void home_begin_blank(home *h, int64_t t)
         }
     }
     touch_run(h->root);
-    may_begin(h->root, t);
+    await_blank_start(h->root, t);
     if (is_apart(h)) {
         rest_all(h);
     } else {

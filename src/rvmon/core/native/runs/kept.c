@@ -84,7 +84,7 @@ void replay(run *r)
     r->over = false;
     for (i = 0; i < p->signals.count + p->events.count; i++) {
         if (has_no_source(h->root, i)) {
-            have_no_source(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
+            declare_no_source(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
     while (first < h->given) {
@@ -105,13 +105,13 @@ void replay(run *r)
             const rv_update update = {0, one->says, one->value, one->fields};
             const incoming in = {one->local, one->event, &update};
             if (one->says == SAYS_AHEAD) {
-                may_begin(r, t);
+                await_blank_start(r, t);
             } else if (one->says == SAYS_DENSE) {
                 run_begin_dense(r, t);
             } else if (one->says == SAYS_SPARSE) {
                 run_end_dense(r, t);
             } else if (loss) {
-                give_loss(r, t, &in, 1);
+                run_take_loss(r, t, &in, 1);
             } else if (r->at.dense) {
                 run_take_amid(r, t, &in, (one->local >= 0) ? 1 : 0);
             } else if (one->local >= 0) {

@@ -207,7 +207,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
             made->truth_log->begun = made->at.position; /* what it would have seen before is lost */
         }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
-            vary(made, made->at.position, made->at.gathered);
+            reevaluate_varying(made, made->at.position, made->at.gathered);
         }
     } else {
         replay(made);

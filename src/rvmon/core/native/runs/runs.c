@@ -246,7 +246,7 @@ void clear_run(run *r)
         s->members = 0;
         s->known_slots = -1;
     }
-    begin_unlost(r);
+    clear_losses(r);
     clear_judges(r);
     if (r->truth_log != NULL) {
         stand_at_first(r, RV_NO_TIME);

@@ -61,7 +61,7 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
 /* A place for an attempt that is read, behind others; -1: memory is short. */
 static int32_t appended(run *r, int32_t *first, int32_t last)
 {
-    const int32_t at = place_taken(r);
+    const int32_t at = new_attempt(r);
     if (at >= 0) {
         (void)memset(attempt_at(r->home, at), 0, r->home->stride);
         attempt_at(r->home, at)->next = -1;
@@ -112,7 +112,7 @@ static void carry_queue(carrier *c, run *r, int32_t index)
     int32_t i;
     carry_size(c, &count, MOST, 12);
     for (i = 0; (i < count) && !is_lost(c); i++) {
-        queued *one = next_queued(c->m, q, i, c->reading);
+        queued *one = queue_slot(c->m, q, i, c->reading);
         if (one != NULL) {
             carry_instant(c, &one->triggered);
             carry_count(c, &one->number);

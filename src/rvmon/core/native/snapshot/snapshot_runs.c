@@ -115,7 +115,7 @@ static void carry_stretches(carrier *c, stretches *s)
     int32_t i;
     carry_size(c, &count, MOST, 16);
     for (i = 0; (i < count) && !is_lost(c); i++) {
-        stretch *one = next_stretch_of(c->m, s, i, c->reading);
+        stretch *one = stretch_slot(c->m, s, i, c->reading);
         if (one != NULL) {
             carry_long(c, &one->begin, INT64_MIN, NEVER);
             carry_long(c, &one->end, INT64_MIN, NEVER);

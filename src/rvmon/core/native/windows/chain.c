@@ -156,7 +156,7 @@ static bool readings_agree(const chaining *g)
            && (a->start == b->start);
 }
 
-static void part_readings(const chaining *g)
+static void split_readings(const chaining *g)
 {
     const chain_reading *w = &g->c->readings[0];
     chain_reading *made = &g->c->readings[1];
@@ -187,7 +187,7 @@ void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
     chain *c = g->c;
     int32_t i;
     if (!is_known(letter) && !c->parted) {
-        part_readings(g);
+        split_readings(g);
     }
     for (i = 0; i < (c->parted ? 2 : 1); i++) {
         const uint8_t bit = (i == 0) ? 1U : 2U;
@@ -210,7 +210,7 @@ void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
 }
 
 /* The value of the chain at a position, and the stamp as of which it is known. */
-static bool known_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
+static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     changes *stamps = &g->c->stamps;
     int64_t position = at;
@@ -297,7 +297,7 @@ int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
     const int64_t last = last_mattering(g, w, behind);
     int64_t stamp = INT64_MIN;
     if (last >= first) {
-        (void)known_of(g, w, last, &stamp);
+        (void)value_of_chain(g, w, last, &stamp);
     }
     return stamp;
 }
@@ -310,13 +310,13 @@ bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
     int64_t ends;
     int64_t fails;
     if (g->f.form->left < 0) {
-        return known_of(g, w, at, stamp);
+        return value_of_chain(g, w, at, stamp);
     }
     position = later(position, w->start);
     ends = first_from(&w->ends, position, true);
     fails = first_failure(g, w, position);
     if ((fails < ends) || ((fails == ends) && (fails != NEVER_KNOWN))) {
-        (void)known_of(g, w, fails, stamp);
+        (void)value_of_chain(g, w, fails, stamp);
         *stamp = later(*stamp, stamp_of(g, fails, 0, true));
         return false;
     }

@@ -88,7 +88,7 @@ static int64_t instant_of_stamp(int64_t stamp)
 
 /* Judge one attempt by a stamp; false if it was decided. `due` is the stamp at which it will be if the
  * letter stays. */
-static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
+static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
 {
     attempt *x = attempt_at(g->r->home, at);
     const int64_t position = position_of_attempt(x);
@@ -127,7 +127,7 @@ static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
 }
 
 /* Judge the attempts by all that is known as of a stamp. */
-static void look_through(chaining *g, int64_t limit)
+static void judge_chain_attempts(chaining *g, int64_t limit)
 {
     int64_t next_due = NEVER_KNOWN;
     int32_t before = -1;
@@ -138,10 +138,10 @@ static void look_through(chaining *g, int64_t limit)
         if (g->f.monitor->spoilt) {
             break;
         }
-        if (!weigh_in_chain(g, at, limit, &due)) {
-            leave(g->r, g->index, before, at);
+        if (!judge_in_chain(g, at, limit, &due)) {
+            remove_attempt(g->r, g->index, before, at);
         } else if (is_undecidable(attempt_at(g->r->home, at))) {
-            lay_aside(g->r, g->index, before, at);
+            move_to_undecidable(g->r, g->index, before, at);
         } else {
             next_due = least(next_due, due);
             before = at;
@@ -197,7 +197,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
         return;
     } else {
         if (g.c->parted) {
-            look_through(&g, 2 * t); /* see who stays open for good, before that is forgotten */
+            judge_chain_attempts(&g, 2 * t); /* see who stays open for good, before that is forgotten */
         }
         if (g.sparse) {
             add_change(g.f.monitor, &g.c->stamps, position);
@@ -218,7 +218,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
     if (g.sparse) {
         set_restless(r, index);
     }
-    look_through(&g, 2 * t + 1);
+    judge_chain_attempts(&g, 2 * t + 1);
 }
 
 /* Let time come to `t`; if `is_position`, the letter stays up to there. */
@@ -226,7 +226,7 @@ void chain_pass(run *r, int32_t index, int64_t t, bool is_position)
 {
     chaining g = chaining_of(r, index);
     if ((g.j->first >= 0) && (g.c != NULL)) {
-        look_through(&g, (is_position && !g.sparse) ? 2 * t + 1 : 2 * t);
+        judge_chain_attempts(&g, (is_position && !g.sparse) ? 2 * t + 1 : 2 * t);
     }
 }
 
@@ -240,7 +240,7 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
         return true; /* the run is spoilt */
     }
     x->clocks[0] = (g.f.gap > 0) ? floored(t, g.f.step) : t;
-    if (!weigh_in_chain(&g, at, 2 * t + 1, &due)) {
+    if (!judge_in_chain(&g, at, 2 * t + 1, &due)) {
         return false;
     }
     x->due = (due == NEVER_KNOWN) ? NEVER : instant_of_stamp(due);
