@@ -5,9 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import re
-from codecs import getincrementaldecoder
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -15,11 +14,11 @@ import numpy as np
 from rvmon.errors import TraceError
 from rvmon.native import extension
 from rvmon.native.sources import CSV_FOLDER
-from rvmon.readers import places
+from rvmon.readers.ahead import read_ahead, stretches
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.readers.cells import batch_of, cells_of_labels, kept
 from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines, unended
-from rvmon.readers.places import LONGEST_LINE, bounded_lines
+from rvmon.readers.places import LONGEST_LINE, bounded_lines, is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.values import as_declared, scalar_of_text
 from rvmon.trace.schema import Kind
@@ -74,14 +73,19 @@ def csv_batches(
     """
     text = _Text(file)
     reader = _Reader(layout_of(split_lines(text.lines())))
-    while True:
-        ended, end = yield from reader.batch(text)
-        if ended == _ROW:
-            before = text.line
-            row = bounded_lines(io.StringIO(text.cut(end), newline=""))
-            yield csv_samples(split_lines(row, before), reader.layout)
-        elif ended == _ALL and not text.read_on():
-            break
+    if not is_short_of_memory():  # each thread reserves some
+        text.read_ahead(reader.read)
+    try:
+        while True:
+            ended, end = yield from reader.batch(text)
+            if ended == _ROW:
+                before = text.line
+                row = bounded_lines(io.StringIO(text.cut(end), newline=""))
+                yield csv_samples(split_lines(row, before), reader.layout)
+            elif ended == _ALL and not text.read_on():
+                break
+    finally:
+        text.close()
     if text.start < len(text.rest):
         before = text.line
         tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
@@ -90,32 +94,62 @@ def csv_batches(
             yield iter([(line, t, values)])
 
 
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What a call found in a text: as `csv.h` says, in arrays with room for more.
+
+    Attributes:
+        counts: how it ended, rows, where what is left begins, where an odd row ends, lines, odd
+            cells, labels.
+    """
+
+    numbers: NDArray[np.int64]
+    says: NDArray[np.uint8]
+    lines: NDArray[np.int64]
+    odd: NDArray[np.int64]
+    labels: NDArray[np.int64]
+    counts: tuple[int, ...]
+
+
 class _Text:
-    """A text that is read in blocks, and what of it is not taken yet."""
+    """A text that is taken in stretches, and what of one is not taken yet.
+
+    Mostly the end of a line is that of a row. Where it is not, what lies behind it is read again.
+
+    Attributes:
+        found: gives what was found in all of `rest`, if that was read ahead.
+    """
 
     def __init__(self, file: BinaryIO) -> None:
-        self._file = file
-        self._decoder = getincrementaldecoder("utf-8")()
-        self.rest = b""
-        self.start = 0
+        self._stretches = stretches(file)
+        self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
+        self._read = ((one, None) for one in self._stretches)
+        self.rest, self.found = next(self._read)
+        self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
         self.line = 0
         self.is_last = False
-        self.read_on()
-        if self.rest.startswith(_MARK):
-            self.start = len(_MARK)
+
+    def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
+        """Have further stretches read by other threads."""
+        self._read = read_ahead(self._stretches, read)
+
+    def close(self) -> None:
+        """Read no further."""
+        self._read.close()
 
     def read_on(self) -> bool:
-        """Read a further block; false: there was none before, either."""
+        """Go on to a further stretch; false: there was none before, either."""
         if self.is_last:
             return False
         if len(self.rest) - self.start > LONGEST_LINE:
             self._refuse_long()
-        piece = self._file.read(places.BLOCK)
-        if self._decoder.getstate()[0] or not piece.isascii():
-            self._decoder.decode(piece, final=not piece)
-        self.rest = self.rest[self.start :] + piece
+        further = next(self._read, None)
+        self.is_last = further is None
+        stretch, self.found = further or (b"", None)
+        if self.start < len(self.rest):
+            stretch, self.found = self.rest[self.start :] + stretch, None
+        self.rest = stretch
         self.start = 0
-        self.is_last = not piece
         return True
 
     @property
@@ -157,9 +191,23 @@ class _Reader:
         self._kinds = np.array(kinds, np.int32)
         no_update = layout.gaps.no_update
         self._absent = None if no_update is None else str(no_update).encode()
-        self._odd = np.empty((max(_ODD, len(kinds)), 4), np.int64)
-        self._labels = np.empty((max(_LABELS, len(kinds)), 3), np.int64)
         self._row_bytes = 2.0 * len(layout.header)
+
+    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> _Found:
+        """Find rows in a text from a place on, as far as one call can."""
+        room = self._room_for(len(text) - start)
+        columns = len(self._kinds)
+        numbers = np.empty((columns, room), np.int64)
+        says = np.empty((columns, room), np.uint8)
+        lines = np.empty(room, np.int64)
+        odd = np.empty((max(_ODD, columns), 4), np.int64)
+        labels = np.empty((max(_LABELS, columns), 3), np.int64)
+        table = np.zeros(2 * len(labels), np.int32)
+        counts = read(
+            text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
+            numbers, says, lines, odd, labels, table,
+        )  # fmt: skip
+        return _Found(numbers, says, lines, odd, labels, counts)
 
     def batch(self, text: _Text) -> Generator[Batch, None, tuple[int, int]]:
         """Take what can be read at once.
@@ -170,28 +218,25 @@ class _Reader:
         Raises:
             TraceError: a cell is none of its kind; the rows above it have been given out.
         """
-        if text.start == len(text.rest):
+        source = text.rest
+        if text.start == len(source):
             return _ALL, 0
-        room = self._room_for(len(text.rest) - text.start)
-        numbers = np.empty((len(self._kinds), room), np.int64)
-        says = np.empty((len(self._kinds), room), np.uint8)
-        lines = np.empty(room, np.int64)
-        table = np.zeros(2 * len(self._labels), np.int32)
-        ended, rows, at, end, count, odd, labels = read(
-            text.rest, text.start, text.is_ended, csv.field_size_limit(), self._slots, self._kinds,
-            self._absent, numbers, says, lines, self._odd, self._labels, table,
-        )  # fmt: skip
-        found = text.rest
+        if text.found is not None:
+            found, text.found = text.found(), None
+        else:
+            found = self.read(source, text.start, is_ended=text.is_ended)
+        numbers, says, lines = found.numbers, found.says, found.lines
+        ended, rows, at, end, count, odd, labels = found.counts
         lines += text.line
         fault = None
-        for row, place, start, stop in self._odd[:odd].tolist():
+        for row, place, start, stop in found.odd[:odd].tolist():
             try:
-                self._read_odd(_cell(found, start, stop), place, row, numbers, says)
+                self._read_odd(_cell(source, start, stop), place, row, numbers, says)
             except TraceError as error:
                 rows, fault = row, TraceError(f"line {lines[row]}: {error}")
                 break
         if rows:
-            words = [(of, _cell(found, *ends)) for of, *ends in self._labels[:labels].tolist()]
+            words = [(of, _cell(source, *ends)) for of, *ends in found.labels[:labels].tolist()]
             cells = {
                 column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
                 for place, column in enumerate(self.layout.columns, 1)

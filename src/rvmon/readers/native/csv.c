@@ -15,12 +15,6 @@ static bool is_space(char c)
     return (c == ' ') || ((c >= '\t') && (c <= '\r')) || ((c >= 28) && (c <= 31));
 }
 
-/* What digits are above. */
-static bool ends_cell(char c)
-{
-    return ((uint8_t)c <= ',') && ((c == ',') || (c == '\n') || (c == '\r'));
-}
-
 static cell trimmed(cell c)
 {
     while ((c.from < c.to) && is_space(*c.from)) {
@@ -106,6 +100,20 @@ static bool take_cell(csv_reader *r, int32_t column, cell c)
     return true;
 }
 
+/* Put down the number that a cell of a row begins with and is; gives its end, NULL: look closer. */
+static const char *take_number(csv_reader *r, int32_t column, const char *at)
+{
+    const int64_t place = (int64_t)column * r->room + r->rows;
+    const char *end = (r->absent != NULL)
+                          ? NULL
+                          : csv_number_at(r, r->kinds[column], at, &r->numbers[place]);
+    if ((end == NULL) || (end - at > r->longest)) {
+        return NULL;
+    }
+    r->says[place] = CSV_YES;
+    return end;
+}
+
 /* Behind the end of a line that begins here. */
 static const char *behind(const char *at, const char *end)
 {
@@ -161,8 +169,18 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
         return is_open(r, blank) ? ROW_OPEN : ROW_BLANK;
     }
     for (;; at++) {
+        const int32_t column = (place < r->width) ? r->slots[place] : -1;
         cell c = {at, at, false};
-        if ((at < end) && (*at == '"')) {
+        const char *number = (column >= 0) ? take_number(r, column, at) : NULL;
+        if ((number != NULL) && (*number == ',')) {
+            at = number;
+            place++;
+            continue;
+        }
+        if (number != NULL) {
+            at = number;
+            c.to = at;
+        } else if ((at < end) && (*at == '"')) {
             at = quoted(r, at + 1, &c, line);
             if ((at == NULL) || (at == end)) {
                 if (!r->is_last) {
@@ -177,7 +195,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
                 }
             }
         } else {
-            while ((at < end) && !ends_cell(*at)) {
+            while ((at < end) && !csv_ends_cell(*at)) {
                 at++;
             }
             c.to = at;
@@ -186,8 +204,8 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
             return ROW_OPEN;
         }
         is_odd = is_odd || (place >= r->width) || (c.to - c.from > r->longest);
-        if (!is_odd && has_room && (r->slots[place] >= 0)) {
-            has_room = take_cell(r, r->slots[place], c);
+        if (!is_odd && has_room && (column >= 0) && (number == NULL)) {
+            has_room = take_cell(r, column, c);
         }
         place += (place < r->width) ? 1 : 0;
         if ((at == end) || (*at != ',')) {

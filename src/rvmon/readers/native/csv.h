@@ -24,8 +24,8 @@ typedef union {
     int64_t whole;
 } csv_number;
 
-/* A number that is no product of an exact whole and an exact power of ten; NaN: none. */
-typedef double (*csv_slow)(const char *text);
+/* A number that is no exact whole times or through an exact power of ten; NaN: none. */
+typedef double (*csv_slow)(void *taken, const char *text);
 
 typedef struct {
     const char *text;
@@ -39,6 +39,7 @@ typedef struct {
     const char *absent;   /* the text that stands for no update; NULL: none */
     int64_t absent_size;
     csv_slow slow;
+    void *taken; /* what it is given */
 
     int64_t room; /* for rows */
     csv_number *numbers; /* of each column, `room` of them; of labels places in `labels` */
@@ -63,5 +64,14 @@ csv_end csv_read(csv_reader *r);
 
 /* A cell that is trimmed and not empty, as a value of its kind: what it says. */
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made);
+
+/* The number of its kind that a cell begins with, and is: where it ends. NULL: look closer. */
+const char *csv_number_at(const csv_reader *r, int32_t kind, const char *from, csv_number *made);
+
+/* What all digits are above. */
+static inline bool csv_ends_cell(char c)
+{
+    return ((uint8_t)c <= ',') && ((c == ',') || (c == '\n') || (c == '\r'));
+}
 
 #endif

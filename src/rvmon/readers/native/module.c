@@ -7,9 +7,16 @@
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
 #endif
 
-static double slow_number(const char *text)
+/* Python reads it, whose lock is kept then: to ask for it again and again would take long. */
+static double slow_number(void *taken, const char *text)
 {
-    const double found = PyOS_string_to_double(text, NULL, NULL);
+    PyThreadState **thread = taken;
+    double found;
+    if (*thread != NULL) {
+        PyEval_RestoreThread(*thread);
+        *thread = NULL;
+    }
+    found = PyOS_string_to_double(text, NULL, NULL);
     if (PyErr_Occurred() != NULL) {
         PyErr_Clear();
         return NAN;
@@ -32,6 +39,20 @@ static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *
            && (numbers->len / 8 >= cells) && (says->len >= cells)
            && (table->len / 8 >= r->label_room) && (r->label_room >= r->columns)
            && (r->label_room < INT32_MAX / 4) && (r->odd_room >= r->columns);
+}
+
+/* Read rows while other threads of Python run. */
+static csv_end read_unlocked(csv_reader *r)
+{
+    PyThreadState *thread = PyEval_SaveThread();
+    csv_end ended;
+    r->slow = slow_number;
+    r->taken = &thread;
+    ended = csv_read(r);
+    if (thread != NULL) {
+        PyEval_RestoreThread(thread);
+    }
+    return ended;
 }
 
 /* read(text, start, is_last, longest, slots, kinds, absent, numbers, says, lines, odd, labels, table):
@@ -66,7 +87,6 @@ static PyObject *csv_read_rows(PyObject *module, PyObject *args)
     r.columns = (int32_t)(b[KINDS].len / 4);
     r.absent = absent;
     r.absent_size = absent_size;
-    r.slow = slow_number;
     r.numbers = b[NUMBERS].buf;
     r.says = b[SAYS].buf;
     r.lines = b[LINES].buf;
@@ -77,7 +97,7 @@ static PyObject *csv_read_rows(PyObject *module, PyObject *args)
     r.label_room = b[LABELS].len / 24;
     r.table = b[TABLE].buf;
     if (fit(&r, &b[NUMBERS], &b[SAYS], &b[TABLE])) {
-        const csv_end ended = csv_read(&r);
+        const csv_end ended = read_unlocked(&r);
         made = Py_BuildValue("(iLLLLLL)", (int)ended, (long long)r.rows, (long long)r.at,
                              (long long)r.end, (long long)r.line, (long long)r.odd_count,
                              (long long)r.label_count);

@@ -43,7 +43,7 @@ static int32_t held_digits(const char *at, const char *to)
 }
 
 /* Digits and a point, perhaps; gives where they end, NULL if there is no digit. */
-static const char *digits_of(const char *from, const char *to, decimal *d)
+static inline const char *digits_of(const char *from, const char *to, decimal *d)
 {
     const char *at = from;
     const char *point = NULL;
@@ -66,35 +66,34 @@ static const char *digits_of(const char *from, const char *to, decimal *d)
     return (digits > 0) ? at : NULL;
 }
 
-/* A decimal number, as Python reads one; false: it is none, or a long one. */
-static bool decimal_of(const char *from, const char *to, decimal *d)
+/* The decimal number that begins here, as Python reads one; gives where it ends, NULL if there is
+ * none, or a long one. */
+static inline const char *decimal_at(const char *from, const char *to, decimal *d)
 {
     const char *at = from;
     (void)memset(d, 0, sizeof *d);
-    if (to - from > LONGEST) {
-        return false;
-    }
     if ((at < to) && ((*at == '-') || (*at == '+'))) {
         d->is_negative = *at == '-';
         at++;
     }
     at = digits_of(at, to, d);
-    if ((at != NULL) && (at < to) && ((*at == 'e') || (*at == 'E'))) {
+    if ((at != NULL) && (at < to) && ((*at | 32) == 'e')) {
+        const char *first;
         bool down = false;
         at++;
         if ((at < to) && ((*at == '-') || (*at == '+'))) {
             down = *at == '-';
             at++;
         }
-        if ((at == to) || (to - at > 4)) {
-            return false;
-        }
-        for (; (at < to) && is_digit(*at); at++) {
+        for (first = at; (at < to) && (at - first < 5) && is_digit(*at); at++) {
             d->exponent = d->exponent * 10 + (*at - '0');
+        }
+        if ((at == first) || (at - first > 4)) {
+            return NULL;
         }
         d->exponent = down ? -d->exponent : d->exponent;
     }
-    return at == to;
+    return ((at == NULL) || (at - from > LONGEST)) ? NULL : at;
 }
 
 /* A whole number of up to 19 digits by an exact power of ten, rounded once; false: it is not sure.
@@ -112,24 +111,34 @@ static bool quotient(uint64_t mantissa, double power, double *made)
     return *made == least;
 }
 
-static int real_of(const csv_reader *r, const decimal *d, const char *from, const char *to,
+/* A number that is no exact whole times or through an exact power of ten. */
+static int inexact(const csv_reader *r, const decimal *d, const char *from, const char *to,
                    csv_number *made)
 {
     const int32_t power = d->exponent - d->behind;
     char copy[LONGEST + 1];
     double found;
     if (!d->is_long && (power <= 0) && (power >= -MOST_POWER)
-        && ((d->mantissa <= EXACT) || quotient(d->mantissa, POWERS[-power], &found))) {
-        if (d->mantissa <= EXACT) {
-            found = (double)d->mantissa / POWERS[-power];
-        }
+        && quotient(d->mantissa, POWERS[-power], &found)) {
         made->real = d->is_negative ? -found : found;
         return CSV_YES;
     }
     (void)memcpy(copy, from, (size_t)(to - from));
     copy[to - from] = '\0';
-    made->real = r->slow(copy);
+    made->real = r->slow(r->taken, copy);
     return isfinite(made->real) ? CSV_YES : CSV_ODD;
+}
+
+/* A whole times or through a power of ten, rounded once; false: one of them is no exact double. */
+static inline bool exact_of(const decimal *d, csv_number *made)
+{
+    const int32_t power = d->exponent - d->behind;
+    const double whole = d->is_negative ? -(double)d->mantissa : (double)d->mantissa;
+    if (d->is_long || (d->mantissa > EXACT) || (power > MOST_POWER) || (power < -MOST_POWER)) {
+        return false;
+    }
+    made->real = (power < 0) ? whole / POWERS[-power] : whole * POWERS[power];
+    return true;
 }
 
 static uint64_t power_of_ten(int32_t power)
@@ -142,7 +151,7 @@ static uint64_t power_of_ten(int32_t power)
 }
 
 /* A decimal as a whole number, of which no part is behind the point; up to `most`. */
-static int whole_of(const decimal *d, uint64_t most, csv_number *made)
+static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
 {
     uint64_t whole = d->mantissa;
     if (d->is_long || (d->exponent != 0) || (d->behind > MOST_DIGITS)) {
@@ -164,7 +173,7 @@ static int whole_of(const decimal *d, uint64_t most, csv_number *made)
 }
 
 /* A stamp as ticks, of which so many digits are whole; half a tick goes to the even one. */
-static int stamp_of(const decimal *d, int32_t places, csv_number *made)
+static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
 {
     uint64_t ticks = d->mantissa;
     if (d->is_long || (d->exponent != 0) || ((places == 0) && (d->behind > 0))) {
@@ -317,6 +326,17 @@ static int truth_of(const char *from, const char *to, csv_number *made)
     return CSV_ODD;
 }
 
+static inline int value_of(const csv_reader *r, int32_t kind, const decimal *d, const char *from,
+                           const char *to, csv_number *made)
+{
+    switch (kind) {
+    case CSV_BOOL: return d->is_negative ? CSV_ODD : whole_of(d, 1, made);
+    case CSV_INT: return whole_of(d, INT64_MAX, made);
+    case CSV_REAL: return exact_of(d, made) ? CSV_YES : inexact(r, d, from, to, made);
+    default: return stamp_of(d, kind - CSV_STAMP, made);
+    }
+}
+
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made)
 {
     decimal d;
@@ -334,13 +354,16 @@ int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *t
     if (kind == CSV_DATE) {
         return date_of(from, to, made);
     }
-    if (!decimal_of(from, to, &d)) {
-        return CSV_ODD;
+    return (decimal_at(from, to, &d) == to) ? value_of(r, kind, &d, from, to, made) : CSV_ODD;
+}
+
+const char *csv_number_at(const csv_reader *r, int32_t kind, const char *from, csv_number *made)
+{
+    const char *end = r->text + r->size;
+    decimal d;
+    const char *to = ((kind == CSV_LABEL) || (kind == CSV_DATE)) ? NULL : decimal_at(from, end, &d);
+    if ((to == NULL) || (to == end) || !csv_ends_cell(*to)) {
+        return NULL;
     }
-    switch (kind) {
-    case CSV_BOOL: return d.is_negative ? CSV_ODD : whole_of(&d, 1, made);
-    case CSV_INT: return whole_of(&d, INT64_MAX, made);
-    case CSV_REAL: return real_of(r, &d, from, to, made);
-    default: return stamp_of(&d, kind - CSV_STAMP, made);
-    }
+    return (value_of(r, kind, &d, from, to, made) == CSV_YES) ? to : NULL;
 }

@@ -1,0 +1,81 @@
+"""A text in stretches of whole lines, of which the next ones are read while one is looked at."""
+
+from __future__ import annotations
+
+import os
+from codecs import getincrementaldecoder
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
+from typing import TYPE_CHECKING, BinaryIO, TypeVar
+
+from rvmon.readers import places
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future  # of threads
+
+_Read = TypeVar("_Read")
+
+MOST_THREADS = 4
+"""That read; who looks at what they have read is slower than these."""
+
+
+def stretches(file: BinaryIO) -> Iterator[bytes]:
+    r"""A text in stretches that end with a line, but the last one; a line may be in several.
+
+    Raises:
+        UnicodeDecodeError: it is no text.
+
+    >>> import io
+    >>> list(stretches(io.BytesIO(b"t,p\n0,1\n1,")))
+    [b't,p\n0,1\n', b'1,']
+    """
+    decoder = getincrementaldecoder("utf-8")()
+    tail = b""
+    while piece := file.read(places.BLOCK):
+        if decoder.getstate()[0] or not piece.isascii():
+            decoder.decode(piece)
+        whole = piece.rfind(b"\n") + 1 or len(piece)
+        yield tail + piece[:whole]
+        tail = piece[whole:]
+    decoder.decode(b"", final=True)
+    yield tail
+
+
+def read_ahead(
+    found: Iterator[bytes], read: Callable[[bytes], _Read]
+) -> Generator[tuple[bytes, Callable[[], _Read] | None], None, None]:
+    """Stretches, each with what gives what another thread read in it; of one without end nothing.
+
+    Args:
+        found: are taken in order, some before they are asked for; so is what goes wrong then.
+        read: may run in several threads at once.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+
+    threads = min(MOST_THREADS, os.cpu_count() or 1)
+    waiting: deque[tuple[bytes, Future[_Read] | None]] = deque()
+    fault: Exception | None = None
+    is_over = False
+    with ThreadPoolExecutor(threads, "rvmon-reads") as pool:
+        try:
+            while True:
+                while not is_over and len(waiting) <= threads:
+                    try:
+                        stretch = next(found, None)
+                    except Exception as error:  # noqa: BLE001 - raised in its turn
+                        stretch, fault = None, error
+                    is_over = stretch is None
+                    if stretch is not None:
+                        whole = stretch.endswith(b"\n")
+                        waiting.append((stretch, pool.submit(read, stretch) if whole else None))
+                if not waiting:
+                    break
+                stretch, one = waiting.popleft()
+                yield stretch, None if one is None else one.result
+            if fault is not None:
+                raise fault
+        finally:
+            del fault  # its traceback holds this frame
+            for _, one in waiting:
+                if one is not None:
+                    one.cancel()
