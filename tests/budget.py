@@ -34,7 +34,7 @@ BUDGETS = {
     "tests/rvmon/evidence": 1,
     "tests/rvmon/execute": 20,
     "tests/rvmon/export": 35,
-    "tests/rvmon/laws": 130,
+    "tests/rvmon/laws": 70,
     "tests/rvmon/logic": 14,
     "tests/rvmon/live": 15,
     "tests/rvmon/monitor": 80,

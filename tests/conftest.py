@@ -23,7 +23,6 @@ _MARK_OF_FIXTURE = {
     "cortex_m": "compiler",
     "directed_results": "campaign",
     "gcc": "compiler",
-    "subject": "law",
 }
 
 

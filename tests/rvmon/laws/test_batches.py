@@ -7,24 +7,16 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import judge
 from tests.tools.build import e, requirement, spec_of
 from tests.tools.compare import differences
-from tests.tools.drive import drive
-from tests.tools.forms import Maker
 
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import Case
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict.report import Report
 
 DELAY = 9
-
-
-def whole(case: Case) -> Report:
-    """The report of a monitor that gets every sample whole and in order."""
-    return drive(Maker()(case), case)[0]
 
 
 @pytest.mark.law
@@ -33,7 +25,7 @@ def whole(case: Case) -> Report:
 def test_the_order_inside_a_batch(data: st.DataObject) -> None:
     """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
     case = data.draw(cases(Profile(mixed=False)))
-    expected = whole(case)
+    expected = judge(case)
     monitor = Spec(case.spec).monitor(settle="next", sources=case.names)
     for action in case.actions:
         if not isinstance(action, Sample):
@@ -61,7 +53,7 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
     for sample in told:
         monitor.step_ns(sample.t, sample.values)
     report = monitor.finish_ns(case.end)
-    expected = whole(case)
+    expected = judge(case)
     assert differences(expected, report) == []
     assert report.health == expected.health
     pairs = [(sample.t * 1e-9, sample.values) for sample in told]

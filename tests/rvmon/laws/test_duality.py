@@ -5,11 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import pytest
-from hypothesis import assume
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import (
+    ONE,
+    TRIED,
+    judge,
+    judged_otherwise,
+    known_from_the_first,
+)
 from tests.tools.build import (
     always,
     eventually,
@@ -29,18 +35,16 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked.formula import BinaryOp, Formula, Interval, UnaryOp
+from rvmon.spec.checked.formula import Formula, Interval, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.spec.print import format_formula
 from rvmon.testing.generate.formula import Shape, interval
-from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.syntax import subformulas
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import formulas, specs, traces
-from rvmon.trace.sample import Sample, Value
+
+pytestmark = pytest.mark.law
 
 Pair = tuple[Formula, Formula]
-
-BORN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
 def is_born_with_its_signals(formula: Formula) -> bool:
@@ -82,92 +86,55 @@ def in_ticks(a: Formula) -> Iterator[Pair]:
     yield fall(a), two(no(a), "and", once(a, 1, 1))
 
 
-PAST = {UnaryOp.ONCE, UnaryOp.HISTORICALLY, UnaryOp.HELD, UnaryOp.RISE, UnaryOp.FALL}
-PAST |= {UnaryOp.PREVIOUS, BinaryOp.SINCE}
-FUTURE = {UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.RELEASE}
-FUTURE |= {BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE}
-
-
-def known_from_the_first(case: Case) -> Case:
-    """The case with a value for each signal in its first sample: all is born with the trace."""
-    [*first] = case.samples[:1]
-    if not first:
-        return case
-    given = {name: value for name, value in first[0].values.items() if _is_known(value)}
-    start_ = Sample(first[0].t, {**first[0].values, **BORN, **given})
-    actions = tuple(start_ if action is first[0] else action for action in case.actions)
-    return replace(case, actions=actions, names=None)
-
-
-def _is_known(value: Value) -> bool:
-    return value is not None and value == value
-
-
-def is_mixed(formula: Formula) -> bool:
-    """Whether a future operator stands below a past one."""
-    return any(
-        getattr(part, "op", None) in PAST
-        and any(getattr(below, "op", None) in FUTURE for below in subformulas(part))
-        for part in subformulas(formula)
-    )
-
-
 def with_consequent(spec: CheckedSpec, consequent: Formula) -> CheckedSpec:
     [first, *_] = spec.requirements.values()
     changed = replace(first, consequent=consequent, captures=(), for_each=None)
     return replace(spec, requirements={first.id: changed})
 
 
+TRACES = TraceProfile(outages=35)
+
+
 @pytest.mark.parametrize("time", TimeModel)
-def test_equivalent_formulas(subject: Any, holds: Any, time: TimeModel) -> None:
+@TRIED
+@given(data=st.data())
+def test_equivalent_formulas(data: st.DataObject, time: TimeModel) -> None:
     """Formulas that are defined by each other have the same attempts, verdicts and instants."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        profile = replace(subject.one, time=time)
-        spec = data.draw(specs(profile))
-        shape = Shape(step=time is not TimeModel.HELD, mixed=profile.mixed)
-        drawn = formulas(shape, depth=2).filter(is_born_with_its_signals)
-        a, b = (data.draw(drawn) for _ in range(2))
-        window: Interval = data.draw(st.builds(interval, st.randoms(), st.just(shape)))
-        pairs = [*anywhere(a, b, window.low, window.high)]
-        pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
-        left, right = data.draw(st.sampled_from(pairs))
-        assume(profile.mixed or not (is_mixed(left) or is_mixed(right)))
-        case = known_from_the_first(data.draw(traces(spec, subject.traces)))
-        # Of `held`, what is unknown up to the first tick of a clock may not be born; that a trace
-        # has lasted long enough may be sure though nobody knows where it began.
-        exact = time is not TimeModel.CLOCKED and not case.outages
-        assume(exact or getattr(left, "op", None) is not UnaryOp.HELD)
-        given_left, given_right = (
-            replace(case, spec=with_consequent(spec, formula)) for formula in (left, right)
-        )
-        assert subject.differences(given_left, given_right) == []
+    spec = data.draw(specs(replace(ONE, time=time)))
+    shape = Shape(step=time is not TimeModel.HELD)
+    drawn = formulas(shape, depth=2).filter(is_born_with_its_signals)
+    a, b = (data.draw(drawn) for _ in range(2))
+    window: Interval = data.draw(st.builds(interval, st.randoms(), st.just(shape)))
+    pairs = [*anywhere(a, b, window.low, window.high)]
+    pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
+    left, right = data.draw(st.sampled_from(pairs))
+    case = known_from_the_first(data.draw(traces(spec, TRACES)))
+    # Of `held`, what is unknown up to the first tick of a clock may not be born; that a trace
+    # has lasted long enough may be sure though nobody knows where it began.
+    exact = time is not TimeModel.CLOCKED and not case.outages
+    assume(exact or getattr(left, "op", None) is not UnaryOp.HELD)
+    cases = [replace(case, spec=with_consequent(spec, formula)) for formula in (left, right)]
+    assert judged_otherwise(*cases) == []
 
 
-def test_negation_exchanges_verdicts(subject: Any, holds: Any) -> None:
+@TRIED
+@given(specs(ONE), st.data())
+def test_negation_exchanges_verdicts(spec: CheckedSpec, data: st.DataObject) -> None:
     """`not φ` fails where φ passes, as far as the prefix decides; `weak` and `strong` swap."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        spec = data.draw(specs(subject.one))
-        step = spec.time is not TimeModel.HELD
-        formula = data.draw(formulas(Shape(step=step, mixed=subject.profile.mixed)))
-        case = data.draw(traces(spec, subject.traces))
-        swap = {EndPolicy.WEAK: EndPolicy.STRONG, EndPolicy.STRONG: EndPolicy.WEAK}
-        for policy, other in swap.items():
-            reports = []
-            for consequent, at_end in ((formula, policy), (no(formula), other)):
-                changed = with_consequent(spec, consequent)
-                [required] = changed.requirements.values()
-                upon = requirement(consequent, upon=required.trigger, at_end=at_end)
-                one = spec_of(upon, time=spec.time, period=spec.period)
-                reports.append(
-                    subject.judge(replace(case, spec=replace(one, signals=spec.signals)))
-                )
-            exchange = {"P": "F", "F": "P", "I": "I"}
-            # What is in doubt can only be met.
-            sure = [[a for a in report.attempts if not a.in_doubt] for report in reports]
-            wanted = [(a.number, a.decided, exchange[a.verdict.value], a.decision) for a in sure[0]]
-            got = [(a.number, a.decided, a.verdict.value, a.decision) for a in sure[1]]
-            assert got == wanted
+    formula = data.draw(formulas(Shape(step=spec.time is not TimeModel.HELD)))
+    case = data.draw(traces(spec, TRACES))
+    swap = {EndPolicy.WEAK: EndPolicy.STRONG, EndPolicy.STRONG: EndPolicy.WEAK}
+    for policy, other in swap.items():
+        reports = []
+        for consequent, at_end in ((formula, policy), (no(formula), other)):
+            changed = with_consequent(spec, consequent)
+            [required] = changed.requirements.values()
+            upon = requirement(consequent, upon=required.trigger, at_end=at_end)
+            one = spec_of(upon, time=spec.time, period=spec.period)
+            reports.append(judge(replace(case, spec=replace(one, signals=spec.signals))))
+        exchange = {"P": "F", "F": "P", "I": "I"}
+        # What is in doubt can only be met.
+        sure = [[a for a in report.attempts if not a.in_doubt] for report in reports]
+        wanted = [(a.number, a.decided, exchange[a.verdict.value], a.decision) for a in sure[0]]
+        got = [(a.number, a.decided, a.verdict.value, a.decision) for a in sure[1]]
+        assert got == wanted

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from hypothesis import assume
+import pytest
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import TRIED, judge
 from tests.tools.sound import is_spoken_of, overturned
 
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import cases
 
+pytestmark = pytest.mark.law
 
-def test_filling_in_what_was_lost(subject: Any, holds: Any) -> None:
+
+@TRIED
+@given(cases(Profile(), TraceProfile(outages=35)), st.randoms(use_true_random=False))
+def test_filling_in_what_was_lost(case, rng) -> None:
     """A run's P or NT never becomes F, nor its F anything else."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile, subject.traces))
-        assume(is_spoken_of(case.spec))
-        rng = data.draw(st.randoms(use_true_random=False))
-        assert overturned(rng, case, 4, subject.judge).overturning is None
+    assume(is_spoken_of(case.spec))
+    assert overturned(rng, case, 4, judge).overturning is None

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import TRIED
 from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
 from tests.tools.compare import Outcome, outcomes
 from tests.tools.late import after_late, is_touched, stretch_of
@@ -18,8 +19,6 @@ from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
-
-FEW = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 
 
 @st.composite
@@ -33,7 +32,7 @@ def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
 
 
 @pytest.mark.law
-@FEW
+@TRIED
 @given(late_cases(Profile()))
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
     """What is P or NT is so with the late sample in its place too; what is F stays."""
@@ -48,7 +47,7 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
 
 
 @pytest.mark.law
-@FEW
+@TRIED
 @given(late_cases(Profile()))
 def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
     """A requirement that is not touched has the same attempts without the late sample."""
@@ -63,18 +62,14 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
 
 
 @pytest.mark.law
-@FEW
+@TRIED
 @given(late_cases(Profile(requirements=1)))
 def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
     """Outside of the stretch what is known of a name is what would have been known."""
     whole, judged, late = cases_
     assume(late.t >= judged.samples[0].t)
-    pairs = [
-        (one, other)
-        for one in word(whole).letters
-        for other in word(judged).letters
-        if one.instant == other.instant
-    ]
+    found = {letter.instant: letter for letter in word(judged).letters}
+    pairs = [(one, found[one.instant]) for one in word(whole).letters if one.instant in found]
     for name in (*judged.spec.signals, *judged.spec.events):
         first, last = (None, None)
         if name in late.values:
@@ -88,7 +83,7 @@ def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
 
 
 @pytest.mark.law
-@FEW
+@TRIED
 @given(late_cases(Profile(requirements=1, past=False, for_each=False)))
 def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
     """An attempt that begins behind it, and looks back at nothing, is judged as ever."""

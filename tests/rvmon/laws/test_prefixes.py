@@ -3,106 +3,100 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import pytest
+from hypothesis import given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import TRIED, judge, judged_otherwise
 from tests.tools.compare import differences, outcomes
 from tests.tools.law import names_read
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate import BOOLS
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
 
+pytestmark = pytest.mark.law
 
-def test_a_longer_trace_overturns_nothing(subject: Any, holds: Any) -> None:
+
+@TRIED
+@given(cases(), st.data())
+def test_a_longer_trace_overturns_nothing(case: Case, data: st.DataObject) -> None:
     """An attempt that the prefix decided stays decided so, at the same instant."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile))
-        count = data.draw(st.integers(0, len(case.actions)))
-        prefix = subject.judge(replace(case, actions=case.actions[:count], end=None))
-        later = outcomes(subject.judge(case))
-        for key, outcome in outcomes(prefix).items():
-            if outcome.decision is Decision.PREFIX and not is_upon_end(
-                case.spec.requirements[key[0]]
-            ):
-                assert later[key] == outcome
+    count = data.draw(st.integers(0, len(case.actions)))
+    prefix = judge(replace(case, actions=case.actions[:count], end=None))
+    later = outcomes(judge(case))
+    for key, outcome in outcomes(prefix).items():
+        if outcome.decision is Decision.PREFIX and not is_upon_end(case.spec.requirements[key[0]]):
+            assert later[key] == outcome
 
 
-def test_splitting_by_advance(subject: Any, holds: Any) -> None:
+@TRIED
+@given(cases(), st.data())
+def test_splitting_by_advance(case: Case, data: st.DataObject) -> None:
     """`advance` between samples, to any instant up to the next, changes nothing."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile))
-        actions: list[Sample | int] = []
-        before: int | None = None
-        for action in case.actions:
-            instant = action.t if isinstance(action, Sample) else action
-            if before is not None:
-                middle = st.integers(before, instant)
-                actions += sorted(data.draw(st.lists(middle, max_size=2)))
-            actions.append(action)
-            before = instant
-        assert subject.differences(case, replace(case, actions=tuple(actions))) == []
+    actions: list[Sample | int] = []
+    before: int | None = None
+    for action in case.actions:
+        instant = action.t if isinstance(action, Sample) else action
+        if before is not None:
+            middle = st.integers(before, instant)
+            actions += sorted(data.draw(st.lists(middle, max_size=2)))
+        actions.append(action)
+        before = instant
+    assert judged_otherwise(case, replace(case, actions=tuple(actions))) == []
 
 
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
-def test_samples_that_nobody_reads(subject: Any, holds: Any, time: TimeModel) -> None:
+@TRIED
+@given(data=st.data())
+def test_samples_that_nobody_reads(data: st.DataObject, time: TimeModel) -> None:
     """Where time has its own positions, samples that say nothing that is read change nothing."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(replace(subject.profile, time=time)))
-        if not case.samples:
-            return
-        read = {n for one in case.spec.requirements.values() for n in names_read(one, keys=False)}
-        others = [name for name in BOOLS if name not in read and case.names is None]
-        said_too = {name: data.draw(st.booleans()) for name in others}
-        first, last = case.samples[0].t, case.samples[-1].t
-        said = {sample.t for sample in case.samples}
-        extra = data.draw(st.lists(st.integers(first, last), max_size=5))
-        told = [*case.samples, *(Sample(t, said_too) for t in {*extra} - said)]
-        told.sort(key=lambda sample: sample.t)
-        advances = tuple(t for t in case.advances if t > last)
-        assert subject.differences(case, replace(case, actions=(*told, *advances))) == []
+    case = data.draw(cases(Profile(time=time)))
+    if not case.samples:
+        return
+    read = {n for one in case.spec.requirements.values() for n in names_read(one, keys=False)}
+    others = [name for name in BOOLS if name not in read and case.names is None]
+    said_too = {name: data.draw(st.booleans()) for name in others}
+    first, last = case.samples[0].t, case.samples[-1].t
+    said = {sample.t for sample in case.samples}
+    extra = data.draw(st.lists(st.integers(first, last), max_size=5))
+    told = [*case.samples, *(Sample(t, said_too) for t in {*extra} - said)]
+    told.sort(key=lambda sample: sample.t)
+    advances = tuple(t for t in case.advances if t > last)
+    assert judged_otherwise(case, replace(case, actions=(*told, *advances))) == []
 
 
-def test_order_inside_a_sample(subject: Any, holds: Any) -> None:
+@TRIED
+@given(cases())
+def test_order_inside_a_sample(case: Case) -> None:
     """The order in which a sample lists its names changes nothing."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile))
-        turned = tuple(
-            Sample(action.t, dict(reversed(action.values.items())))
-            if isinstance(action, Sample)
-            else action
-            for action in case.actions
-        )
-        assert subject.differences(case, replace(case, actions=turned)) == []
+    turned = tuple(
+        Sample(action.t, dict(reversed(action.values.items())))
+        if isinstance(action, Sample)
+        else action
+        for action in case.actions
+    )
+    assert judged_otherwise(case, replace(case, actions=turned)) == []
 
 
-def test_shifting_in_time(subject: Any, holds: Any) -> None:
+@TRIED
+@given(cases())
+def test_shifting_in_time(case: Case) -> None:
     """A trace that happens later is judged alike, later (clocked: by multiples of the period)."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile))
-        shift = 7 * (case.spec.period or 1)
-        later = tuple(
-            replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
-            for action in case.actions
-        )
-        end = None if case.end is None else case.end + shift
-        moved = subject.judge(replace(case, actions=later, end=end))
-        assert differences(subject.judge(case), _back(moved, shift)) == []
+    shift = 7 * (case.spec.period or 1)
+    later = tuple(
+        replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
+        for action in case.actions
+    )
+    end = None if case.end is None else case.end + shift
+    moved = judge(replace(case, actions=later, end=end))
+    assert differences(judge(case), _back(moved, shift)) == []
 
 
 def _back(report: Report, shift: int) -> Report:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given
+from tests.rvmon.laws.tried import TRIED, judge
 from tests.tools.build import scaled
-from tests.tools.drive import drive
-from tests.tools.forms import Maker
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.generate.spec import Profile
@@ -26,11 +24,10 @@ FURTHER = 1_000_000
 
 
 @pytest.mark.law
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
-@given(data=st.data())
-def test_scaling(data: st.DataObject) -> None:
+@TRIED
+@given(cases(Profile(mixed=False, requirements=1)))
+def test_scaling(case: Case) -> None:
     """A million times longer: the same attempts and verdicts, the same instants."""
-    case = data.draw(cases(Profile(mixed=False, requirements=1)))
     parts = [part for r in case.spec.requirements.values() for part in _numbers(r.trigger)]
     parts += [part for r in case.spec.requirements.values() for part in _numbers(r.consequent)]
     parts += [
@@ -41,14 +38,9 @@ def test_scaling(data: st.DataObject) -> None:
         if isinstance(part, UpdateValue)
     ]
     assume(UpdateFunction.RATE not in parts)  # it is per second
-    short = judged(longer(case, SPARSE))
-    long = judged(longer(case, SPARSE * FURTHER))
+    short = judge(longer(case, SPARSE))
+    long = judge(longer(case, SPARSE * FURTHER))
     assert in_units(long, SPARSE * FURTHER) == in_units(short, SPARSE)
-
-
-def judged(case: Case) -> Report:
-    """The report on a case."""
-    return drive(Maker()(case), case)[0]
 
 
 def _numbers(formula: Formula) -> list[UpdateFunction]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
-from hypothesis import assume
+import pytest
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import ONE, TRIED, is_known, judge, known_from_the_first
 from tests.tools.build import start
 from tests.tools.compare import outcomes
 
@@ -18,6 +19,8 @@ from rvmon.testing.strategies import specs, traces
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision
+
+pytestmark = pytest.mark.law
 
 
 def scalars(type_: Type) -> st.SearchStrategy[Scalar]:
@@ -34,7 +37,7 @@ def resolved(spec: CheckedSpec, sample: Sample, draw: Callable[..., Scalar]) -> 
     """The sample with a value wherever it said `None` or NaN, or left a field out."""
 
     def scalar(value: Scalar, type_: Type) -> Scalar:
-        return draw(scalars(type_)) if value is None or value != value else value
+        return value if is_known(value) else draw(scalars(type_))
 
     def occurrence(value: Value, event: Event) -> Value:
         if value is None:
@@ -55,42 +58,32 @@ def resolved(spec: CheckedSpec, sample: Sample, draw: Callable[..., Scalar]) -> 
     return Sample(sample.t, {name: of(name, value) for name, value in sample.values.items()})
 
 
-def _is_known(sample: Sample, name: str) -> bool:
-    value = sample.values.get(name)
-    return value is not None and value == value
-
-
-def test_resolving_unknowns(subject: Any, holds: Any) -> None:
+@TRIED
+@given(specs(ONE), st.data())
+def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject) -> None:
     """With values for what was unknown, P stays P and F stays F, decided no later.
 
-    The trigger is known (`start`), `known(x)` speaks of the unknown itself and is left out.
+    The trigger is known (`start`), `known(x)` speaks of the unknown itself and is left out. What is
+    not there yet is not what was lost: here all is there from the first sample on.
     """
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        spec = data.draw(specs(subject.one))
-        [first] = spec.requirements.values()
-        probes = [part for part in subformulas(first.consequent) if isinstance(part, ProbeAtom)]
-        assume(not any(part.probe is Probe.KNOWN for part in probes))
-        assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
-        required = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
-        spec = replace(spec, requirements={required.id: required})
-        case = data.draw(traces(spec))
-        # What is not there yet is not what was lost: it stays so.
-        names = {*spec.signals}
-        first = {n: next((s.t for s in case.samples if _is_known(s, n)), None) for n in names}
-        assume(all(t == case.samples[0].t for t in first.values() if case.samples))
-        told = tuple(
-            resolved(spec, action, data.draw) if isinstance(action, Sample) else action
-            for action in case.actions
-        )
-        before = outcomes(subject.judge(case))
-        after = outcomes(subject.judge(replace(case, actions=told)))
-        assert set(before) == set(after)
-        for key, outcome in before.items():
-            if outcome.decided is not None:
-                assert after[key].verdict == outcome.verdict
-                assert after[key].decided is not None
-                assert after[key].decided <= outcome.decided
-                if outcome.decision is Decision.PREFIX:
-                    assert after[key].decision is Decision.PREFIX
+    [first] = spec.requirements.values()
+    probes = [part for part in subformulas(first.consequent) if isinstance(part, ProbeAtom)]
+    assume(not any(part.probe is Probe.KNOWN for part in probes))
+    assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
+    required = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
+    spec = replace(spec, requirements={required.id: required})
+    case = known_from_the_first(data.draw(traces(spec)))
+    told = tuple(
+        resolved(spec, action, data.draw) if isinstance(action, Sample) else action
+        for action in case.actions
+    )
+    before = outcomes(judge(case))
+    after = outcomes(judge(replace(case, actions=told)))
+    assert set(before) == set(after)
+    for key, outcome in before.items():
+        if outcome.decided is not None:
+            assert after[key].verdict == outcome.verdict
+            assert after[key].decided is not None
+            assert after[key].decided <= outcome.decided
+            if outcome.decision is Decision.PREFIX:
+                assert after[key].decision is Decision.PREFIX

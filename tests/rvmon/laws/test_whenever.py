@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
-from hypothesis import assume
+import pytest
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.rvmon.laws.tried import ONE, TRIED, judge
 from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
 
 from rvmon.logic.state_formula import signals_of
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
-from rvmon.spec.checked.specification import Mode
+from rvmon.spec.checked.specification import CheckedSpec, Mode
 from rvmon.testing.generate import signals
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.attempts import is_pulse
@@ -22,38 +23,38 @@ from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 
+pytestmark = pytest.mark.law
+
 ALL_KNOWN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
-def test_whenever_is_weak_until(subject: Any, holds: Any) -> None:
+@TRIED
+@given(specs(ONE), st.data())
+def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
     """A level that is always known starts and settles the same attempts either way."""
-
-    @holds
-    def _(data: st.DataObject) -> None:
-        spec = data.draw(specs(subject.one))
-        [first] = spec.requirements.values()
-        level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
-        assume(level != end)
-        assume(not _asks_updates(first.consequent))
-        whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
-        weak = two(first.consequent, "W", no(level))
-        upon = replace(whenever, mode=Mode.UPON, consequent=weak)
-        # Every signal has a value from the first sample on and none is ever lost.
-        spec = replace(spec, signals=signals())
-        case = data.draw(traces(spec, TraceProfile(unknowns=False)))
-        actions = tuple(
-            Sample(action.t, {**ALL_KNOWN, **action.values})
-            if isinstance(action, Sample) and action is case.samples[0]
-            else action
-            for action in case.actions
-        )
-        # A trigger over payloads, `prev` and the like may be unknown all the same.
-        told = [
-            replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
-            for r in (whenever, upon)
-        ]
-        assume(_known(subject, told[0]))
-        assert up_to_failure(subject.judge(told[0])) == up_to_failure(subject.judge(told[1]))
+    [first] = spec.requirements.values()
+    level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
+    assume(level != end)
+    assume(not _asks_updates(first.consequent))
+    whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
+    weak = two(first.consequent, "W", no(level))
+    upon = replace(whenever, mode=Mode.UPON, consequent=weak)
+    # Every signal has a value from the first sample on and none is ever lost.
+    spec = replace(spec, signals=signals())
+    case = data.draw(traces(spec, TraceProfile(unknowns=False)))
+    actions = tuple(
+        Sample(action.t, {**ALL_KNOWN, **action.values})
+        if isinstance(action, Sample) and action is case.samples[0]
+        else action
+        for action in case.actions
+    )
+    # A trigger over payloads, `prev` and the like may be unknown all the same.
+    told = [
+        replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
+        for r in (whenever, upon)
+    ]
+    assume(_known(told[0]))
+    assert up_to_failure(judge(told[0])) == up_to_failure(judge(told[1]))
 
 
 def up_to_failure(report: Report) -> list[Outcome]:
@@ -69,9 +70,9 @@ def _asks_updates(formula: Formula) -> bool:
     return any(any(signals_of(atom).values()) for atom in atoms)
 
 
-def _known(subject: Any, case: Case) -> bool:
+def _known(case: Case) -> bool:
     """Whether the trigger has a value at every position: then `θ or not θ` holds throughout."""
     [required] = case.spec.requirements.values()
     asked = requirement(always(two(required.trigger, "or", no(required.trigger))))
     spec = replace(case.spec, requirements={asked.id: asked})
-    return all(a.decided is not None for a in subject.judge(replace(case, spec=spec)).attempts)
+    return all(a.decided is not None for a in judge(replace(case, spec=spec)).attempts)
