@@ -38,7 +38,6 @@ from tests.tools.differential import (
     decided_on_bound,
 )
 from tests.tools.drive import drive
-from tests.tools.forms import Maker
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge, word
@@ -363,10 +362,3 @@ def test_deadline_is_the_last_instant_before_time_alone_decides() -> None:
         judgement = Judgement(Case(spec_of(requirement(required)), timeline(p="0", q="1")))
         _, waiting = judgement.at(Moment(0, 0))
         assert [one.deadline() for one in waiting.values()] == [wanted]
-
-
-def test_samples_in_portions() -> None:
-    """Portions of a sample with one stamp come to the same, a stamp later."""
-    makers = {way: Maker(f"c+{way}") for way in ("next", "next+interrupt")}
-    found = campaign(makers, range(25), Profile(), TraceProfile(), online_every=3)
-    assert found.disagreements == []

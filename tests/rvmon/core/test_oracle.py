@@ -1,4 +1,6 @@
-"""The core against the law: random cases, step by step and by rows."""
+"""The core against the law: random cases, in all forms that it is run in."""
+
+from dataclasses import replace
 
 import pytest
 from tests.tools.differential import campaign
@@ -10,14 +12,34 @@ from rvmon.testing.generate.trace import TraceProfile
 
 pytestmark = pytest.mark.law
 
+LOST = TraceProfile(sparse=10, outages=50)
+KINDS = {
+    "any": (Profile(crowded=5, wide=10), TraceProfile(sparse=10), {}),
+    "outages": (Profile(crowded=5), LOST, {}),
+    "amounts": (Profile(amounts=100), LOST, {}),
+    "expressions": (Profile(amounts=100, form="expression"), LOST, {}),
+    "special": (Profile(), replace(LOST, long=50), {"windows": 90, "letters": 100}),
+}
+"""What is drawn: specifications, traces, and of windows in windows and of many letters how much."""
+
 
 @pytest.mark.parametrize("time", TimeModel)
-def test_each_call_says_what_the_law_has_it_say(time):
-    """What a call returns, what the report says, and that what is wrong is refused; rows, too."""
-    seeds = [f"core/{time.name}/{number}" for number in range(30)]
-    profile, traces = Profile(time=time, crowded=5, wide=10), TraceProfile(sparse=10)
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_call_says_what_the_law_has_it_say(kind, time):
+    """What a call returns, what the report says, and that what is wrong is refused.
+
+    By samples, by rows, put away and taken up again; and where nothing is lost in portions, too.
+    """
+    profile, traces, special = KINDS[kind]
+    is_any = kind == "any"
+    forms = ("c", "c rows", "c+next+interrupt") if is_any else ("c rows", "c+interrupt")
+    number, each = (25, 8) if is_any else (15, 4)
     compiler = Compiler()
-    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
-    found = campaign(makers, seeds, profile, traces, each=10, online_every=4)
+    makers = {form: Maker(form, compiler) for form in forms}
+    seeds = [f"{kind}/{time.name}/{seed}" for seed in range(number)]
+    profile = replace(profile, time=time)
+    found = campaign(makers, seeds, profile, traces, each=each, online_every=4, **special)
     assert not found.disagreements, found.disagreements[0]
-    assert [found.counts[f"judged by {form}"] for form in makers] == [300, 300]
+    judged = [found.counts[f"judged by {form}"] for form in forms]
+    assert judged == [number * each] * len(forms)
+    assert is_any or found.counts["pairs with outages"] > number * each / 4

@@ -7,8 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.tools.differential import campaign, case_of
-from tests.tools.forms import Compiler, Maker
+from tests.tools.differential import case_of
 from tests.tools.late import after_late
 from tests.tools.law import judge
 
@@ -215,17 +214,3 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
         assert verdicts == expected
         changed += verdicts != without
     assert changed > 15
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", TimeModel)
-def test_random_outages_are_judged_as_the_law_has_it(time):
-    """Step by step and by rows; what looks back at the future is tried elsewhere."""
-    seeds = [f"outages/{time.name}/{number}" for number in range(20)]
-    profile = Profile(time=time, crowded=5, mixed=False)
-    compiler = Compiler()
-    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
-    traces = TraceProfile(sparse=10, outages=80)
-    found = campaign(makers, seeds, profile, traces, each=5)
-    assert not found.disagreements, found.disagreements[0]
-    assert found.counts["pairs with outages"] > 60

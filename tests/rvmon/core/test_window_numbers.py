@@ -1,14 +1,13 @@
 """Windows of the past as numbers in expressions: compared, captured, bounded by."""
 
 import pytest
-from tests.tools.differential import campaign, disagreements
-from tests.tools.forms import Compiler, Maker
+from tests.tools.differential import disagreements
+from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.spec.checked.measured import Measured
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import Case, TraceProfile
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 
@@ -78,32 +77,6 @@ def test_an_expression_is_due_where_a_window_jumps(required, due):
     spec = rvmon.loads(f"signal x : real\nrequirement R\n  upon {required}\n  then false\n")
     report = spec.evaluate([(0.0, {"x": 5.0}), (1.0, {"x": 3.0})], until=20.0)
     assert [one.triggered for one in report.attempts] == due
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", TimeModel)
-def test_expressions_of_windows_are_those_of_the_oracle(time):
-    """With outages, put away and taken up again, step by step and by rows."""
-    seeds = [f"expressions/{time.name}/{number}" for number in range(40)]
-    profile, traces = Profile(time=time, amounts=100, form="expression"), TraceProfile(outages=40)
-    compiler = Compiler()
-    makers = {form: Maker(form, compiler) for form in ("c+interrupt", "c rows")}
-    found = campaign(makers, seeds, profile, traces, each=4, online_every=4)
-    assert not found.disagreements, found.disagreements[0]
-    assert [found.counts[f"judged by {form}"] for form in makers] == [160, 160]
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", TimeModel)
-def test_amounts_are_those_of_the_oracle(time):
-    """With losses and outages, step by step and by rows."""
-    seeds = [f"amounts/{time.name}/{number}" for number in range(60)]
-    profile, traces = Profile(time=time, amounts=100), TraceProfile(outages=20)
-    compiler = Compiler()
-    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
-    found = campaign(makers, seeds, profile, traces, each=4, online_every=4)
-    assert not found.disagreements, found.disagreements[0]
-    assert [found.counts[f"judged by {form}"] for form in makers] == [240, 240]
 
 
 NEVER = {

@@ -7,15 +7,10 @@ import random
 from types import MappingProxyType
 
 import pytest
-from tests.tools.differential import campaign, case_of
-from tests.tools.drive import feed
-from tests.tools.forms import Interrupted, Maker
+from tests.tools.forms import Interrupted
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
-from rvmon.session import Spec
-from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
 
 TEXT = """
 spec door
@@ -56,34 +51,6 @@ def opened(spec, samples):
         return head.rpartition(b" ")[0] + b" " + seal + b"\n" + text
 
     return json.loads(body), sealed
-
-
-@pytest.mark.law
-def test_interruptions_change_nothing():
-    """A run, taken up from snapshots at random points, judges as the law says."""
-    seeds = [f"snapshot/{number}" for number in range(20)]
-    makers = {"c": Maker("c+interrupt")}
-    found = campaign(makers, seeds, Profile(), TraceProfile(), online_every=6)
-    assert found.counts["judged by c"] == 20
-    assert not found.disagreements, found.disagreements[0]
-
-
-@pytest.mark.law
-def test_another_process_could_take_over():
-    """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
-    taken = 0
-    for number in range(16):
-        case = case_of(f"anew/{number}", Profile(), TraceProfile())
-        monitor = Spec(case.spec).monitor(sources=case.names)
-        rng = random.Random(number)
-        for action in case.actions:
-            feed(monitor, action)
-            if rng.random() < 0.2:
-                data = monitor.snapshot()
-                monitor = Spec(case.spec).restore(data)
-                assert monitor.snapshot() == data
-                taken += 1
-    assert taken > 10
 
 
 @pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
