@@ -12,38 +12,40 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 
-@pytest.mark.parametrize("seed", [f"tests/{number}" for number in range(40)])
-def test_random_bins(seed):
+@pytest.mark.law
+def test_random_bins():
     """In all time models, with dropouts and names without a source."""
-    tally = Counter()
-    assert judge(seed, 4, tally) == []
-    assert tally["pairs"] == 4
+    for seed in range(40):
+        tally = Counter()
+        assert judge(seed, 4, tally) == []
+        assert tally["pairs"] == 4
 
 
-@pytest.mark.parametrize("seed", [f"rows/{number}" for number in range(15)])
-def test_rows_hit_what_their_samples_hit(seed, tmp_path):
+@pytest.mark.law
+def test_rows_hit_what_their_samples_hit(tmp_path):
     """A file that is read as columns, and the same sample by sample; requirements, too."""
-    rng = random.Random(seed)
-    profile = Profile(requirements=1, captures=False, for_each=False)
-    spec = Spec(with_random_coverage(rng, profile))
-    coverage = spec.coverage_model
-    for place in range(3):
-        case = random_trace(rng, spec.checked, TraceProfile(long=10, advances=False))
-        if not case.samples:
-            continue
-        path = tmp_path / f"{place}.jsonl"
-        path.write_text("".join(map(_line, case.samples)), encoding="utf-8")
-        monitor = coverage.monitor()
-        for sample in spec.recording(path):
-            monitor.step_ns(sample.t, sample.values)
-        expected = monitor.finish_ns(case.end)
-        assert coverage.of(spec.recording(path), case.end) == expected
-        until = case.samples[len(case.samples) // 2].t
-        monitor.reset()
-        for sample in spec.recording(path):
-            if sample.t <= until:
+    for seed in range(15):
+        rng = random.Random(seed)
+        profile = Profile(requirements=1, captures=False, for_each=False)
+        spec = Spec(with_random_coverage(rng, profile))
+        coverage = spec.coverage_model
+        for place in range(3):
+            case = random_trace(rng, spec.checked, TraceProfile(long=10, advances=False))
+            if not case.samples:
+                continue
+            path = tmp_path / f"{place}.jsonl"
+            path.write_text("".join(map(_line, case.samples)), encoding="utf-8")
+            monitor = coverage.monitor()
+            for sample in spec.recording(path):
                 monitor.step_ns(sample.t, sample.values)
-        assert coverage.of(spec.recording(path), until) == monitor.finish_ns(until)
+            expected = monitor.finish_ns(case.end)
+            assert coverage.of(spec.recording(path), case.end) == expected
+            until = case.samples[len(case.samples) // 2].t
+            monitor.reset()
+            for sample in spec.recording(path):
+                if sample.t <= until:
+                    monitor.step_ns(sample.t, sample.values)
+            assert coverage.of(spec.recording(path), until) == monitor.finish_ns(until)
 
 
 def _line(sample):

@@ -73,45 +73,49 @@ def in_order(case):
     return Case(case.spec, samples, end, case.names, case.outages)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_samples_that_are_held_back_are_lost_in_the_same_order(seed):
+@pytest.mark.law
+def test_samples_that_are_held_back_are_lost_in_the_same_order():
     """With settle='next', by a snapshot now and then, each stretch is that of the oracle."""
-    case = in_order(drawn(f"next {seed}"))
-    compiled = compile_spec(case.spec)
-    monitor = build_monitor(compiled, sources=case.names, settle="next")
-    rng = random.Random(seed)
-    for action in told(case):
-        match action:
-            case Lost(names, t):
-                monitor.lose_ns(names, t)
-            case Found(names, t):
-                monitor.found_ns(names, t)
-            case Sample(t, values):
-                monitor.step_ns(t, values)
-        if rng.random() < 0.2:
-            monitor = restore(compiled, monitor.snapshot())
-    assert told_of(monitor.finish_ns(case.end)) == law(case, case.outages)
+    for seed in range(20):
+        case = in_order(drawn(f"next {seed}"))
+        compiled = compile_spec(case.spec)
+        monitor = build_monitor(compiled, sources=case.names, settle="next")
+        rng = random.Random(seed)
+        for action in told(case):
+            match action:
+                case Lost(names, t):
+                    monitor.lose_ns(names, t)
+                case Found(names, t):
+                    monitor.found_ns(names, t)
+                case Sample(t, values):
+                    monitor.step_ns(t, values)
+            if rng.random() < 0.2:
+                monitor = restore(compiled, monitor.snapshot())
+        assert told_of(monitor.finish_ns(case.end)) == law(case, case.outages)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_a_stretch_is_wider_by_the_delay_that_samples_may_have(seed):
+@pytest.mark.law
+def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
     """Samples come in any order within `max delay`, and what was lost may have, too."""
-    case = in_order(drawn(f"delay {seed}"))
-    rng = random.Random(seed)
-    delay = rng.randint(1, 5)
-    case = replace(case, spec=replace(case.spec, max_delay=delay))
-    monitor = build_monitor(compile_spec(case.spec), sources=case.names)
-    arrivals = [(one.t + rng.randint(0, delay), one.t, one) for one in case.actions]
-    wider = [replace(one, first=one.first - delay, last=one.last + delay) for one in case.outages]
-    losses = [(one.first, one.first - delay - 1, one) for one in case.outages]
-    for _, _, one in sorted([*arrivals, *losses], key=lambda found: found[:2]):
-        if isinstance(one, Outage):
-            monitor.lose_ns(one.names, one.first, one.last)
-        else:
-            monitor.step_ns(one.t, one.values)
-    end = max(case.end, max(one.last for one in wider))
-    report = monitor.finish_ns(end)
-    assert told_of(report) == law(replace(case, end=end), tuple(wider))
+    for seed in range(20):
+        case = in_order(drawn(f"delay {seed}"))
+        rng = random.Random(seed)
+        delay = rng.randint(1, 5)
+        case = replace(case, spec=replace(case.spec, max_delay=delay))
+        monitor = build_monitor(compile_spec(case.spec), sources=case.names)
+        arrivals = [(one.t + rng.randint(0, delay), one.t, one) for one in case.actions]
+        wider = [
+            replace(one, first=one.first - delay, last=one.last + delay) for one in case.outages
+        ]
+        losses = [(one.first, one.first - delay - 1, one) for one in case.outages]
+        for _, _, one in sorted([*arrivals, *losses], key=lambda found: found[:2]):
+            if isinstance(one, Outage):
+                monitor.lose_ns(one.names, one.first, one.last)
+            else:
+                monitor.step_ns(one.t, one.values)
+        end = max(case.end, max(one.last for one in wider))
+        report = monitor.finish_ns(end)
+        assert told_of(report) == law(replace(case, end=end), tuple(wider))
 
 
 def test_what_is_lost_fails_nothing_and_passes_nothing():

@@ -47,43 +47,28 @@ def told(spec, trace, **arguments) -> str:
         return type(error).__name__
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.law
+@pytest.mark.parametrize("seed", range(20))
 def test_every_door_is_judged_as_its_samples_are(seed, tmp_path):
-    """Verdicts, records, input health: of files as they are, and read in pieces of few rows."""
+    """All a report says, byte by byte; the same of files that are read in pieces of few rows."""
     traces = TraceProfile(12, 48, advances=False)
     spec = None
-    for part, case in enumerate(cases_of(f"core doors/{seed}", Profile(), traces, 2)):
+    for part, case in enumerate(cases_of(f"doors/{seed}", Profile(), traces, 2)):
         spec = spec or Spec(case.spec)
         content = content_of(random.Random(seed), case)
         content = whole(content) if part == 1 else content
+        found = {}
         for door, write in doors().items() if content.rows else ():
             trace, arguments = write(content, tmp_path)
-            recording = spec.recording(trace, allow_missing=True, **arguments)
-            one_by_one = Source(recording, read=lambda samples: (one for one in samples))
-            expected = bare(spec.judge(one_by_one))
-            found = [bare(judged(spec, trace, **arguments))]
-            with in_pieces(200):
-                found.append(bare(judged(spec, trace, **arguments)))
-            assert found == [expected, expected], door
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("seed", range(40))
-def test_random_recordings_are_the_same_through_every_door(seed, tmp_path):
-    """Verdicts, records, reasons and input health, byte by byte."""
-    traces = TraceProfile(12, 48, advances=False)
-    spec = None
-    for part, case in enumerate(cases_of(f"doors/{seed}", Profile(), traces, 3)):
-        spec = spec or Spec(case.spec)
-        content = content_of(random.Random(seed), case)
-        content = whole(content) if part == 2 else content
-        if content.rows:
-            found = {}
-            for name, write in doors().items():
-                trace, arguments = write(content, tmp_path)
-                found[name] = told(spec, trace, **arguments)
-            assert set(found.values()) == {found["CSV"]}
-            assert found["CSV"].startswith("{")
+            found[door] = told(spec, trace, **arguments)
+            if seed % 4 == 0:
+                recording = spec.recording(trace, allow_missing=True, **arguments)
+                one_by_one = Source(recording, read=lambda samples: (one for one in samples))
+                with in_pieces(200):
+                    report = judged(spec, trace, **arguments)
+                assert bare(report) == bare(spec.judge(one_by_one)), door
+        assert len({*found.values()}) == (1 if content.rows else 0)
+        assert all(text.startswith("{") for text in found.values())
 
 
 def base() -> Spec:

@@ -31,7 +31,7 @@ requirement R3 "c"
 """
 
 
-def csv_text(seed: int, rows: int = 2000) -> str:
+def csv_text(seed: int, rows: int = 1000) -> str:
     """A plain file: every cell is filled."""
     rng = random.Random(seed)
     t, speed, p, count = 0, 0.3, False, 0
@@ -71,7 +71,7 @@ def cut_into(monkeypatch):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize("end", [0.1, 31.4, 120.0, 9999.0])
+@pytest.mark.parametrize("end", [0.1, 31.4, 9999.0])
 def test_a_file_can_be_cut(end, time, tmp_path, cut_into):
     """Rows behind an instant are left out, wherever it lies in a block."""
     cut_into(1999)

@@ -64,21 +64,22 @@ def test_any_words(words):
     answer("".join(words))
 
 
-@pytest.mark.parametrize("seed", range(200))
-def test_mutated_specifications(seed):
+@pytest.mark.slow
+def test_mutated_specifications():
     """Specifications with words dropped, doubled, exchanged."""
-    rng = random.Random(seed)
-    words = WORD.findall(rng.choice(SEEDS))
-    for _ in range(rng.randint(1, 6)):
-        place = rng.randrange(len(words))
-        words[place] = rng.choice(("", rng.choice(WORDS), words[place] * 2, rng.choice(words)))
-    text = "".join(words)
-    answer(text)
-    try:
-        laid_out = format_text(text)
-    except SpecError:
-        return
-    assert format_text(laid_out) == laid_out
+    for seed in range(100):
+        rng = random.Random(seed)
+        words = WORD.findall(rng.choice(SEEDS))
+        for _ in range(rng.randint(1, 6)):
+            place = rng.randrange(len(words))
+            words[place] = rng.choice(("", rng.choice(WORDS), words[place] * 2, rng.choice(words)))
+        text = "".join(words)
+        answer(text)
+        try:
+            laid_out = format_text(text)
+        except SpecError:
+            continue
+        assert format_text(laid_out) == laid_out
 
 
 @pytest.mark.slow

@@ -83,16 +83,16 @@ def test_a_comment_behind_at_end_is_kept(colon):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("seed", range(120))
-def test_laws(seed):
+def test_laws():
     """Of random specifications in random writing meaning and comments are kept."""
-    rng = random.Random(seed)
-    text = scribbled(show_spec(random_spec(rng, Profile())), rng)
-    once = format_text(text)
-    assert format_text(once) == once
-    assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])
-    comments = [sorted(re.findall(r"#.*", version)) for version in (text, once)]
-    assert comments[0] == comments[1]
+    for seed in range(80):
+        rng = random.Random(seed)
+        text = scribbled(show_spec(random_spec(rng, Profile())), rng)
+        once = format_text(text)
+        assert format_text(once) == once
+        assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])
+        comments = [sorted(re.findall(r"#.*", version)) for version in (text, once)]
+        assert comments[0] == comments[1]
 
 
 def test_a_name_does_not_become_a_unit():

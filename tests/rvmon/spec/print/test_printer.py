@@ -15,15 +15,15 @@ from rvmon.units import unit_table
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("seed", range(150))
-def test_parse_after_print_is_identity(seed):
+def test_parse_after_print_is_identity():
     """Random specifications survive being printed and read."""
-    spec = random_spec(random.Random(seed), Profile())
-    once, _ = compile_text(show_spec(spec))
-    if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
-        assert meaning(once) == meaning(spec)
-    twice, _ = compile_text(show_spec(once))
-    assert meaning(twice) == meaning(once)
+    for seed in range(80):
+        spec = random_spec(random.Random(seed), Profile())
+        once, _ = compile_text(show_spec(spec))
+        if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
+            assert meaning(once) == meaning(spec)
+        twice, _ = compile_text(show_spec(once))
+        assert meaning(twice) == meaning(once)
 
 
 def numbers_of(spec):
@@ -86,12 +86,18 @@ def test_numbers_survive(value):
     assert format_formula(compare).startswith("x < ")
 
 
-@pytest.mark.parametrize("unit", [*sorted(unit_table()), "m/s", "1/s", "1/s/m", "m/A", "W*s/m^2"])
-def test_units_survive(unit):
+@pytest.mark.slow
+def test_units_survive():
     """A literal is printed with its unit in a way that can be read, whatever the unit."""
-    text = f"signal x : real [{unit}]\nrequirement R always "
-    compare = compile_text(text + "(x < 0 or 2 * x - x > 0)")[0].requirements["R"].consequent
-    again = compile_text(text + f"({format_formula(compare)})")[0].requirements["R"].consequent
-    assert again.left.right == compare.left.right
-    assert again.left.right.unit == compare.left.right.unit
-    assert again.right.left == compare.right.left
+    units = [*sorted(unit_table()), "m/s", "1/s", "1/s/m", "m/A", "W*s/m^2"]
+    signals = "".join(f"signal x{n} : real [{unit}]\n" for n, unit in enumerate(units))
+
+    def consequents(bodies):
+        text = "".join(f"requirement R{n} always ({body})\n" for n, body in enumerate(bodies))
+        return [one.consequent for one in compile_text(signals + text)[0].requirements.values()]
+
+    written = consequents(f"x{n} < 0 or 2 * x{n} - x{n} > 0" for n in range(len(units)))
+    for one, again in zip(written, consequents(map(format_formula, written)), strict=True):
+        assert again.left.right == one.left.right
+        assert again.left.right.unit == one.left.right.unit
+        assert again.right.left == one.right.left

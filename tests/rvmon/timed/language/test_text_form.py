@@ -234,16 +234,16 @@ def test_all_that_is_wrong_appears_at_once_in_order_of_place(text, found):
     assert findings(text) == [(f"TA{code:03}", line, column) for code, line, column in places]
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_what_is_damaged_is_told_and_nothing_else(seed):
+def test_what_is_damaged_is_told_and_nothing_else():
     """Of a model with some edges damaged, each of these is told and no other."""
-    rng = random.Random(seed)
-    lines = ["clock x", "automaton A {", "  location a", "  start a"]
-    lines += ["  edge a -> a when x > 1 do x = 0"] * 12 + ["}", "query: E<> A.a"]
-    damaged = sorted(rng.sample(range(4, 15), rng.randint(1, 4)))
-    for row in damaged:
-        lines[row] = rng.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
-    assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
+    for seed in range(15):
+        rng = random.Random(seed)
+        lines = ["clock x", "automaton A {", "  location a", "  start a"]
+        lines += ["  edge a -> a when x > 1 do x = 0"] * 12 + ["}", "query: E<> A.a"]
+        damaged = sorted(rng.sample(range(4, 15), rng.randint(1, 4)))
+        for row in damaged:
+            lines[row] = rng.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
+        assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
 
 
 def test_a_finding_says_what_was_probably_meant():

@@ -55,21 +55,21 @@ def test_impossible_paths_have_no_timing():
     assert timing_of([TimedStep(True, ((1, 0, -2.0), below), (), ())]) is not None
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_samples_are_runs(seed):
+def test_samples_are_runs():
     """Every sampled choice of delays is a run of the network."""
-    network = loads_network(RELAY)
-    run = verify(network, "E<> A.c").run
-    bounds = [
-        TimedStep(True, ((0, 1, 5.0), (1, 0, -2.0)), ((2, 0.0),), ((0, 1, 7.0),)),
-        TimedStep(True, ((0, 1, 7.0), (2, 0, -1 - 2.0**-20), (0, 1, 7 - 2.0**-20)), (), ()),
-    ]
-    delays = sample(timing_of(bounds), Random(seed), 10)
-    moved = tuple(
-        RunStep(step.window, delay, step.action, step.position)
-        for step, delay in zip(run.steps, delays, strict=True)
-    )
-    Rules(network).replay(Run(run.start, moved))
+    for seed in range(20):
+        network = loads_network(RELAY)
+        run = verify(network, "E<> A.c").run
+        bounds = [
+            TimedStep(True, ((0, 1, 5.0), (1, 0, -2.0)), ((2, 0.0),), ((0, 1, 7.0),)),
+            TimedStep(True, ((0, 1, 7.0), (2, 0, -1 - 2.0**-20), (0, 1, 7 - 2.0**-20)), (), ()),
+        ]
+        delays = sample(timing_of(bounds), Random(seed), 10)
+        moved = tuple(
+            RunStep(step.window, delay, step.action, step.position)
+            for step, delay in zip(run.steps, delays, strict=True)
+        )
+        Rules(network).replay(Run(run.start, moved))
 
 
 def test_earliest_is_the_least_of_all():
