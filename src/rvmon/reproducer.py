@@ -255,10 +255,6 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
 def placed(folder: Path, name: str) -> Path:
     """Where a name in an archive lies.
 
-    Args:
-        folder: that the archive is unpacked to.
-        name: in it.
-
     Raises:
         RvmonError: elsewhere.
     """
@@ -270,10 +266,6 @@ def placed(folder: Path, name: str) -> Path:
 
 def expect_definitions_inside(folder: Path, binding: str) -> None:
     """See that the files which a binding names lie in its archive.
-
-    Args:
-        folder: that the archive was unpacked to.
-        binding: path of the binding.
 
     Raises:
         RvmonError: one does not.

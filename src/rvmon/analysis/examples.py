@@ -48,12 +48,7 @@ class Played:
 
 
 class Player:
-    """Judges short runs.
-
-    Args:
-        compiled: the specification.
-        requirements: of it, those that are looked at.
-    """
+    """Judges short runs."""
 
     def __init__(self, compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> None:
         self._ids = tuple(

@@ -18,12 +18,7 @@ _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One test against one robot.
-
-    Attributes:
-        test: what is played.
-        robot: its name in the campaign.
-    """
+    """One test against one robot."""
 
     test: Test
     robot: str
@@ -31,13 +26,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A campaign with its tests.
-
-    Attributes:
-        campaign: what it is about.
-        seed: all tests follow from it.
-        tests: by strategy.
-    """
+    """A campaign with its tests."""
 
     campaign: Campaign
     seed: int
@@ -164,13 +153,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One test that was played.
-
-    Attributes:
-        job: what was played.
-        outcome: of it.
-        control: the outcome of its control, if it has one.
-    """
+    """One test that was played."""
 
     job: Job
     outcome: Outcome

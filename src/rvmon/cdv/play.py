@@ -112,13 +112,7 @@ class Bench:
         self._marked = code is not None and code.marked
 
     def play(self, test: Test, *, keeps: bool = False, wants_scene: bool = False) -> Recorded:
-        """Play a test; whatever its code raises is its result.
-
-        Args:
-            test: is played.
-            keeps: keep the samples.
-            wants_scene: ask the system for what could be seen.
-        """
+        """Play a test; whatever its code raises is its result."""
         started, samples = time.perf_counter(), list[tuple[int, Values]]()
         takers: list[Taker] = [self._checker.observe]
         if keeps:

@@ -18,13 +18,7 @@ Transition = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class BlockCoverage:
-    """How many statements of a block of code have run, or how many of its branches were taken.
-
-    Attributes:
-        statements: how many there are.
-        covered: how many of them have run.
-        missing: names of those that have not.
-    """
+    """How many statements of a block of code have run, or how many of its branches were taken."""
 
     statements: int
     covered: int

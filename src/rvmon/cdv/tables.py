@@ -92,12 +92,7 @@ def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
 
 
 def named_tables(tables: Mapping[str, RobotTables], control: str) -> dict[str, VerdictTable]:
-    """The tables of all robots by a short name, for files of them.
-
-    Args:
-        tables: by robot.
-        control: the name of what was played beside tests.
-    """
+    """The tables of all robots by a short name, for files of them."""
     named: dict[str, VerdictTable] = {}
     for robot, one in tables.items():
         named[robot] = one.own

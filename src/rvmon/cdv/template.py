@@ -92,10 +92,6 @@ def template_to_json(template: Template[Any]) -> bytes:
 def load_template(path: str | Path, action: Any) -> Template[Any]:
     """Read a template.
 
-    Args:
-        path: of the file.
-        action: the type of what tests do.
-
     Raises:
         TestError: the file cannot be read, or holds no template.
     """

@@ -29,14 +29,7 @@ MOST_LISTED = 10
 
 
 def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
-    """Play suites on mutants of a robot's code, show and keep the scores, return an exit code.
-
-    Args:
-        campaign: that the tests are of.
-        robot: its name.
-        strategies: each makes a suite, unless a folder is one.
-        arguments: those of `add_mutate_options`.
-    """
+    """Play suites on mutants of a robot's code, show and keep the scores, return an exit code."""
     from rvmon.cdv.mutation.output import list_text, mutation_page, report_text
 
     found = _mutants(campaign, robot, arguments)

@@ -34,13 +34,7 @@ from rvmon.session import Spec
 
 @dataclass(frozen=True, slots=True)
 class Conducted:
-    """A campaign that was run.
-
-    Attributes:
-        results: what came out of its tests.
-        summary: its figures.
-        tables: its verdicts, by robot.
-    """
+    """A campaign that was run."""
 
     results: Results
     summary: CampaignSummary

@@ -75,10 +75,6 @@ SAMPLES_PER_LOOK = 4096
 def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show how far work is, once it has taken a second; only a terminal sees it.
 
-    Args:
-        what: is being done.
-        total: of the units in which it is counted.
-
     Yields:
         What is to be called with the units done so far.
     """

@@ -126,12 +126,7 @@ def post_analysis(
 
 
 class _Values:
-    """What the signals are of which the first failures speak, noted as a recording is read.
-
-    Attributes:
-        names: of these signals.
-        until: the last decision, ticks.
-    """
+    """What the signals are of which the first failures speak, noted as a recording is read."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt]) -> None:
         self._spec = spec
@@ -185,12 +180,7 @@ class _Values:
 
 
 class _Windows:
-    """What windows of the past came to of which the first failures speak.
-
-    Attributes:
-        names: that they read.
-        until: the last decision, ticks.
-    """
+    """What windows of the past came to of which the first failures speak."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
         from rvmon.analysis.window_values import windows_blamed

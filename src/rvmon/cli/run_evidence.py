@@ -42,10 +42,6 @@ def begun(
 ) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
     """What verdicts depend on, before anything is judged, and after.
 
-    Args:
-        arguments: of `rvmon run`.
-        traces: paths of the recordings.
-
     Returns:
         What `texts_of` returns, and the SHA-256 of the recordings by path.
 

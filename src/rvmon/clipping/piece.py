@@ -48,13 +48,7 @@ class Piece:
 
 @dataclass(slots=True)
 class Copied:
-    """What of a recording is in a piece, but for what that brings along.
-
-    Attributes:
-        count: of rows, lines or messages.
-        first: the first instant, ticks.
-        last: the last one.
-    """
+    """What of a recording is in a piece, but for what that brings along."""
 
     count: int = 0
     first: int = TIME_LIMIT

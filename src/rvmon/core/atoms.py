@@ -83,10 +83,6 @@ _UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
 class Names:
     """Numbers the names that a plan part reads.
 
-    Args:
-        plan: of the part.
-        numbering: of the monitor.
-
     Attributes:
         signals: by name, its number in the part.
         events: the same.
@@ -116,12 +112,7 @@ class Names:
 
 
 class Programs:
-    """Packs the programs of a part.
-
-    Args:
-        sections: of the plan.
-        names: of the part.
-    """
+    """Packs the programs of a part."""
 
     def __init__(self, sections: Sections, names: Names) -> None:
         self._sections = sections
@@ -271,11 +262,7 @@ class Atom:
 
 
 class Atoms:
-    """The atoms of a part.
-
-    Attributes:
-        all: of them, in their order.
-    """
+    """The atoms of a part."""
 
     def __init__(self, plan: Plan, names: Names, programs: Programs) -> None:
         self._plan = plan

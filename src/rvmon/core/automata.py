@@ -10,11 +10,7 @@ from rvmon.logic.letters import Alphabet, LetterClasses, LetterDiagram, Tree
 
 
 class Automata:
-    """Packs automata.
-
-    Args:
-        sections: of the plan.
-    """
+    """Packs automata."""
 
     def __init__(self, sections: Sections) -> None:
         self._sections = sections
@@ -63,12 +59,7 @@ class Automata:
         return self._sections.run(Section.INTS, values)
 
     def diagram(self, class_of: LetterClasses, alphabet: Alphabet) -> int:
-        """The place of the diagram that classes letters; −1 if a table does.
-
-        Args:
-            class_of: of an automaton.
-            alphabet: of the same.
-        """
+        """The place of the diagram that classes letters; −1 if a table does."""
         if not isinstance(class_of, LetterDiagram) or _is_lone(class_of):
             return -1
         levels = {stride: level for level, stride in enumerate(alphabet.strides)}

@@ -150,15 +150,7 @@ def add_margin(
     spec: CheckedSpec,
     requirement: Requirement,
 ) -> None:
-    """Add the robustness formula of the next judge.
-
-    Args:
-        sections: of the plan.
-        plan: of the formula.
-        index: the places of propositions.
-        spec: gives the units.
-        requirement: that is measured.
-    """
+    """Add the robustness formula of the next judge."""
     measures = sections.count(Section.MEASURES)
     for _, core in plan.leaves:
         sections.add(Section.MEASURES, *_measure(core, index, spec, requirement), 0)

@@ -71,12 +71,6 @@ Weights = tuple[Sequence[int], Sequence[int]]
 class Judges:
     """Packs the judges of a part.
 
-    Args:
-        sections: of the plan.
-        automata: of the plan.
-        plan: of the part.
-        numbers: of the requirements of its rules, among all.
-
     Attributes:
         networked: the judges that are networks or chains.
         forms: how many network formulas there are.

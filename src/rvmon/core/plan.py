@@ -35,18 +35,7 @@ _UNUSED = Uses()
 
 
 class Part:
-    """Packs a part.
-
-    Args:
-        sections: of the plan.
-        automata: of the plan.
-        plan: of the part.
-        numbering: of the monitor.
-        numbers: of its requirements, among all.
-
-    Attributes:
-        names: that it reads.
-    """
+    """Packs a part."""
 
     def __init__(
         self,
@@ -286,9 +275,6 @@ class Part:
 
 def pack(plan: Plan) -> Packed:
     """Pack a plan: one part for all requirements without captures, and one for each of the others.
-
-    Args:
-        plan: of the requirements.
 
     Raises:
         RvmonError: an expression is beyond the core.

@@ -40,13 +40,7 @@ class Packed:
 
 
 def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
-    """Restore the names of a packed plan from the specification.
-
-    Args:
-        spec: declares the names.
-        ids: of the requirements, in the order of the file.
-        data: the bytes.
-    """
+    """Restore the names of a packed plan from the specification."""
     return Packed(
         data,
         {name: signal.type.kind for name, signal in spec.signals.items()},
@@ -63,12 +57,7 @@ def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
 
 
 class Numbering:
-    """Numbers everything that a specification declares.
-
-    Attributes:
-        names: of signals, then events.
-        labels: whatever types they belong to.
-    """
+    """Numbers everything that a specification declares."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.names = numbered([*spec.signals, *spec.events])

@@ -25,12 +25,7 @@ SHARED = (0, 0, -1, 0, 0, 0, -1, -1, *([0] * 10))
 
 
 class Unit:
-    """A requirement with captured values.
-
-    Args:
-        plan: of that requirement alone.
-        number: of that, among all.
-    """
+    """A requirement with captured values."""
 
     def __init__(self, plan: Plan, number: int) -> None:
         self._plan = plan

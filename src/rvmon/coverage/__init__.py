@@ -79,11 +79,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """All that runs of a system should show.
-
-    Attributes:
-        groups: by name, in order.
-    """
+    """All that runs of a system should show."""
 
     groups: Mapping[str, Group]
 

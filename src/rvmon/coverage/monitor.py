@@ -38,11 +38,7 @@ from rvmon.verdict.report import Report, report_of
 
 
 class Bins:
-    """The bins of a specification, ready to be watched on any number of runs.
-
-    Attributes:
-        groups: what may be hit.
-    """
+    """The bins of a specification, ready to be watched on any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec

@@ -197,11 +197,7 @@ def deadline_of(required: Formula) -> int | None:
 
 
 class WatchedRequirements:
-    """The requirements and cover goals of a specification, ready to be watched on any runs.
-
-    Attributes:
-        groups: what may be hit.
-    """
+    """The requirements and cover goals of a specification, ready to be watched on any runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         plain = replace(spec, properties={}, covers={})

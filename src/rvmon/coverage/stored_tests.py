@@ -70,13 +70,7 @@ def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]
 def write_entries(
     database: sqlite3.Connection, entries: Iterable[Entry], ids: NDArray[np.int64]
 ) -> None:
-    """Write tests; one that is there already is not written twice.
-
-    Args:
-        database: within a transaction.
-        entries: the tests.
-        ids: of the items, by the places that the entries give.
-    """
+    """Write tests; one that is there already is not written twice."""
     database.executemany(
         _WRITE,
         (

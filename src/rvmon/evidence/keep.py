@@ -262,13 +262,6 @@ def write_evidence(
 ) -> None:
     """Write evidence; the same verdicts on the same inputs give the same bytes.
 
-    Args:
-        path: of the file.
-        about: what it was made of.
-        entries: the texts of the requirements, and what else it holds.
-        specs: the requirements, by robot.
-        rows: the verdicts.
-
     Raises:
         RvmonError: it cannot be written.
     """

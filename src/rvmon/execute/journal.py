@@ -127,12 +127,7 @@ _Task = TypeVar("_Task")
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of several shares that are as large as each other.
-
-    Attributes:
-        number: from 1.
-        count: how many there are.
-    """
+    """One of several shares that are as large as each other."""
 
     number: int
     count: int

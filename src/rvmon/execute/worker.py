@@ -69,10 +69,6 @@ def serve(
 def answer(begun: Callable[[], Callable[[Any], Any]], task: bytes) -> tuple[bool, bytes]:
     """Do a task.
 
-    Args:
-        begun: what does it.
-        task: pickled.
-
     Returns:
         Whether it failed, and its result or error, pickled.
     """

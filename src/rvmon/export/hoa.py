@@ -40,10 +40,6 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
     Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
     proposition listed that none of the others needs.
 
-    Args:
-        compiled: a requirement without windows of time.
-        spec: that it is of.
-
     Raises:
         RvmonError: it has windows, no automaton, or too many propositions.
     """
@@ -97,12 +93,6 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
 
 class _Machine:
     """A requirement's automaton that says `P` or `F` as soon as every continuation agrees.
-
-    Args:
-        compiled: the requirement.
-        automaton: its own.
-        letters: without unknowns.
-        can_be: those that inputs can bring about.
 
     Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4),
     2011, section 3.

@@ -67,9 +67,6 @@ class WallClock:
 class SimulatedClock:
     """A clock that stands until it is set, as by the topic `/clock` of a simulator, or by a test.
 
-    Args:
-        now_ns: what it shows at first.
-
     >>> clock = SimulatedClock()
     >>> clock.set_ns(5)
     >>> clock.now_ns()

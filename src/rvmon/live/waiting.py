@@ -83,11 +83,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class NewRun:
-    """From here on each robot begins a new run.
-
-    Attributes:
-        why: one sentence for people.
-    """
+    """From here on each robot begins a new run."""
 
     why: str
 
@@ -101,12 +97,6 @@ class Waiting:
     What was lost stands in the queue where it would have stood: one `Dropped` for all samples of a
     robot between two that were taken, so that at most twice as many entries wait as there is room
     for. It is not locked.
-
-    Args:
-        room: so many samples may wait.
-
-    Attributes:
-        robots: those that were heard of.
     """
 
     def __init__(self, room: int) -> None:

@@ -38,9 +38,6 @@ class Chain:
 def reach_of(plan: NetworkPlan) -> int | None:
     """The most ticks until a position is decided, or depends on later positions alone.
 
-    Args:
-        plan: of a network.
-
     Returns:
         `None` if there is no such number, or the past is looked at.
     """

@@ -249,10 +249,6 @@ class Diagrams:
     ) -> tuple[LetterClasses, int, list[tuple[Edge, ...]]]:
         """Partitions letters into classes: two are in one class if every diagram maps them alike.
 
-        Args:
-            roots: diagrams.
-            limit: of the number of roots times classes.
-
         Returns:
             The class of each letter, the number of classes, and per class the edge of each root.
 

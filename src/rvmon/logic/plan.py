@@ -211,13 +211,7 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
 def plan_of_truths(
     spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
 ) -> Plan:
-    """The plan of what judges nothing: somebody asks where some formulas are true.
-
-    Args:
-        spec: the specification.
-        formulas: that are asked for.
-        captured: the values that they read as captured.
-    """
+    """The plan of what judges nothing: somebody asks where some formulas are true."""
     read = dict.fromkeys(one.proposition for core in formulas for one in literals(core))
     return replace(_shared(spec, read), truths=tuple(formulas), constants=captured)
 
@@ -225,13 +219,7 @@ def plan_of_truths(
 def plan_of_watches(
     spec: CheckedSpec, watches: Sequence[Watch], groups: Sequence[WatchGroup]
 ) -> Plan:
-    """The plan of what judges nothing: somebody counts where some formulas come true.
-
-    Args:
-        spec: the specification.
-        watches: the formulas.
-        groups: what is counted of them.
-    """
+    """The plan of what judges nothing: somebody counts where some formulas come true."""
     plan = _shared(spec, (watch.state for watch in watches))
     return replace(plan, watches=tuple(watches), groups=tuple(groups))
 

@@ -126,10 +126,6 @@ def leaf_texts(
     Of those with one text, which differ in what they are before birth, it is one that goes on
     mattering: the core leaves the others as they were then. Where a number is compared with itself
     beside a `known` that the requirement asks for, that comes behind it: it is what is shown.
-
-    Args:
-        roots: the state formulas that are made of them.
-        determined: see `lasting`.
     """
     graph = graph_of(roots)
     last = lasting(graph, roots, determined)

@@ -235,13 +235,7 @@ class Reader(Reading[Four]):
         return Four(factory, read, mortal=any(arg.mortal for arg in args), parts=args)
 
     def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
-        """All of some, FALSE where one is not born: by any distance, unless one was lost.
-
-        Args:
-            args: the formulas.
-            joined: all of them, TRUE where not born.
-            unborn: that one is not born.
-        """
+        """All of some, FALSE where one is not born: by any distance, unless one was lost."""
         factory = self.factory
         lost = factory.state_all([joined, factory.negation(joined)])
         born = factory.state_any([factory.negation(unborn), lost])

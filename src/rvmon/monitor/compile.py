@@ -217,9 +217,6 @@ class CompiledRequirement:
 def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
     """The requirements of a specification, compiled, by id.
 
-    Args:
-        checked: as checked.
-
     Raises:
         RvmonError: one cannot be monitored; which one and why is in the message.
     """

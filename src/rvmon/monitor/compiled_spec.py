@@ -60,9 +60,6 @@ class CompiledSpec:
 def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     """Compile a specification, once for all its monitors.
 
-    Args:
-        checked: as checked.
-
     Raises:
         RvmonError: a requirement cannot be monitored; which one and why is in the message.
     """
@@ -92,10 +89,6 @@ class Place:
     It is keyed by all that it depends on: what was checked of the specification, the requirements,
     and the files of rvmon by size and time. The key stands in the file, too: one that was renamed
     is none of this place.
-
-    Args:
-        spec: the specification.
-        how: which of its requirements are planned, and how.
     """
 
     def __init__(self, spec: CheckedSpec, *how: object) -> None:

@@ -199,11 +199,7 @@ MARGIN = np.dtype(
 
 
 class RecordedMargins:
-    """Collects the robustness figures of a run.
-
-    Args:
-        ids: of requirements, by number.
-    """
+    """Collects the robustness figures of a run."""
 
     def __init__(self, ids: Sequence[str]) -> None:
         self._ids = ids

@@ -125,13 +125,7 @@ def still_required(required: str, end: int | None, origin: int) -> str:
 def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
-    """Which of some names have had no value so far; what has left the attempt open is named there.
-
-    Args:
-        names: that a requirement reads.
-        outages: what is not known now.
-        doubt: of the attempt.
-    """
+    """Which of some names have had no value so far, but those that the doubt names."""
     told = set() if doubt is None else {one.name for one in doubt.outages}
     found = (outages[name] for name in sorted(set(names) & outages.keys() - told))
     return tuple(one for one in found if one.why is HealthKind.MISSING)

@@ -17,18 +17,7 @@ from rvmon.trace.time import ticks_of_seconds
 
 
 class Feed:
-    """Checks samples, holds back those that cannot be judged yet, and has the core judge them.
-
-    Args:
-        checked: the specification.
-        planned: the plan of its requirements.
-        core: the run.
-        sources: the names that can arrive; `None`: all.
-        settle: one of `rvmon.monitor.intake.WAYS_TO_SETTLE`.
-
-    Attributes:
-        losses: what is lost.
-    """
+    """Checks samples, holds back those that cannot be judged yet, and has the core judge them."""
 
     def __init__(
         self,
@@ -56,10 +45,6 @@ class Feed:
 
     def take(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a sample, at ticks.
-
-        Args:
-            t: its instant.
-            values: from `check`.
 
         Raises:
             TimeOrderError: it comes behind what was judged; nothing changed.

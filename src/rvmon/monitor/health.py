@@ -113,13 +113,7 @@ def of_intake(intake: Intake) -> list[Health]:
 
 
 class Findings:
-    """Looks through what is judged.
-
-    Args:
-        checked: the specification.
-        planned: the plan of the requirements.
-        absent: the names without a source.
-    """
+    """Looks through what is judged."""
 
     def __init__(self, checked: CheckedSpec, planned: PlannedCore, absent: frozenset[str]) -> None:
         self._log = HealthLog()
@@ -168,14 +162,7 @@ class Findings:
 def health_of_run(
     planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
 ) -> tuple[Health, ...]:
-    """The input health of a run that took samples.
-
-    Args:
-        planned: the plan of its requirements.
-        run: is finished.
-        absent: the names without a source.
-        further: what was found of samples on their way.
-    """
+    """The input health of a run that took samples."""
     log = HealthLog()
     log.began, _, _ = run.times()
     names = [(name, name) for name in planned.numbers]

@@ -23,13 +23,7 @@ MOST_HELD = 65_536
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """From an instant on names are lost, or behind it found again.
-
-    Attributes:
-        t: the instant, ticks.
-        names: the names.
-        lost: whether they are lost.
-    """
+    """From an instant on names are lost, or behind it found again."""
 
     t: int
     names: tuple[str, ...]

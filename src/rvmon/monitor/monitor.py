@@ -117,9 +117,6 @@ class Monitor(FedMonitor[Attempt]):
         `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
         no part of snapshots: register them again after `Spec.restore`.
 
-        Args:
-            callback: takes an attempt.
-
         Returns:
             A function without arguments that ends this; to call it again does nothing.
 
@@ -263,9 +260,6 @@ class Monitor(FedMonitor[Attempt]):
 
     def take_up(self, document: Mapping[str, Any]) -> None:
         """Go on as the run of a snapshot; this monitor was just made as that was.
-
-        Args:
-            document: from `rvmon.monitor.snapshot.document_of`.
 
         Raises:
             SnapshotError: it fits no such monitor.

@@ -344,12 +344,7 @@ def _token(words: Sequence[int], at: int, width: int) -> tuple[Token, int]:
 
 
 class NotesReader:
-    """Reads the notes of all judges of a plan.
-
-    Args:
-        compiled: the specification.
-        ids: of the requirements, by number.
-    """
+    """Reads the notes of all judges of a plan."""
 
     def __init__(self, compiled: CompiledSpec, ids: Sequence[str]) -> None:
         self._compiled = compiled

@@ -35,13 +35,7 @@ if TYPE_CHECKING:
 
 
 class CapturedValues:
-    """Decodes the values that attempts captured.
-
-    Args:
-        spec: the specification.
-        ids: of the requirements, in the order of their numbers.
-        labels: by label, its number.
-    """
+    """Decodes the values that attempts captured."""
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
         self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]

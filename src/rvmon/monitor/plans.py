@@ -19,12 +19,7 @@ from rvmon.spec.checked.names_read import requirements_asked
 
 
 def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
-    """How the core judges a requirement: automaton, chain or network.
-
-    Args:
-        one: the requirement.
-        measured: whether its robustness is measured as well.
-    """
+    """How the core judges a requirement: automaton, chain or network."""
     required, alphabet, automaton = one.obligation.required, one.alphabet, one.shaped
     if measured and one.counts_alone:
         required, alphabet, automaton = _nothing_required()

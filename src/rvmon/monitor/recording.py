@@ -69,9 +69,6 @@ class RecordingRun:
         planned: the plan that it judges by.
         source: the recording that the pieces come from.
         finds: whether the health of the input is collected.
-
-    Attributes:
-        core: the run.
     """
 
     def __init__(

@@ -199,10 +199,6 @@ class Batch:
 def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
     """Rows of several sources by time, each saying nothing where it has no row.
 
-    Args:
-        batches: with ascending instants.
-        first: the number of its first row.
-
     Returns:
         `None` if a name is in two of them, or an instant twice in one: these are merged as samples.
     """

@@ -141,14 +141,7 @@ _LONGEST = 4
 
 @dataclass(slots=True)
 class Alternation:
-    """Known and unknown values of a name.
-
-    Attributes:
-        known: how many.
-        unknown: how many.
-        stretches: of unknown values.
-        was_unknown: the last one.
-    """
+    """Known and unknown values of a name."""
 
     known: int = 0
     unknown: int = 0

@@ -245,10 +245,6 @@ def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
 def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
     """A table as one batch.
 
-    Args:
-        columns: of the table, by name.
-        layout: what they are.
-
     Raises:
         NotPlainError: a column holds something else, or stamps are dates; who reads rows says what.
     """

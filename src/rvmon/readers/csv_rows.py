@@ -118,11 +118,6 @@ def split_lines(
 ) -> Iterator[tuple[int, list[str]]]:
     """Split CSV text into rows with the number of the line that each ends on; blank ones are none.
 
-    Args:
-        lines: of the text.
-        before: so many lines stand above them.
-        separator: of cells.
-
     Raises:
         TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
             ends of lines is longer than a line may be.
@@ -235,13 +230,8 @@ def unended(
     Its last cell may be half of one, so that what it feeds is unknown; a truth value has no half.
     Where that cell is the stamp, all is unknown.
 
-    Args:
-        rows: the last one, or none.
-        layout: of them.
-        ignoring: the signals that take no unknown value.
-
     Raises:
-        TraceError: with the line's number; also where such a signal would be unknown.
+        TraceError: with the line's number; also where a signal of `ignoring` would be unknown.
     """
     for line, row in rows:
         try:

@@ -28,10 +28,6 @@ class HeldRecording(Sequence[Sample]):
         pieces: of the recording, in order.
         events: the names that are events.
         outages: what it lost.
-
-    Attributes:
-        pieces: as given.
-        outages: as given.
     """
 
     def __init__(

@@ -73,12 +73,7 @@ _UNIT = re.compile(r"(?<=\d) (?=(s|ns|us|ms|min|h|m|cm|mm)\b)")
 
 
 def render(name: str, **values: object) -> str:
-    """Fill in a template of this package.
-
-    Args:
-        name: of its file.
-        values: what it speaks of, by name.
-    """
+    """Fill in a template of this package."""
     return _environment().get_template(name).render(**values)
 
 

@@ -26,12 +26,7 @@ DEEPEST = 8
 
 
 def parts_timeline(panel: Panel, report: Report) -> ET.Element:
-    """A row for the trigger and for each part of what is required of an attempt.
-
-    Args:
-        panel: with an attempt and part_truths.
-        report: of the run.
-    """
+    """A row for the trigger and for each part of what is required of an attempt."""
     assert panel.attempt is not None, "as only these have part_truths"
     end = end_of(report)
     rows: list[Child] = []

@@ -111,12 +111,7 @@ MOST = 100
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A run in which passing attempts of a requirement are looked for.
-
-    Attributes:
-        run: the run.
-        tracks: of the signals that the requirement concerns.
-    """
+    """A run in which passing attempts of a requirement are looked for."""
 
     run: JudgedRun
     tracks: tuple[Track, ...]

@@ -24,13 +24,7 @@ Counts = Mapping[Verdict, int]
 
 @dataclass(frozen=True, slots=True)
 class RunGroup:
-    """Runs that are counted together, such as those of one test generation strategy.
-
-    Attributes:
-        name: heads the four columns.
-        runs: how many there are.
-        counts: by requirement; each sums to `runs`.
-    """
+    """Runs that are counted together, such as those of one test generation strategy."""
 
     name: str
     runs: int

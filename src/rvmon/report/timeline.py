@@ -78,14 +78,7 @@ def track_row(
 
 
 def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Element:
-    """Draw when a formula was true.
-
-    Args:
-        label: stands beside it.
-        track: its truth, as a switch.
-        view: the stretch of time that is shown.
-        end: the last instant of the run, ticks.
-    """
+    """Draw when a formula was true."""
     plot = e("div", {"class": "plot switch truth"})
     _add_stretches(plot, stretches(track, view, end + 1))
     return e("div", {"class": "row"}, e("div", {"class": "name"}, label), plot)

@@ -252,14 +252,7 @@ def tracks_of(
     found: Mapping[str, Changes],
     absent: Collection[str] = (),
 ) -> tuple[Track, ...]:
-    """The tracks of the signals and events that a requirement reads, in its order.
-
-    Args:
-        spec: its specification.
-        requirement: whose names are shown.
-        found: from `changes_of`.
-        absent: names without a source.
-    """
+    """The tracks of the signals and events that a requirement reads, in its order."""
     return tuple(
         _signal_track(spec.signals[name], requirement, found[name])
         if name in spec.signals

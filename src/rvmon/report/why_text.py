@@ -32,13 +32,7 @@ LEGEND = (
 def why_lines(
     breakdown: Breakdown, requirement: Requirement, values: Mapping[str, Sequence[str]]
 ) -> Iterator[Text]:
-    """The verdict with its reason, a row for the trigger and each part of what is required, values.
-
-    Args:
-        breakdown: the attempt taken apart.
-        requirement: of which it is an attempt.
-        values: from `values_told`.
-    """
+    """The verdict with its reason, a row for the trigger and each part required, and values."""
     from rich.text import Text
 
     attempt = breakdown.attempt

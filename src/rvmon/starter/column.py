@@ -53,12 +53,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Shapes:
-    """The names of a recording that a specification can declare, and those that it cannot.
-
-    Attributes:
-        declared: by name, in order of appearance.
-        left_out: by name, why.
-    """
+    """The names of a recording that a specification can declare, and those that it cannot."""
 
     declared: Mapping[str, Shape]
     left_out: Mapping[str, str]

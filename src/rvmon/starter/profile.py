@@ -234,11 +234,6 @@ def bound_profile(path: str, schema: Schema) -> Profile:
 def followed(path: str, schema: Schema, shapes: Shapes) -> Profile:
     """Follow names over time; a recording that is not in order is put in order.
 
-    Args:
-        path: of the recording.
-        schema: declares the names.
-        shapes: what they are.
-
     Raises:
         TraceError: it cannot be read, or none of them has a value.
     """

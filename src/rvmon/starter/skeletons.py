@@ -32,14 +32,7 @@ _OFTEN = 3
 
 @dataclass(frozen=True, slots=True)
 class Skeleton:
-    """A requirement as text.
-
-    Attributes:
-        title: in words.
-        body: its lines.
-        remark: where its numbers come from.
-        names: that it reads.
-    """
+    """A requirement as text."""
 
     title: str
     body: tuple[str, ...]

@@ -56,9 +56,6 @@ class Field:
 class Elements:
     """All elements of an array.
 
-    Attributes:
-        array: the field.
-
     >>> str(Elements(Field(("ranges",))))
     'ranges[]'
     """

@@ -94,11 +94,7 @@ class Report:
         return iter(self._kinds.get((requirement, verdict), ()))
 
     def is_silent(self, requirement: str) -> bool:
-        """Whether a requirement has no attempt: it is `NT`, or `I` if its trigger was never known.
-
-        Args:
-            requirement: its id.
-        """
+        """Whether a requirement has no attempt: it is `NT`, or `I` if no trigger was known."""
         return not any(self.counts[requirement].values())
 
     def rows(self) -> Iterator[VerdictRow]:

@@ -126,12 +126,7 @@ MOST_STATES = 200_000
 
 @dataclass(frozen=True, slots=True)
 class Witness:
-    """A run of the model that is to hit an item.
-
-    Attributes:
-        run: of the model.
-        query: that it is a witness of.
-    """
+    """A run of the model that is to hit an item."""
 
     run: Run
     query: str
@@ -139,11 +134,7 @@ class Witness:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """That no run of the model hits an item.
-
-    Attributes:
-        query: whose answer says so.
-    """
+    """That no run of the model hits an item."""
 
     query: str
 

@@ -57,16 +57,7 @@ class Proposal:
 
 
 class Proposer:
-    """Proposes tests, each aimed at what is open.
-
-    Args:
-        campaign: with its strategies.
-        robot: that is tested.
-        goals: what is open.
-        strategies: those that tests are drawn from.
-        seed: all follows from it, and from what was learnt.
-        witnesses: of the campaign's model.
-    """
+    """Proposes tests, each aimed at what is open."""
 
     def __init__(
         self,

@@ -145,17 +145,7 @@ Progress = Callable[[int], None]
 
 @dataclass(frozen=True)
 class Suite:
-    """A robot, and tests that were played on it.
-
-    Attributes:
-        name: of the robot.
-        robot: itself.
-        spec: its requirements.
-        code: its code.
-        tests: by name, those that completed.
-        recorded: their runs.
-        left_out: tests that are of no use here, and why.
-    """
+    """A robot, and tests that were played on it."""
 
     name: str
     robot: Robot

@@ -19,14 +19,7 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True)
 class SuiteTried:
-    """A suite, and what it sees.
-
-    Attributes:
-        tests: how many there are.
-        left_out: tests of no use here, and why.
-        tried: the mutants of the code.
-        spec_tried: the mutants of the requirements.
-    """
+    """A suite, and what it sees."""
 
     tests: int
     left_out: Mapping[str, str]

@@ -306,11 +306,6 @@ def try_spec_mutants(
 ) -> list[SpecTried]:
     """Judge recorded runs by mutants of requirements: which get another verdict?
 
-    Args:
-        spec: as it is.
-        mutants: of its requirements.
-        recorded: by test, with the verdicts of the specification.
-
     Returns:
         What became of each; of what no run tells apart it is tried to prove that none can.
     """

@@ -168,10 +168,6 @@ def readers(spec: CheckedSpec) -> dict[str, list[str]]:
 def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
     """What a survivor asks, in a sentence.
 
-    Args:
-        survivor: a mutant that is not killed.
-        reading: as `readers` gives it.
-
     >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.python_mutants import Mutant
     >>> mutant = Mutant(Path("a.py"), 3, "constant", "x = 3", "x = 4", "x = 4")

@@ -86,13 +86,7 @@ class Protocol(LanguageServerProtocol):
         return None
 
     def refuse(self, id_: int | str | None, code: lsp.ErrorCodes, why: str) -> None:
-        """Answer that a message cannot be taken.
-
-        Args:
-            id_: of the request; `None`: there is none to be read.
-            code: of the error.
-            why: in words.
-        """
+        """Answer that a message cannot be taken."""
         _log.warning("a message is refused: %s", why)
         error = {"code": code.value, "message": why}
         self._send_data({"jsonrpc": self.VERSION, "id": id_, "error": error})

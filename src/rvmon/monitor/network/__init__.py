@@ -43,13 +43,7 @@ from rvmon.monitor.network.sweep import Carried, Known, since, until
 
 
 def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Known:
-    """What is known of a node.
-
-    Args:
-        node: any but a leaf.
-        operands: what is known of them.
-        positions: of the word.
-    """
+    """What is known of a node."""
     match node:
         case Junction():
             return _junction(node, operands)

@@ -93,11 +93,6 @@ def _close(ready: list[Messages]) -> None:
 class MessageFile:
     """A recording of messages, looked at.
 
-    Args:
-        path: of it.
-        form: one of `MESSAGE_FORMS`.
-        schema: the declared names, and how the recording gives them.
-
     Attributes:
         topics: by name.
         names: declared names that have a topic.

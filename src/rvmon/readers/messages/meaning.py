@@ -81,10 +81,6 @@ _OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
 def meaning_of(path: str, topic: Topic) -> Meaning:
     """What a field of the messages of a topic means.
 
-    Args:
-        path: of the field, as in `topic.leaves`.
-        topic: of the messages.
-
     >>> one = meaning_of("twist.linear.x", Topic("/v", "geometry_msgs/msg/TwistStamped", {}))
     >>> one.units[0].symbol, one.words
     ('m/s', ('velocity', 'speed'))

@@ -37,11 +37,6 @@ class BagMessages:
         form: `ros1` or `ros2`.
         definitions: of messages by type, which the bag may lack.
 
-    Attributes:
-        topics: by name.
-        end: the tick of the last message of all.
-        count: of all messages.
-
     Raises:
         RvmonError: rosbags is not installed.
         TraceError: it is no bag, or a damaged one.

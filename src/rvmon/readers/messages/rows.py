@@ -57,12 +57,7 @@ def _rows(
 
 
 class MessageReaders:
-    """What reads the messages, by topic: made for the first one of each.
-
-    Args:
-        bounds: what feeds the declared names.
-        schema: the kinds of their values.
-    """
+    """What reads the messages, by topic: made for the first one of each."""
 
     def __init__(self, bounds: Mapping[str, Bound], schema: Schema) -> None:
         self._schema = schema

@@ -49,9 +49,6 @@ class _Table:
 class TableMessages:
     """An open folder.
 
-    Args:
-        folder: that has a `topics.toml`.
-
     Attributes:
         topics: by name, one of each file.
         end: `None`: it ends with the last row that is read.

@@ -33,9 +33,6 @@ _FAR = 3 * 24 * 3600 * 1_000_000
 class TelemetryMessages:
     """An open recording of telemetry, gone through once for the place of each packet.
 
-    Args:
-        path: of it.
-
     Attributes:
         topics: by name, one a message and sender; the name says the sender where several send it.
         end: the last stamp.

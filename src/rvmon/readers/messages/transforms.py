@@ -80,10 +80,6 @@ class WithTransforms:
 
     `/tf/map/base_link` says where `base_link` is in `map`, with each message that changes a part
     of the way between them, by what was last heard of the others.
-
-    Args:
-        source: the recording.
-        pairs: of frames.
     """
 
     def __init__(self, source: Messages, pairs: Iterable[tuple[str, str]]) -> None:

@@ -29,12 +29,7 @@ _BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UN
 
 @dataclass(frozen=True, slots=True)
 class Bounded:
-    """A window from now on whose end comes from data; what it bounds is required at the trigger.
-
-    Attributes:
-        seconds: how long it is.
-        scope: that captures it.
-    """
+    """A window from now on whose end comes from data; what it bounds is required at the trigger."""
 
     seconds: Numeric
     scope: Scope

@@ -78,12 +78,6 @@ def derived_response(
 ) -> tuple[Formula, Formula]:
     """Trigger and consequent of the monitor that awaits the outputs upon the inputs.
 
-    Args:
-        table: gives the roles.
-        property_: `E<> (conjunction)`.
-        within: the deadline, ticks.
-        place: of the `monitor` clause.
-
     Raises:
         Refusal: the property has another form, a conjunct mixes roles, or there is no output.
 

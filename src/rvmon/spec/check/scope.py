@@ -275,11 +275,7 @@ def close_unit(part: str) -> str:
 
 
 class Operands(Protocol):
-    """Evaluates operands; each method reports what is wrong in all of them before it raises.
-
-    Attributes:
-        table: the names of the file.
-    """
+    """Evaluates operands; each method reports what is wrong in all of them before it raises."""
 
     table: Table
 

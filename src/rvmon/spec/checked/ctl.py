@@ -78,14 +78,7 @@ StateFormula = StateAtom | ModelAtom | StateNot | StateBinary | PathUnary | Path
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """A CTL property; `p --> q` is `AG (p -> AF q)`.
-
-    Attributes:
-        id: of its own, or of its requirement.
-        text: as written.
-        formula: the property.
-        span: where it is written.
-    """
+    """A CTL property; `p --> q` is `AG (p -> AF q)`."""
 
     id: str
     text: str

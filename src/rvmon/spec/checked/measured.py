@@ -6,11 +6,7 @@ from enum import Enum, StrEnum
 
 
 class Members(Enum):
-    """What the members of a window are.
-
-    Attributes:
-        said: it in words.
-    """
+    """What the members of a window are."""
 
     TRUTHS = "a formula that is true at single instants"
     TIME = "a formula"

@@ -30,11 +30,7 @@ def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectiv
 
 @dataclass(frozen=True, slots=True)
 class Formulas:
-    """The reading of operators as formulas of `not and or X U Y S`.
-
-    Attributes:
-        span: the place that they have.
-    """
+    """The reading of operators as formulas of `not and or X U Y S`."""
 
     span: Span | None = None
 

@@ -11,7 +11,7 @@ from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.bodies import is_price, updates_of
 from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
-from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
+from rvmon.timed.language.layout import MAX_VALUES, claim, values_of
 from rvmon.timed.language.operations import binary, refuse_clocks
 from rvmon.timed.language.reals import as_real, is_real
 from rvmon.timed.language.resolve import Resolver
@@ -44,8 +44,7 @@ def location_names(template: automaton_syntax.Template, findings: Findings) -> d
     scope = Scope()
     for index, location in enumerate(template.locations):
         with findings.collect():
-            refuse_double(location.name, location.span, scope)
-            scope.places[location.name] = location.span
+            claim(location.name, location.span, scope)
             names[location.name] = index
     return names
 
@@ -100,7 +99,7 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
                 rates.append(Rate(clock, rate))
             case _:
                 condition = binary(
-                    BinaryOp.AND, condition, _condition(part, inner, resolver), part.span
+                    BinaryOp.AND, condition, resolver.condition(part, inner), part.span
                 )
     if written.leaving is not None:
         one, other = (_number(share, scope, resolver) for share in written.leaving)
@@ -112,7 +111,7 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
 
 
 def _number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
-    number = _condition(written, scope, resolver)
+    number = resolver.condition(written, scope)
     refuse_clocks(number, written.span)
     return number
 
@@ -152,12 +151,6 @@ def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     return names[name.name]
 
 
-def _condition(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
-    condition = resolver.expression(written, scope)
-    refuse_changes(condition, written.span)
-    return condition
-
-
 def _edges(
     written: automaton_syntax.EdgeText,
     names: Mapping[str, int],
@@ -169,8 +162,7 @@ def _edges(
     source, target = _location(written.source, names), _location(written.target, names)
     ranges, selected_names = [], Scope()
     for selection in written.selections:
-        refuse_double(selection.name, selection.span, selected_names)
-        selected_names.places[selection.name] = selection.span
+        claim(selection.name, selection.span, selected_names)
         ranges.append(values_of(resolver.type(selection.type, scope), selection.span))
     for count, chosen in enumerate(product(*ranges)):
         if count >= MAX_VALUES:
@@ -182,7 +174,7 @@ def _edges(
         inner = scope.inner(selected) if selected else scope
         guards = [Guard()]
         if written.guard is not None:
-            guards = guards_of(_condition(written.guard, inner, resolver))
+            guards = guards_of(resolver.condition(written.guard, inner))
         if len(guards) > MAX_CASES:
             message = f"a guard of more than {MAX_CASES} cases with clocks"
             raise model_error("TA019", message, written.span, "write several edges")

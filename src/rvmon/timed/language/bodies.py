@@ -10,9 +10,9 @@ from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
 from rvmon.timed.language.layout import (
     Extents,
+    claim,
     laid_out,
     parts_of_initial,
-    refuse_double,
     values_of,
 )
 from rvmon.timed.language.reals import bound, fitted
@@ -179,14 +179,13 @@ class Bodies:
 
     def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[Statement]:
         resolver = self.resolver
-        refuse_double(item.name, item.span, scope)
+        claim(item.name, item.span, scope)
         kind = resolver.type(item.type, scope)
         extents = (*resolver.extents(item.sizes, scope), *kind.extents)
         kind = replace(kind, extents=())
         if kind.base in (BaseType.CLOCK, BaseType.CHANNEL):
             fix = "declare it outside the function"
             raise model_error("TA004", "a clock or channel in a function", item.span, fix)
-        scope.places[item.name] = item.span
         initial = item.initial
         if kind.const and initial is not None and not (extents or kind.fields):
             value = self._single(initial, scope)

@@ -15,10 +15,10 @@ from rvmon.timed.language import syntax
 from rvmon.timed.language.layout import (
     MAX_VALUES,
     Value,
+    claim,
     default_of,
     laid_out,
     parts_of_initial,
-    refuse_double,
     variable_of,
 )
 from rvmon.timed.language.resolve import Resolver
@@ -146,8 +146,7 @@ def declare(
             if isinstance(item, syntax.PrioritiesText):
                 _rank(item, scope, parts, resolver)
                 continue
-            refuse_double(item.name, item.span, scope)
-            scope.places[item.name] = item.span
+            claim(item.name, item.span, scope)
             before = len(parts.variables)
             scope.symbols[item.name] = _symbol(item, scope, parts, resolver)
             if len(parts.variables) > before:

@@ -14,14 +14,14 @@ from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.diagonals import Diagonals
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
-from rvmon.timed.language.layout import INT32, refuse_double
+from rvmon.timed.language.layout import INT32, claim
 from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.reals import as_real, is_real
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.model.expressions import FALSE, TRUE, Expression
-from rvmon.timed.model.guards import is_discrete, is_plain, refuse_changes
+from rvmon.timed.model.guards import is_discrete, is_plain
 from rvmon.timed.model.network import (
     Automaton,
     Chance,
@@ -222,8 +222,7 @@ def _queries(
         own, resolver.fraction = Findings(), None
         with own.collect() if lenient else findings.collect():
             if query.id:
-                refuse_double(query.id, query.span, ids)
-                ids.places[query.id] = query.span
+                claim(query.id, query.span, ids)
             meaning = _formula(query.formula, resolver, top)
             queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
         for found in own.found.values():
@@ -249,9 +248,8 @@ def _signals(written: Iterable[SignalText], names: Names, findings: Findings) ->
     signals, taken = list[Signal](), Scope()
     for signal in written:
         with findings.collect():
-            refuse_double(signal.name, signal.span, taken)
-            taken.places[signal.name] = signal.span
-            value = _condition(signal.value, resolver, names.top)
+            claim(signal.name, signal.span, taken)
+            value = resolver.condition(signal.value, names.top)
             if not is_discrete(value):
                 fix = "use locations and variables only"
                 raise model_error("TA009", "a signal with clocks or runs", signal.span, fix)
@@ -274,7 +272,7 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> Quer
             shown = tuple(_term(term, resolver, top) for term in terms)
             return Simulation(shown, horizon, _runs(runs, resolver, top, least=1) or 1)
         case syntax.Extremes(ends, where, terms):
-            condition = TRUE if where is None else _condition(where, resolver, top)
+            condition = TRUE if where is None else resolver.condition(where, top)
             if not is_plain(condition):
                 fix = "write a condition on the state: sup{p}: e"
                 raise model_error("TA020", "a condition on runs", written.span, fix)
@@ -295,7 +293,7 @@ def _refuse_fraction(resolver: Resolver) -> None:
 
 
 def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
-    number = _condition(written, resolver, top)
+    number = resolver.condition(written, top)
     if not is_discrete(number):
         fix = "use locations and variables only"
         raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
@@ -329,15 +327,9 @@ def _decided(
         asked = _decided(written.query, resolver, top)
         return assuming(asked, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
-        return _condition(written, resolver, top)
-    left, right = _condition(written.left, resolver, top), _condition(written.right, resolver, top)
+        return resolver.condition(written, top)
+    left, right = resolver.condition(written.left, top), resolver.condition(written.right, top)
     return LeadsToFormula(left, right, resolver.limit(written.bound, top))
-
-
-def _condition(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
-    condition = resolver.expression(written, top)
-    refuse_changes(condition, written.span)
-    return condition
 
 
 def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:

@@ -12,10 +12,10 @@ from rvmon.timed.language.layout import (
     Extents,
     Value,
     check_count,
+    claim,
     count_of,
     default_of,
     laid_out,
-    refuse_double,
     variable_of,
 )
 from rvmon.timed.language.reals import fitted
@@ -199,7 +199,7 @@ def _make(
     text: syntax.FunctionText, scope: Scope, bound: Sequence[Symbol | None], resolver: Resolver
 ) -> Function:
     """A function with its parameters bound, or given places of their own."""
-    functions, inner = resolver.functions, Scope(scope)
+    functions, inner, taken = resolver.functions, Scope(scope), Scope()
     parameters: list[int] = []
     indices: list[int] = []
 
@@ -217,7 +217,7 @@ def _make(
         return replace(slot, indices=tuple(own))
 
     for parameter, thing in zip(text.parameters, bound, strict=True):
-        refuse_double(parameter.name, parameter.span, inner)
+        claim(parameter.name, parameter.span, taken)
         if thing is not None:
             inner.symbols[parameter.name] = _with_slots(thing, chosen)
             continue

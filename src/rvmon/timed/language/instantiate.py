@@ -10,7 +10,7 @@ from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.declare import Findings, check_range
-from rvmon.timed.language.layout import MAX_VALUES, check_count, count_of, refuse_double, values_of
+from rvmon.timed.language.layout import MAX_VALUES, check_count, claim, count_of, values_of
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import leaves
 from rvmon.timed.model.operators import BaseType
@@ -46,8 +46,7 @@ def processes_of(
     declared: tuple[Family, ...] = (*document.templates, *document.instances)
     for family in declared:
         with findings.collect():
-            refuse_double(family.name, family.span, top)
-            top.places[family.name] = family.span
+            claim(family.name, family.span, top)
             top.families.add(family.name)
             families[family.name] = family
     used = {instance.template.name for instance in document.instances}
@@ -117,9 +116,8 @@ def _bind(
 ) -> tuple[automaton_syntax.Template, Scope]:
     scope = Scope(top)
     for parameter, argument in zip(family.parameters, arguments, strict=True):
-        refuse_double(parameter.name, parameter.span, scope)
+        claim(parameter.name, parameter.span, scope)
         scope.symbols[parameter.name] = argument
-        scope.places[parameter.name] = parameter.span
     if isinstance(family, automaton_syntax.Template):
         return family, scope
     target = families.get(family.template.name)

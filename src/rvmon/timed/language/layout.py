@@ -49,7 +49,12 @@ class Placer(Protocol):
 
 
 def laid_out(
-    kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value, placer: Placer
+    kind: ResolvedType,
+    extents: Extents,
+    names: Sequence[str],
+    value: Value,
+    placer: Placer,
+    unnamed: Extents | None = None,
 ) -> Symbol:
     """The symbol of something declared; a record's fields are laid out one after the other.
 
@@ -59,20 +64,10 @@ def laid_out(
         names: what it is called.
         value: its initial value.
         placer: for single things and arrays of them.
+        unnamed: the last dimensions, of which the names say nothing yet; default all.
     """
-    return _laid_out(kind, extents, extents, names, value, placer)
-
-
-def _laid_out(
-    kind: ResolvedType,
-    extents: Extents,
-    unnamed: Extents,
-    names: Sequence[str],
-    value: Value,
-    placer: Placer,
-) -> Symbol:
-    """As `laid_out`; the names lack what the last dimensions, `unnamed`, add to them."""
-    names = [name + suffix for name in names for suffix in _suffixes(unnamed)]
+    suffixes = _suffixes(extents if unnamed is None else unnamed)
+    names = [name + suffix for name in names for suffix in suffixes]
     if kind.base is not BaseType.RECORD:
         real = kind.base is BaseType.DOUBLE
         if kind.const and value is not None and not (real and extents):
@@ -83,9 +78,8 @@ def _laid_out(
         own = replace(written, const=kind.const or written.const, extents=())
         inner = None if value is None else _field(value, len(extents), place)
         called = [f"{name}.{field}" for name in names]
-        symbol = _laid_out(
-            own, (*extents, *written.extents), written.extents, called, inner, placer
-        )
+        whole = (*extents, *written.extents)
+        symbol = laid_out(own, whole, called, inner, placer, written.extents)
         fields.append((field, symbol))
     return RecordSymbol(tuple(fields))
 
@@ -176,11 +170,12 @@ def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> N
         raise model_error("TA015", f"{message}, {len(arguments)} given", span)
 
 
-def refuse_double(name: str, span: Span, scope: Scope) -> None:
-    """Refuse a name that the same level already has."""
+def claim(name: str, span: Span, scope: Scope) -> None:
+    """Note where a name is declared; refuse one that the same level already has."""
     if name in scope.places:
         first = Label(scope.places[name], "first declared here")
         raise model_error("TA003", f"two things named `{name}`", span, "rename one", others=[first])
+    scope.places[name] = span
 
 
 class Calls(Protocol):

@@ -18,10 +18,6 @@ from rvmon.timed.model.rules import model_error
 def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None) -> Network:
     """Read a model from a `.ta` file, or from one in UPPAAL's XML.
 
-    Args:
-        path: of the file.
-        constants: other values for constants of the model.
-
     Raises:
         ModelError: the file cannot be read, or is no model; it has all findings.
     """

@@ -1,18 +1,18 @@
 """The parser's tree to the types of `syntax`: the rules of queries."""
 
-# ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
+# ruff: noqa: D102 - the methods are the grammar's rules, called with one signature
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
 
-from lark import Tree, v_args
+from lark import v_args
 from lark.tree import Meta
 
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
-from rvmon.timed.language.statement_builder import StatementBuilder, is_rule
+from rvmon.timed.language.statement_builder import Maker, StatementBuilder, is_rule
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
@@ -33,6 +33,12 @@ _CTL = {
 @v_args(meta=True)
 class QueryBuilder(StatementBuilder):
     """One method per rule; `place` maps offsets of the text to spans."""
+
+    makers: ClassVar[Mapping[str, Maker]] = {
+        **StatementBuilder.makers,
+        "within": lambda items, _: (items[0], items[1] if len(items) > 1 else None),
+        "assuming": lambda items, span: syntax.Assuming(items[0], items[1], span),
+    }
 
     def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
         word, *bound, body = items
@@ -60,9 +66,6 @@ class QueryBuilder(StatementBuilder):
         name, *parts = items
         return syntax.Call(str(name), (self.linear_until(meta, parts),), self._span(meta))
 
-    def within(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
-        return items[0], items[1] if len(items) > 1 else None
-
     def chance(self, meta: Meta, items: Sequence[Any]) -> syntax.Chance:
         name, (within, runs), word, body, *test = items
         span = self._span(meta)
@@ -89,17 +92,11 @@ class QueryBuilder(StatementBuilder):
             runs = syntax.Number(int(number[0]), span)
         return syntax.Simulation(tuple(items[2 + len(number) :]), within, runs, span)
 
-    def where(self, meta: Meta, items: Sequence[Any]) -> Tree[Any]:
-        return Tree("where", list(items))
-
     def extremes(self, meta: Meta, items: Sequence[Any]) -> syntax.Extremes:
         word, *terms = items
         ends = {"sup": (True,), "inf": (False,), "bounds": (False, True)}[word]
         where = terms.pop(0).children[0] if is_rule(terms[0], "where") else None
         return syntax.Extremes(ends, where, tuple(terms), self._span(meta))
-
-    def assuming(self, meta: Meta, items: Sequence[Any]) -> syntax.Assuming:
-        return syntax.Assuming(items[0], items[1], self._span(meta))
 
     def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
         left, *bound, right = items

@@ -38,7 +38,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
 )
 from rvmon.timed.model.fractions import FUNCTIONS, literal
-from rvmon.timed.model.guards import is_fixed
+from rvmon.timed.model.guards import is_fixed, refuse_changes
 from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
@@ -129,7 +129,10 @@ class Resolver:
                 return Choice(test, yes, no)
             case syntax.Quantified(op, name, kind, body, span):
                 values = values_of(self.type(kind, scope), kind.span)
-                self._count(len(values), span)
+                self.unrolled += len(values)
+                if self.unrolled > MAX_UNROLLED:
+                    message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
+                    raise model_error("TA019", message, span, "let them range over smaller types")
                 parts = [
                     self.expression(body, scope.inner({name: ConstantSymbol(value)}))
                     for value in values
@@ -156,11 +159,15 @@ class Resolver:
             case _:
                 assert_never(written)
 
-    def _count(self, parts: int, span: Span) -> None:
-        self.unrolled += parts
-        if self.unrolled > MAX_UNROLLED:
-            message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
-            raise model_error("TA019", message, span, "let them range over smaller types")
+    def condition(self, written: syntax.Expression, scope: Scope) -> Expression:
+        """An expression that changes nothing where it is evaluated.
+
+        Raises:
+            ModelError: it does, or it has no meaning.
+        """
+        condition = self.expression(written, scope)
+        refuse_changes(condition, written.span)
+        return condition
 
     def constant(self, written: syntax.Expression, scope: Scope, *, real: bool = False) -> int:
         """The value of an expression that must not depend on the state; `real`: its bits.

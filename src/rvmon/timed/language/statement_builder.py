@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
 
 from lark import Token, Transformer, Tree, v_args
 from lark.tree import Meta
@@ -14,14 +14,33 @@ from rvmon.diagnostics import Span
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.model.operators import BinaryOp
 
+Maker = Callable[[Sequence[Any], Span], Any]
+"""Makes what a rule reads, of its parts and its place."""
+
 
 @v_args(meta=True)
 class StatementBuilder(Transformer[Token, Any]):
-    """One method per rule of the grammar; `place` maps offsets of the text to spans."""
+    """A maker or a method per rule of the grammar; `place` maps offsets of the text to spans."""
+
+    makers: ClassVar[Mapping[str, Maker]] = {
+        "block": lambda items, span: syntax.Block(_statements(items), span),
+        "perform": lambda items, _: items[0],
+        "nothing": lambda *_: (),
+        "loop": lambda items, span: syntax.Loop(items[0], _statements(items[1:]), span),
+        "return_": lambda items, span: syntax.ReturnText(items[0] if items else None, span),
+        "sync": lambda items, span: automaton_syntax.SyncText(items[0], items[1] == "!", span),
+        "updates": lambda items, _: tuple(items[0]) if items else (),
+        "update_list": lambda items, _: _statements(items),
+        "call_update": lambda items, span: syntax.Call(str(items[0]), items[1], span),
+    }
 
     def __init__(self, place: Callable[[int, int], Span]) -> None:
         super().__init__()
         self._place = place
+
+    def __default__(self, data: str, children: list[Any], meta: Meta) -> Any:
+        make = self.makers.get(data)
+        return Tree(data, children) if make is None else make(children, self._span(meta))
 
     def _span(self, meta: Meta) -> Span:
         return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
@@ -39,23 +58,11 @@ class StatementBuilder(Transformer[Token, Any]):
         result = kind[0] if kind else None
         return syntax.FunctionText(result, str(name), parameters, body, self._token_span(name))
 
-    def block(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
-        return syntax.Block(_statements(items), self._span(meta))
-
-    def perform(self, meta: Meta, items: Sequence[Any]) -> Any:
-        return items[0]
-
-    def nothing(self, meta: Meta, items: Sequence[Any]) -> tuple[()]:
-        return ()
-
     def branch(self, meta: Meta, items: Sequence[Any]) -> syntax.Branch:
         condition, then, *otherwise = items
         return syntax.Branch(
             condition, _statements([then]), _statements(otherwise), self._span(meta)
         )
-
-    def loop(self, meta: Meta, items: Sequence[Any]) -> syntax.Loop:
-        return syntax.Loop(items[0], _statements(items[1:]), self._span(meta))
 
     def loop_behind(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
         span, body = self._span(meta), _statements(items[:1])
@@ -72,9 +79,6 @@ class StatementBuilder(Transformer[Token, Any]):
         name, kind, body = items
         return syntax.Each(str(name), kind, _statements([body]), self._span(meta))
 
-    def return_(self, meta: Meta, items: Sequence[Any]) -> syntax.ReturnText:
-        return syntax.ReturnText(items[0] if items else None, self._span(meta))
-
     # Labels.
 
     def conditions(self, meta: Meta, items: Sequence[Any]) -> Any:
@@ -82,18 +86,6 @@ class StatementBuilder(Transformer[Token, Any]):
         for one in rest:
             joined = syntax.Binary(BinaryOp.AND, joined, one, self._span(meta))
         return joined
-
-    def sync(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.SyncText:
-        return automaton_syntax.SyncText(items[0], items[1] == "!", self._span(meta))
-
-    def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
-        return tuple(items[0]) if items else ()
-
-    def update_list(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
-        return _statements(items)
-
-    def call_update(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
-        return syntax.Call(str(items[0]), items[1], self._span(meta))
 
     def assign(self, meta: Meta, items: Sequence[Any]) -> Any:
         target, sign, value = items

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 from lark import Token, Tree, v_args
 from lark.tree import Meta
@@ -14,7 +14,7 @@ from lark.tree import Meta
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import SignalText
 from rvmon.timed.language.query_builder import QueryBuilder
-from rvmon.timed.language.statement_builder import is_rule
+from rvmon.timed.language.statement_builder import Maker, is_rule
 from rvmon.timed.language.syntax import TypeText
 from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.timed.model.rules import model_error
@@ -28,10 +28,41 @@ LARGEST = (1 << 31) - 1
 class SyntaxBuilder(QueryBuilder):
     """One method per rule of the grammar; `place` maps offsets of the text to spans."""
 
-    def _tuple(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
-        return tuple(items)
-
-    instances = parameters = selections = arguments = _tuple
+    makers: ClassVar[Mapping[str, Maker]] = {
+        **QueryBuilder.makers,
+        **dict.fromkeys(
+            ("instances", "parameters", "selections", "arguments"), lambda items, _: tuple(items)
+        ),
+        "system": lambda items, _: (
+            _all(items, syntax.Declared),
+            _all(items, automaton_syntax.Instance),
+            tuple(items[-1].children),
+        ),
+        "declarations": lambda items, _: _all(items, syntax.Declared),
+        "values": lambda items, span: syntax.Values(tuple(items), span),
+        "priorities": lambda items, span: syntax.PrioritiesText(
+            tuple(map(tuple, _levels(items))), span
+        ),
+        "prefix": lambda items, _: str(items[0]),
+        "plain_type": lambda items, span: TypeText(BaseType(items[0]), span),
+        "named_type": lambda items, span: TypeText(BaseType.NAMED, span, name=str(items[0])),
+        "selection": lambda items, span: automaton_syntax.Selection(str(items[0]), items[1], span),
+        "imply": lambda items, span: syntax.Binary(BinaryOp.IMPLY, items[0], items[-1], span),
+        "either": lambda items, span: syntax.Binary(BinaryOp.OR, items[0], items[-1], span),
+        "both": lambda items, span: syntax.Binary(BinaryOp.AND, items[0], items[-1], span),
+        "binary": lambda items, span: syntax.Binary(BinaryOp(items[1]), items[0], items[-1], span),
+        "negation": lambda items, span: syntax.Unary(UnaryOp.NOT, items[0], span),
+        "invert": lambda items, span: syntax.Unary(UnaryOp.INVERT, items[-1], span),
+        "positive": lambda items, _: items[-1],
+        "negative": lambda items, span: syntax.Unary(UnaryOp.NEGATE, items[-1], span),
+        "conditional": lambda items, span: syntax.Conditional(items[0], items[1], items[2], span),
+        "decimal": lambda items, span: syntax.Decimal(float(items[0]), span),
+        "truth": lambda items, span: syntax.Number(int(items[0] == "true"), span),
+        "index": lambda items, span: syntax.Index(items[0], items[1], span),
+        "member": lambda items, span: syntax.Member(items[0], str(items[1]), span),
+        "rate": lambda items, span: syntax.Rate(items[0], span),
+        "call": lambda items, span: syntax.Call(str(items[0]), items[1], span),
+    }
 
     # The document.
 
@@ -68,13 +99,6 @@ class SyntaxBuilder(QueryBuilder):
     def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[tuple[syntax.Name, int]]:
         ranked = enumerate(_levels(item for item in items if item.type in ("NAME", "LESS")))
         return Tree("system_line", [(self._name(n), rank) for rank, names in ranked for n in names])
-
-    def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
-        return (
-            _all(items, syntax.Declared),
-            _all(items, automaton_syntax.Instance),
-            tuple(items[-1].children),
-        )
 
     def query_item(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.QueryText:
         *head, formula = items
@@ -158,9 +182,6 @@ class SyntaxBuilder(QueryBuilder):
 
     # Declarations.
 
-    def declarations(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Declared, ...]:
-        return _all(items, syntax.Declared)
-
     def declaration(self, meta: Meta, items: Sequence[Any]) -> Tree[syntax.Declaration]:
         kind, *declarators = items
         return Tree(
@@ -175,22 +196,10 @@ class SyntaxBuilder(QueryBuilder):
         initial = rest[-1] if rest and not isinstance(rest[-1], Tree) else None
         return str(name), sizes, initial, self._token_span(name)
 
-    def size(self, meta: Meta, items: Sequence[Any]) -> Tree[Any]:
-        return Tree("size", list(items))
-
-    def values(self, meta: Meta, items: Sequence[Any]) -> syntax.Values:
-        return syntax.Values(tuple(items), self._span(meta))
-
-    def priorities(self, meta: Meta, items: Sequence[Any]) -> syntax.PrioritiesText:
-        return syntax.PrioritiesText(tuple(map(tuple, _levels(items))), self._span(meta))
-
     def typedef(self, meta: Meta, items: Sequence[Any]) -> syntax.TypeDefinition:
         kind, name, *sizes = items
         extents = tuple(size.children[0] for size in sizes)
         return syntax.TypeDefinition(str(name), kind, extents, self._token_span(name))
-
-    def prefix(self, meta: Meta, items: Sequence[Token]) -> str:
-        return str(items[0])
 
     def type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         *prefixes, base = items
@@ -210,9 +219,6 @@ class SyntaxBuilder(QueryBuilder):
         low, high = items or (None, None)
         return TypeText(BaseType.INT, self._span(meta), low, high)
 
-    def plain_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        return TypeText(BaseType(items[0]), self._span(meta))
-
     def record_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         fields = _all(items, syntax.Declaration)
         return TypeText(BaseType.RECORD, self._span(meta), fields=fields)
@@ -222,9 +228,6 @@ class SyntaxBuilder(QueryBuilder):
         span = self._span(meta)
         low, one = syntax.Number(0, span), syntax.Number(1, span)
         return TypeText(BaseType.INT, span, low, syntax.Binary(BinaryOp.SUB, items[0], one, span))
-
-    def named_type(self, meta: Meta, items: Sequence[Token]) -> TypeText:
-        return TypeText(BaseType.NAMED, self._span(meta), name=str(items[0]))
 
     def parameter(self, meta: Meta, items: Sequence[Any]) -> syntax.Parameter:
         kind, *rest = items
@@ -238,40 +241,7 @@ class SyntaxBuilder(QueryBuilder):
             self._token_span(name),
         )
 
-    def selection(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.Selection:
-        return automaton_syntax.Selection(str(items[0]), items[1], self._span(meta))
-
     # Expressions.
-
-    def _binary(self, meta: Meta, op: BinaryOp, items: Sequence[Any]) -> syntax.Binary:
-        return syntax.Binary(op, items[0], items[-1], self._span(meta))
-
-    def imply(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
-        return self._binary(meta, BinaryOp.IMPLY, items)
-
-    def either(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
-        return self._binary(meta, BinaryOp.OR, items)
-
-    def both(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
-        return self._binary(meta, BinaryOp.AND, items)
-
-    def binary(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
-        return self._binary(meta, BinaryOp(items[1]), items)
-
-    def negation(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
-        return syntax.Unary(UnaryOp.NOT, items[0], self._span(meta))
-
-    def invert(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
-        return syntax.Unary(UnaryOp.INVERT, items[-1], self._span(meta))
-
-    def positive(self, meta: Meta, items: Sequence[Any]) -> Any:
-        return items[-1]
-
-    def negative(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
-        return syntax.Unary(UnaryOp.NEGATE, items[-1], self._span(meta))
-
-    def conditional(self, meta: Meta, items: Sequence[Any]) -> syntax.Conditional:
-        return syntax.Conditional(items[0], items[1], items[2], self._span(meta))
 
     def quantified(self, meta: Meta, items: Sequence[Any]) -> syntax.Quantified:
         word, name, kind, body = items
@@ -281,9 +251,6 @@ class SyntaxBuilder(QueryBuilder):
     def number(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
         return syntax.Number(self._whole(items[0]), self._span(meta))
 
-    def decimal(self, meta: Meta, items: Sequence[Token]) -> syntax.Decimal:
-        return syntax.Decimal(float(items[0]), self._span(meta))
-
     def _whole(self, token: Token) -> int:
         # Python itself refuses to read a few thousand digits.
         if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
@@ -291,20 +258,8 @@ class SyntaxBuilder(QueryBuilder):
             raise model_error("TA007", "the number is too large", self._token_span(token), fix)
         return int(token)
 
-    def truth(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
-        return syntax.Number(int(items[0] == "true"), self._span(meta))
-
     def name(self, meta: Meta, items: Sequence[Token]) -> syntax.Name:
         return self._name(items[0])
-
-    def index(self, meta: Meta, items: Sequence[Any]) -> syntax.Index:
-        return syntax.Index(items[0], items[1], self._span(meta))
-
-    def member(self, meta: Meta, items: Sequence[Any]) -> syntax.Member:
-        return syntax.Member(items[0], str(items[1]), self._span(meta))
-
-    def rate(self, meta: Meta, items: Sequence[Any]) -> syntax.Rate:
-        return syntax.Rate(items[0], self._span(meta))
 
     def leaving(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
         shares = [*items, syntax.Number(1, self._span(meta))][:2]
@@ -317,9 +272,6 @@ class SyntaxBuilder(QueryBuilder):
         one, other = (Fraction(str(share.value)) for share in shares)
         rate = one / other if other else Fraction(0)
         return syntax.Number(rate.numerator, span), syntax.Number(rate.denominator, span)
-
-    def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
-        return syntax.Call(str(items[0]), items[1], self._span(meta))
 
 
 def _levels(items: Iterable[Any]) -> list[list[Any]]:

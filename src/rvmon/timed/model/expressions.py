@@ -151,11 +151,7 @@ class PathFormula:
 
 @dataclass(frozen=True, slots=True)
 class Fractional:
-    """An operation on numbers with a fraction, which are carried as bits (`fractions`).
-
-    Attributes:
-        name: which one.
-    """
+    """An operation on numbers with a fraction, which are carried as bits (`fractions`)."""
 
     name: str
     operands: tuple[Expression, ...]

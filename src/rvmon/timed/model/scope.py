@@ -166,11 +166,7 @@ AutomatonKey = tuple[str, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """All that a query on a network may refer to.
-
-    Attributes:
-        functions: those that were called (`language.functions.Functions`).
-    """
+    """All that a query on a network may refer to."""
 
     top: Scope
     automata: Mapping[AutomatonKey, AutomatonSymbol]

@@ -54,11 +54,7 @@ def initial_configuration(network: Network) -> Configuration:
 
 
 class Rules:
-    """The rules of one network; each expression is made ready once.
-
-    Args:
-        network: whose rules they are.
-    """
+    """The rules of one network; each expression is made ready once."""
 
     def __init__(self, network: Network) -> None:
         self._network = network

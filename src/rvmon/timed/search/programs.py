@@ -63,12 +63,7 @@ _HALF = 1 << 31
 
 
 class Programs:
-    """The programs of a plan, one behind the other.
-
-    Attributes:
-        code: all of them.
-        table: the constant arrays that they look into.
-    """
+    """The programs of a plan, one behind the other."""
 
     def __init__(self, slots: int) -> None:
         """Begin with none; `slots` are all variables with those of functions."""

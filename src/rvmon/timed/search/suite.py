@@ -85,12 +85,6 @@ def build_suite(
 ) -> Suite:
     """Make a suite of runs.
 
-    Args:
-        network: what to go through.
-        criterion: which of its parts.
-        budget: when to stop looking.
-        watch: called now and then.
-
     Raises:
         ModelError: the network cannot start, or a run of it leaves a variable's range.
     """

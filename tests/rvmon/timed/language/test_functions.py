@@ -68,6 +68,7 @@ def test_what_functions_compute(functions, update, holds):
         ("S f() { return t; }", "f()", "TA016"),
         ("void f() { clock y; }", "f()", "TA004"),
         ("void f() { int[0,1] k; int[0,1] k; }", "f()", "TA003"),
+        ("void f(int[0,1] k, int[0,1] k) { }", "f(0, 1)", "TA003"),
         ("", "t = a", "TA004"),
         ("", "t.r = 1", "TA002"),
         ("", "v = t", "TA004"),
