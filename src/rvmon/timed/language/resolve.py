@@ -311,15 +311,18 @@ class Resolver:
 
     def clock(self, written: syntax.Expression, scope: Scope) -> int | None:
         """The clock that an expression names, if it names one."""
-        if not isinstance(written, syntax.Name | syntax.Index | syntax.Member):
-            return None
-        if self._location(written, scope) is not None:
-            return None
-        match self.symbol(written, scope):
+        match self._named(written, scope):
             case PlacedSymbol(BaseType.CLOCK, slot):
                 return clock_of(slot, written.span)
             case _:
                 return None
+
+    def _named(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
+        """What an expression names, if it names anything but a location."""
+        is_name = isinstance(written, syntax.Name | syntax.Index | syntax.Member)
+        if not is_name or self._location(written, scope) is not None:
+            return None
+        return self.symbol(written, scope)
 
     def _clock_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
         """A comparison in which clocks stand; `None` if none does."""
@@ -352,19 +355,10 @@ class Resolver:
 
     def _whole_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
         """Records or arrays compared element by element."""
-        left, right = self._whole(written.left, scope), self._whole(written.right, scope)
-        if left is None or right is None:
+        left, right = self._named(written.left, scope), self._named(written.right, scope)
+        if left is None or right is None or not (is_whole(left) and is_whole(right)):
             return None
         return whole_compare(written.op, left, right, written.span)
-
-    def _whole(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
-        """The record or array that an expression names, if it names one."""
-        if not isinstance(written, syntax.Name | syntax.Index | syntax.Member):
-            return None
-        if self._location(written, scope) is not None:
-            return None
-        symbol = self.symbol(written, scope)
-        return symbol if is_whole(symbol) else None
 
     def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
         """The record that an expression names, if it names one."""
