@@ -20,13 +20,12 @@ from rvmon.logic.formula import (
     Sense,
     Since,
     Until,
-    looks_back,
 )
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.four_valued import Four
 from rvmon.logic.normal_form import Lowering, Origin, flattened
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, Unborn, signals_of
-from rvmon.spec.checked.classify import has_future, subformulas
+from rvmon.spec.checked.classify import has_future, looks_back_at_future, subformulas
 from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
@@ -121,8 +120,9 @@ def lower(
         # An episode is over where its trigger is FALSE, by whatever distance.
         truth = _running(in_truth.four(requirement.trigger).read(FALSE), requirement, factory)
         required = lowering.episode(truth, lowering.required(implied), requirement)
-        ahead = begin(opened=True).core(requirement.consequent, True)
-        again = None if looks_back(ahead) else _at_once(ahead, factory)
+        again = None
+        if not looks_back_at_future(requirement.consequent):
+            again = _at_once(begin(opened=True).core(requirement.consequent, True), factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
         doubt = None
         if requirement.captures:

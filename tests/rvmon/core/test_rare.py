@@ -79,6 +79,13 @@ CASES |= {
     for policy in ("strong", "weak", "pass", "fail", "strict")
 }
 
+CASES |= {
+    f"the future below the past, though a constant: no other attempt follows, {time}": case_of(
+        time, "whenever true then p U[0 ns, 0 ns] fall(F[0 ns, 0 ns] true)", "0 p; 6; 9"
+    )
+    for time in ("held", "sampled", "sampled every 2 ns")
+}
+
 CASES["an episode with a value that may be over at the last sample"] = case_of(
     *("sampled", "whenever e then F[2 ns, inf) q\n  let v = x\n  at end: strong"),
     *("0 e -q x=3; 4 e x=1; 8 e x=2; 12 ?e", 15),

@@ -85,6 +85,14 @@ def has_future(formula: Formula) -> bool:
     return future_part(formula) is not None
 
 
+def looks_back_at_future(formula: Formula) -> bool:
+    """Whether something that looks ahead stands below an operator of the past."""
+    return any(
+        isinstance(part, Unary | Binary) and part.op.entry.tense is Tense.PAST and has_future(part)
+        for part in subformulas(formula)
+    )
+
+
 def end_part(formula: Formula) -> Formula | None:
     """The first `end` in a formula."""
     for part in subformulas(formula):
