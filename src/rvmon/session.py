@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.monitor.planned import PlannedCore
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -243,11 +244,19 @@ class Spec:
         ['P', 'F']
         """
         from rvmon.execute.parallel import execute
-        from rvmon.monitor.evaluate import evaluate_trace
+        from rvmon.monitor.evaluate import evaluate_apart
+        from rvmon.monitor.records import told_by
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
-        begin = partial(partial, evaluate_trace, self._compiled, reading=given, only=asked)
-        return execute(traces, begin, jobs=jobs, what="trace")
+        begin = partial(partial, evaluate_apart, self._compiled, reading=given, only=asked)
+        found = execute(traces, begin, jobs=jobs, what="trace")
+        return (told_by(report, self.planned(asked)) for report in found)
+
+    def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
+        """What judges some requirements, and tells of their attempts; made once."""
+        from rvmon.monitor.planned import planned_core
+
+        return planned_core(self._compiled, requirements_asked(self.checked, only))
 
     def robustness(
         self,

@@ -15,7 +15,7 @@ from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
-from rvmon.monitor.records import RecordedAttempts
+from rvmon.monitor.records import told_by
 from rvmon.readers.places import JOINT, without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
@@ -188,9 +188,10 @@ def judge_all(
             each of these says so.
     """
     done = 0
-    first: RecordedAttempts | None = None
     is_alone = len(traces) == 1
-    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
+    begin = partial(partial, _judge_apart, spec, options=options, is_alone=is_alone)
+    if not is_alone:
+        spec.planned(options.only)  # for all that go on from here
     try:
         with bar("recordings", len(traces)) as show:
             jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
@@ -198,15 +199,20 @@ def judge_all(
                 done += 1
                 if not is_alone:  # that one shows how far it is read
                     show(done)
-                if one.report is not None and isinstance(one.report.attempts, RecordedAttempts):
-                    first = first or one.report.attempts
-                    one.report.attempts.told_with(first)
+                if one.report is not None:
+                    one = replace(one, report=told_by(one.report, spec.planned(options.only)))
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
             yield Judged(
                 shown_path(trace), None, error=f"{shown_path(trace)}: not evaluated: {error}"
             )
+
+
+def _judge_apart(spec: Spec, trace: str, options: Options, *, is_alone: bool) -> Judged:
+    """The same for another process, which has the plan."""
+    found = judge(spec, trace, options, is_alone=is_alone)
+    return found if found.report is None else replace(found, report=told_by(found.report, None))
 
 
 @without_copies()

@@ -13,6 +13,7 @@ from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.planned import planned_core
 from rvmon.monitor.recording import RecordingRun, judge_recording
+from rvmon.monitor.records import told_by
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.joined import Joined
@@ -96,6 +97,11 @@ def evaluate_trace(
         health = (*health, *recording.stamp_doubts())
     name = shown_path(trace) if isinstance(trace, str | PathLike) else ""
     return replace(report, health=tuple(health), trace=name)
+
+
+def evaluate_apart(compiled: CompiledSpec, trace: Any, **options: Any) -> Report:
+    """Judge a trace for another process; see `evaluate_trace` and `told_by`."""
+    return told_by(evaluate_trace(compiled, trace, **options), None)
 
 
 _ROWS = 4096

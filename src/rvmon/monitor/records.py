@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
@@ -40,7 +41,7 @@ class RecordedAttempts(LazyAttempts):
     """The attempts of a run, made from raw records on access; explanations when they are read.
 
     Args:
-        planned: the plan of the run.
+        planned: the plan of the run; `None`: it is given later.
         records: array of `RECORD`, in the order of reports.
         numbers: array of `NUMBER` [records, most], the values that they captured.
         notes: of these records, and the letters that they refer to.
@@ -49,27 +50,26 @@ class RecordedAttempts(LazyAttempts):
 
     def __init__(
         self,
-        planned: PlannedCore,
+        planned: PlannedCore | None,
         records: NDArray[Any],
         numbers: NDArray[Any],
         notes: tuple[bytes, Sequence[tuple[Any, bytes]]],
         origin: int,
     ) -> None:
-        self._planned = planned
+        self._given = planned
         self._origin = origin
         self._notes = notes
-        self._ids = planned.packed.ids
         self._records = records
         self._numbers = numbers
 
-    def told_with(self, others: RecordedAttempts) -> None:
-        """Share one reader of explanations among reports of the same plan.
+    @property
+    def _planned(self) -> PlannedCore:
+        assert self._given is not None, "whoever takes them from another process gives the plan"
+        return self._given
 
-        What comes from another process brings a plan of its own, whose specification would be
-        compiled anew for each run.
-        """
-        if self._planned.packed.data == others._planned.packed.data:
-            self._planned = others._planned
+    def with_plan(self, planned: PlannedCore | None) -> RecordedAttempts:
+        """The same with the plan of the run, or without one."""
+        return RecordedAttempts(planned, self._records, self._numbers, self._notes, self._origin)
 
     def __len__(self) -> int:
         return len(self._records)
@@ -81,7 +81,7 @@ class RecordedAttempts(LazyAttempts):
     def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
         if isinstance(index, slice):
             chosen = self._records[index], self._numbers[index]
-            return RecordedAttempts(self._planned, *chosen, self._notes, self._origin)
+            return RecordedAttempts(self._given, *chosen, self._notes, self._origin)
         return self._attempt(self._records[index], self._numbers[index])
 
     def __iter__(self) -> Iterator[Attempt]:
@@ -111,7 +111,7 @@ class RecordedAttempts(LazyAttempts):
         )
         values = None if captured < 0 else tuple(map(_number_of, numbers))
         made = Attempt.__new__(Attempt)
-        made.requirement = self._ids[requirement]
+        made.requirement = self._planned.packed.ids[requirement]
         made.number = number
         made.triggered = triggered
         made.decided = None if decision == _OPEN else decided
@@ -159,6 +159,20 @@ def recorded(
     if not settled.all():
         made, captured = made[settled], captured[settled]
     return RecordedAttempts(planned, made, captured, (words, letters), origin)
+
+
+def told_by(report: Report, planned: PlannedCore | None) -> Report:
+    """A report with another plan of the same requirements to tell of its attempts.
+
+    Args:
+        report: of a recording.
+        planned: the plan; `None`: another process takes the report, and gives it its own. A plan
+            may be larger than all else.
+    """
+    own = report.attempts
+    if not isinstance(own, RecordedAttempts):
+        return report
+    return replace(report, attempts=own.with_plan(planned))
 
 
 def report_of_run(

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import pickle
 import signal
 import threading
 import time
@@ -14,6 +15,7 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
+from rvmon.monitor.records import told_by
 
 pytestmark = pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
@@ -266,3 +268,15 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
 
     found = [*execute([1, 2], begin, jobs=1, instead=told, timeout_s=0.5)]
     assert found == ["1", "2"]
+
+
+def test_a_report_is_handed_over_without_the_plan(tmp_path):
+    """What goes from process to process grows with the attempts, not with the specification."""
+    many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))
+    spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n" + many)
+    report = spec.evaluate([(0, {"x": 1.0}), (1, {"x": 5.0})])
+    handed = pickle.dumps(told_by(report, None))
+    assert len(handed) < len(pickle.dumps(report)) / 2
+    again = told_by(pickle.loads(handed), spec.planned())  # noqa: S301 - just made
+    assert again == report
+    assert again.attempts[0].reason == report.attempts[0].reason
