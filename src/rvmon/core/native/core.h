@@ -1,11 +1,18 @@
-/* The monitor core: judges a stream of samples by a plan. C99, no Python, no global state.
+/* The public interface of the monitor core: an interpreter, in C99, that evaluates the requirements
+ * of a plan over a stream of time-stamped samples and reports the verdict of each attempt as soon
+ * as it is decided. It depends on no Python and has no global state; everything a run remembers
+ * hangs off one rv_monitor.
  *
- * A plan (plan.md) is a constant block of bytes, made from a specification by `rvmon.core.plan`. It
- * is checked once, when it is opened; after that nothing in it can make the core read or write
- * outside of its memory. Times are nanoseconds between -2^62 and 2^62.
+ * A plan (plan/plan.md) is a constant block of bytes that `rvmon.core.plan` compiles from a
+ * specification. It is validated once, by rv_new; after that nothing in it can make the core read
+ * or write outside its memory. Names do not reach the core: signals, events and requirements are
+ * numbers that the maker of the plan assigned.
  *
- * Unknown values are a kind of number of their own, so NaN never reaches a comparison; still, compile
- * without -ffast-math and with -ffp-contract=off, or sums differ in the last digit. */
+ * Time is counted in ticks of one nanosecond, and every instant lies strictly between -2^62 and
+ * 2^62, so that the sum of two instants does not overflow.
+ *
+ * An unknown value is a kind of rv_number, so NaN never reaches a comparison. Still compile without
+ * -ffast-math and with -ffp-contract=off, or sums differ in the last bit between compilers. */
 #ifndef RVMON_CORE_H
 #define RVMON_CORE_H
 
@@ -18,14 +25,14 @@ extern "C" {
 #endif
 
 #define RV_NEVER INT64_MAX
-/* No instant yet: of a run without samples. */
+/* "No such instant": for example the last sample of a run that has none. */
 #define RV_NO_TIME INT64_MIN
 
-/* A number: exact if it is whole, else binary64. Booleans are the whole numbers 0 and 1; labels are
- * whole numbers that the plan's maker has given them. */
+/* A number: whole numbers are exact (int64), all others binary64; the two are compared exactly. A
+ * Boolean is the whole number 0 or 1, a label the whole number that the plan gives it. */
 enum { RV_UNKNOWN = 0, RV_WHOLE = 1, RV_REAL = 2 };
 
-/* Why a number is unknown, as its `whole`, for who tells of it. */
+/* Why a number is unknown, in `as.whole`; for diagnostics only, it never influences a verdict. */
 enum { RV_IS_NONE = 0, RV_IS_NAN = 1 };
 
 typedef struct {
@@ -36,53 +43,63 @@ typedef struct {
     } as;
 } rv_number;
 
-/* What a sample says of a name: NO is "an event that did not occur"; UNKNOWN, that it was lost. */
+/* What an update says about its name. NO: this event did not occur. UNKNOWN: the value, or whether
+ * the event occurred, was lost. */
 enum { RV_SAYS_NO = 0, RV_SAYS_UNKNOWN = 1, RV_SAYS_YES = 2 };
 
-/* One update. Several of one event in one sample are several occurrences. */
+/* One update of one name. Several updates of one event in a sample are several occurrences. */
 typedef struct {
-    int32_t name;              /* signals first, then events */
-    int32_t says;              /* of a signal: UNKNOWN or YES */
-    rv_number value;           /* of a signal */
-    const rv_number *fields;   /* of an event that occurs, as many as it has; NULL: all unknown */
+    int32_t name;              /* signals are numbered first, then events */
+    int32_t says;              /* a signal: UNKNOWN or YES */
+    rv_number value;           /* signals only */
+    const rv_number *fields;   /* payload of an event that occurs, one number per declared field; NULL:
+                                * all fields are unknown */
 } rv_update;
 
 enum { RV_FAIL = 0, RV_PASS = 1, RV_INCONCLUSIVE = 2, RV_NOT_TRIGGERED = 3 };
 
-/* What settled an attempt: the samples so far; the end of the trace; a policy; nothing. */
+/* What settled an attempt: the samples up to its decision; the rule that an obligation without a
+ * deadline counts as kept at the end of the trace; the `at end` policy of its requirement; or
+ * nothing, so it stayed open. */
 enum { RV_BY_PREFIX = 0, RV_HELD_TO_END = 1, RV_BY_POLICY = 2, RV_OPEN = 3 };
 
-/* The record of an attempt; `decided` of an open one is the end of the trace, or means nothing. */
+/* The record of one attempt. */
 typedef struct {
-    int64_t triggered;
-    int64_t decided;
-    int64_t captured;          /* place of its captured values among those of all; -1: it has none */
-    int64_t note;              /* place of what its reason is worked out from; -1: nothing is noted */
+    int64_t triggered;         /* start of the attempt */
+    int64_t decided;           /* when the verdict was certain; of an open attempt the end of the trace,
+                                * or, from rv_each_open, meaningless */
+    int64_t captured;          /* index of its first captured value, for rv_captured; -1: it captures
+                                * none */
+    int64_t note;              /* index of its note, for rv_note_of; -1: there is none */
     int32_t requirement;
-    uint32_t number;
+    uint32_t number;           /* from 1, in order of the starts within the requirement; attempts in
+                                * doubt are numbered separately */
     uint8_t verdict;
     uint8_t decision;
-    uint8_t in_doubt;          /* 1: a trigger that may not have been; counted apart */
+    uint8_t in_doubt;          /* 1: it is unknown whether the trigger occurred */
 } rv_record;
 
-/* By how much the formula of an attempt holds, or of a position what its requirement owes there: within
- * these bounds, whatever is not known and whatever had come behind the end. Above 0 it holds. */
+/* The robustness (margin) of an attempt, or of one position: bounds on the distance to violation.
+ * The exact value lies in [low, high] for every completion of the unknown inputs and of the trace
+ * beyond its end. A positive value means that the formula holds. */
 typedef struct {
-    int64_t t;                 /* of the trigger, or the position */
+    int64_t t;                 /* start of the attempt, or the position */
     double low;
     double high;
-    double kept;               /* the least, if all is well behind the end that has to be kept up */
+    double kept;               /* the lower bound if obligations without a deadline are kept beyond the
+                                * end of the trace */
     int32_t requirement;
     uint32_t number;
     uint8_t in_doubt;          /* as in `rv_record` */
-    uint8_t of_position;       /* 1: it is of no attempt */
+    uint8_t of_position;       /* 1: measures a position, not an attempt */
 } rv_margin;
 
 typedef struct rv_plan rv_plan;
 typedef struct rv_monitor rv_monitor;
 
-/* Where memory comes from. Three functions, as malloc, realloc, free: from a heap. A block: that alone, and running out of it is
- * `RV_NO_MEMORY`. Everything is given back at once, by `rv_free`. */
+/* Where a monitor gets its memory. Either three functions that behave as malloc, realloc and free,
+ * or one caller-owned block of `size` bytes, in which case running out of it is RV_NO_MEMORY and
+ * the functions are ignored. rv_free releases everything at once. */
 typedef struct {
     void *(*allocate)(size_t size);
     void *(*resize)(void *memory, size_t size);
@@ -91,70 +108,80 @@ typedef struct {
     size_t size;
 } rv_memory;
 
-/* Why something was not done. */
+/* Return codes. */
 enum {
     RV_OK = 0,
     RV_BAD_PLAN = 1,
     RV_NO_MEMORY = 2,
-    RV_TOO_EARLY = 3,          /* the sample is not later than all before */
-    RV_OUT_OF_RANGE = 4,       /* an instant beyond 2^62 */
-    RV_FINISHED = 5,
-    RV_BAD_SNAPSHOT = 6,       /* the bytes are none of this plan, or damaged */
-    RV_NOT_FRESH = 7           /* a run has begun */
+    RV_TOO_EARLY = 3,          /* not later than what was already judged */
+    RV_OUT_OF_RANGE = 4,       /* an instant outside (-2^62, 2^62) */
+    RV_FINISHED = 5,           /* rv_finish was called; only rv_reset starts over */
+    RV_BAD_SNAPSHOT = 6,       /* made for another plan, or damaged */
+    RV_NOT_FRESH = 7           /* rv_load needs a monitor without samples */
 };
 
-/* Check a plan: the place of the first section found wrong, -1 if all is well. The bytes are not
- * copied: they have to stay, aligned to 8. */
+/* Validate a plan. Returns -1 if it is valid, else the number of the first section found wrong
+ * (plan/plan.h), 0 also standing for a bad header. `bytes` has to be aligned to 8. */
 int32_t rv_plan_check(const void *bytes, size_t size);
 
-/* A monitor at the begin of a run; NULL if the plan is wrong or memory is short. */
+/* A monitor before its first sample; NULL if the plan is invalid or memory is short. The plan is
+ * not copied: it has to outlive the monitor and stay unchanged. */
 rv_monitor *rv_new(const void *plan, size_t size, rv_memory memory);
 void rv_free(rv_monitor *m);
 
-/* Make room for so many open attempts of each part of the plan, at once and not bit by bit, and for as
- * many records. Where memory is short the run is spoilt. */
+/* Preallocate room for this many simultaneously open attempts in each part of the plan, and for as
+ * many records, instead of growing on demand. RV_NO_MEMORY spoils the run (see rv_step). */
 int rv_reserve(rv_monitor *m, int32_t attempts);
 
-/* Bytes that a block, aligned to 16, has to have for what was done so far; more if not all of it is
- * done again. */
+/* Bytes handed out so far: what a block aligned to 16 has to hold for the same calls. */
 size_t rv_memory_used(const rv_monitor *m);
 
-/* Begin another run; names declared absent are so still. */
+/* Start a new run: all attempts, records and values are dropped, memory is kept for reuse, and
+ * names declared absent remain so. */
 int rv_reset(rv_monitor *m);
 
-/* Say that a name has no source: it is unknown throughout. Before the first sample. */
+/* Declare, before the first sample, that nothing will ever report this name: it is unknown
+ * throughout the run. */
 void rv_set_absent(rv_monitor *m, int32_t name);
 
-/* Judge one sample, whole. What is refused leaves the monitor as it was, except RV_NO_MEMORY: then
- * the run is spoilt: it takes nothing more, and no verdict of it is green. */
+/* Judge one sample: all updates that bear the instant `t`, which has to be later than every sample
+ * before. A refused sample leaves the monitor as it was, except for RV_NO_MEMORY: then the run is
+ * spoilt, that is, it accepts nothing more and no requirement gets the verdict PASS or
+ * NOT_TRIGGERED. */
 int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count);
 
-/* No sample before `t` will come. */
+/* Promise that no sample before `t` will come. This lets deadlines before `t` expire. */
 int rv_advance(rv_monitor *m, int64_t t);
 
-/* From `since` on these names may say anything: they are unknown, and so is whether they are updated.
- * What comes of them meanwhile is left out. It is `rv_advance(since)` too; RV_TOO_EARLY, and nothing is
- * done, if that was judged already. Names without a source are unknown anyway; there may be none. */
+/* An outage of these names begins: from `since` on their sources may have said anything, so values,
+ * occurrences and even whether there was an update are unknown. Updates of them that arrive during
+ * the outage are ignored. Implies rv_advance(since); RV_TOO_EARLY, without any effect, if `since`
+ * was judged already. Names without a source are skipped. `count` may be 0: where only samples are
+ * positions, unknown samples alone may have been lost. */
 int rv_lose(rv_monitor *m, int64_t since, const int32_t *names, int32_t count);
 
-/* `at` is the last instant at which these names are lost, and time has come to it: an event is known
- * behind it, a signal at its first update there or at `at` itself. */
+/* The outage of these names ends, `at` being its last instant; time has to have advanced that far.
+ * An event is known again behind `at`, a signal from its first update at or after `at`. */
 int rv_found(rv_monitor *m, int64_t at, const int32_t *names, int32_t count);
 
-/* A sample at `t` with these names came behind what was judged: it is not judged. No verdict of a
- * requirement that it would have touched is green any more; `count` -1: of any, as it cannot be read. */
+/* Report that a sample at `t` with these names arrived too late to be judged. From now on no
+ * requirement that it could have affected gets PASS or NOT_TRIGGERED, and records already reported
+ * stand. `count` -1: its content is unreadable, so every requirement is affected. */
 int rv_late(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
 
-/* End the run, at `t` if that is later than all so far (RV_NO_TIME: where it is). */
+/* End the run at `t`, or at the last instant known so far if that is later or `t` is RV_NO_TIME.
+ * Pending attempts are settled by their requirements' `at end` policies. */
 int rv_finish(rv_monitor *m, int64_t t);
 
-/* The last instant of a trace that is finished at `t`; RV_NO_TIME if it has no position. */
+/* The last instant that the trace would have if it were finished at `t`; RV_NO_TIME if it has none. */
 int64_t rv_end(const rv_monitor *m, int64_t t);
 
-/* The next instant at which time alone can decide something. */
+/* The next instant at which passing time alone, without a sample, can decide something; RV_NEVER if
+ * none. */
 int64_t rv_next_due(rv_monitor *m);
 
-/* The instants of the first and the last sample, and the instant that time has come to. */
+/* The first sample, the last sample, and how far time has advanced; RV_NO_TIME before the first
+ * sample. */
 typedef struct {
     int64_t began;
     int64_t last;
@@ -163,7 +190,7 @@ typedef struct {
 
 rv_times rv_times_of(const rv_monitor *m);
 
-/* How often a signal went stale, and when first. */
+/* How often a signal went stale, and when it first did. */
 typedef struct {
     int64_t count;
     int64_t first;
@@ -171,109 +198,119 @@ typedef struct {
 
 rv_staleness rv_stale(const rv_monitor *m, int32_t signal);
 
-/* Records since the last `rv_forget_records`, of each call in the order of reports: by decision, then
- * requirement, then number. Valid until the next call. */
+/* The records since the last rv_forget_records; returns their number. Those of one call are sorted
+ * by decision instant, then requirement, then number. The array belongs to the monitor and is valid
+ * until its next call; rv_captured gives a record's captured values (NULL: none), valid equally
+ * long. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);
 const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 
-/* How many values each attempt of a requirement has: that of `for each`, then those of `let`. */
+/* How many values an attempt of this requirement captures: the key of `for each`, if any, then each
+ * `let`. */
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
-/* For a run of weeks: have but the newest records of each requirement and verdict be kept, so many, and
- * as many of the attempts that stay open for good. Nothing is dropped but by `rv_trim`, which looks
- * whether it is worth it, and says whether records are others than before; at the end of a run it always
- * is. What was dropped is counted on. */
+/* Bound the memory of a run without end. After rv_keep, rv_trim keeps only the `most` newest
+ * records per requirement and verdict, and as many of the attempts that are known to stay
+ * undecided. Nothing is dropped except by rv_trim, which acts once what is stored has doubled since
+ * it last did, and always after rv_finish; it returns whether the records changed. Counts and
+ * verdicts remain exact. */
 int rv_keep(rv_monitor *m, int64_t most);
 bool rv_trim(rv_monitor *m);
 
-/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. Notes
- * of them are valid until the next call. */
+/* Call `take` for each open attempt until it returns false. `captured` is NULL if the attempt
+ * captures nothing. Notes of open attempts are valid until the next call of the monitor. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
 void rv_each_open(rv_monitor *m, rv_take take, void *user);
 
-/* Have noted with each record from here on what its reason is worked out from: where its run stood just
- * before the decision, since when propositions had their truths, the letters that matter. Before the
- * first sample; nobody who wants verdicts alone needs it. It takes some words a decision and a few
- * nanoseconds a change. The words are told of in notes.c.
+/* Notes: for each record, the raw data from which a reason ("why did it fail?") can be derived:
+ * where its automaton stood just before the decision, since when each proposition had its truth,
+ * and the letters that matter. Off by default: a note takes some tens of words per decision and
+ * some nanoseconds per change. notes/told.c documents the words.
  *
- * Letters stand in pieces, which many notes share; a piece that is full stays as it is. Who reads them
- * can hang something on a piece, and is told by `let_go` when that serves no more. */
+ * Letters are stored in chunks called pieces, shared by many notes; a full piece never changes. A
+ * reader may attach two pointers of its own to a piece; `let_go` is called with each when the piece
+ * is freed. */
 typedef struct rv_piece rv_piece;
-const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count); /* a position, then truths */
-int32_t rv_piece_room(const rv_piece *piece);                         /* words that it can have */
+const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count); /* a position, then packed
+                                                                       * truths, repeatedly */
+int32_t rv_piece_room(const rv_piece *piece);                         /* its capacity in words */
 rv_piece *rv_piece_next(const rv_piece *piece);
-void **rv_piece_held(rv_piece *piece, int32_t which);                 /* of who reads it: 0 or 1 */
+void **rv_piece_held(rv_piece *piece, int32_t which);                 /* the reader's pointer,
+                                                                       * `which` 0 or 1 */
 
 typedef struct {
-    const int64_t *words;
-    const int64_t *state;      /* of the propositions at the decision; NULL: nobody asks */
-    int64_t count;
+    const int64_t *words;      /* the note itself */
+    const int64_t *state;      /* the propositions at the decision; NULL: not needed */
+    int64_t count;             /* words of the note */
     int64_t state_count;
-    rv_piece *first;           /* letters; NULL: they do not matter */
+    rv_piece *first;           /* the first piece of letters; NULL: they do not matter */
     rv_piece *last;
-    int32_t last_count;        /* words of the last piece */
+    int32_t last_count;        /* how many words of the last piece belong to the note */
 } rv_note;
 
-/* Keep notes of decisions. Of a plan that measures none are kept: figures have no reasons. */
+/* Switch notes on, before the first sample. No effect for a plan that measures margins: those are
+ * reported without reasons. */
 typedef void (*rv_let_go)(void *user, void *held);
 int rv_keep_notes(rv_monitor *m, rv_let_go let_go, void *user);
 
-/* What was noted with a record; false: nothing. */
+/* The note of a record; false: it has none. */
 bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
 
-/* The words of all notes, and the letters of a number among those that notes refer to; false: there are
- * no more. */
+/* All note words at once (returns their number), and the pieces of the letter span `number` that
+ * notes refer to (false: no such span). */
 int64_t rv_notes(const rv_monitor *m, const int64_t **words);
 bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
 
-/* Have each position of a sample be measured, and not those of attempts alone; what captures values is
- * not. Before the first sample, of a plan that says what is measured. */
+/* Measure every position at which there is a sample, not only those at which an attempt starts.
+ * Requirements with captured values are excepted. Before the first sample, for a plan with margins. */
 void rv_measure_positions(rv_monitor *m);
 
-/* Figures that nothing can change any more, since the last `rv_forget_margins`: of each call by instant,
- * then requirement. Valid until the next call. */
+/* The margins that became final since the last rv_forget_margins; returns their number. Those of
+ * one call are sorted by instant, then requirement. Valid until the next call. */
 int64_t rv_margins(rv_monitor *m, const rv_margin **margins);
 void rv_forget_margins(rv_monitor *m);
 
-/* What is known of the attempts whose figures are to come; bounds that only draw closer. `take` returns
- * false to end. */
+/* Call `take` with the current bounds of every margin that is not final yet, until it returns
+ * false. Bounds only ever tighten. */
 typedef bool (*rv_take_margin)(void *user, const rv_margin *margin);
 void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user);
 
-/* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
- * true or false. */
+/* The attempts of a requirement by verdict. */
 typedef struct {
     int64_t failed;
     int64_t passed;
     int64_t inconclusive;
-    bool heard;
-    bool open;                 /* an attempt is undecided now */
-    bool late;                 /* something came too late that it would have been judged by */
+    bool heard;                /* its trigger was known to be true or false at least once */
+    bool open;                 /* some attempt is undecided now */
+    bool late;                 /* rv_late reported a sample that could have affected it */
 } rv_counts;
 
 rv_counts rv_count(const rv_monitor *m, int32_t requirement);
 
-/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt, or
- * something came too late. */
+/* The verdict of a requirement: FAIL if an attempt failed, else INCONCLUSIVE if one is or may be
+ * undecided, else PASS or NOT_TRIGGERED. It is final once the run is finished. It is never PASS or
+ * NOT_TRIGGERED if the run is spoilt or a sample was late for the requirement. */
 int rv_verdict(const rv_monitor *m, int32_t requirement);
 
-/* The run as it stands, as bytes, with all records that were not forgotten: so many are needed, and
- * written if there is room. 0: it is spoilt. */
+/* Serialise the run, including all records not yet forgotten. Returns the size in bytes, and writes
+ * them if `size` is at least that; 0 if the run is spoilt. */
 size_t rv_save(rv_monitor *m, void *bytes, size_t size);
 
-/* Have a monitor that was just made of the same plan go on where that of some bytes stood. No bytes lead
- * it outside of its memory. One that refuses them, RV_BAD_SNAPSHOT, is spoilt: free it. */
+/* Restore a run that rv_save wrote into a monitor newly made from the same plan. The bytes are
+ * validated like a plan: none can lead outside the monitor's memory. After RV_BAD_SNAPSHOT the
+ * monitor is spoilt and can only be freed. */
 int rv_load(rv_monitor *m, const void *bytes, size_t size);
 
-/* Whether memory was short in this run. */
+/* Whether memory ran out in this run. */
 bool rv_spoilt(const rv_monitor *m);
 
-/* Where the formulas of a plan are known that it keeps the truths of (`truths` in plan.md): ranges of
- * positions at which an operator has a value, the unknown taken for the worse or for the better; ticks,
- * ticks divided by the gap, or, where only samples are positions, their numbers from 0. They go as far
- * as the last change, and to the end once the run is finished. Valid until the next call; -1: the plan
- * keeps none, or has no such operator. */
+/* For a plan that records the truths of formulas over time (`truths` in plan.md): the ranges of
+ * positions at which an operator is known to have a value, with unknown inputs resolved against it
+ * or, if `better`, in its favour. Positions are ticks; ticks divided by the gap; or, where only
+ * samples are positions, sample numbers from 0. They reach to the last change, and to the end once
+ * the run is finished. Returns how many ranges; valid until the next call; -1: the plan records
+ * none, or has no such operator. */
 typedef struct {
     int64_t first;
     int64_t last;
@@ -282,8 +319,8 @@ typedef struct {
 int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
                   const rv_range **found);
 
-/* How often each item of the groups of a plan was hit in the run, and when first (0 of none), in their
- * order; NULL and 0: it has none. */
+/* Coverage: how often each item of the plan's groups was hit, and when first (0 if never), in the
+ * order of items. NULL and 0 if the plan has no groups. */
 typedef struct {
     int64_t count;
     int64_t first;
@@ -291,46 +328,52 @@ typedef struct {
 
 const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
 
-/* How often attempts of a requirement went from one location of its automaton to another, and when
- * first: by `locations` times the one plus the other; one to itself: began, in the first. Those in doubt,
- * and those of which two readings differ, are left out. NULL and 0: the plan does not ask for it. */
+/* Coverage of an automaton: for each pair of locations how often an attempt moved from one to the
+ * other, at index `from * locations + to`; the diagonal of the initial location counts the starts.
+ * Attempts in doubt, and moves on which the two readings of an unknown letter disagree, are not
+ * counted. NULL and 0 if the plan does not ask for it. */
 const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
 
-/* How the run stands at `now`, at or after its last sample: words that are equal for runs that go on
- * alike, each as it is seen from there. Returns how many there are, of which `room` are written; `next`
- * is the first instant behind at which time alone may change something. Nothing but rv_finish at `now`
- * may follow. -1: nothing is told, as the run is over, or a chain of windows judges. */
+/* The state of the run relative to `now`, which is at or after its last sample, as a word sequence:
+ * two runs with equal words behave equally from `now` on (instants are relative, ages clamped).
+ * Returns the number of words, of which the first `room` are written. `*next` is the first later
+ * instant at which time alone may change something. Afterwards only rv_finish at `now` is allowed.
+ * -1: not available, since the run is over, in an outage, or has a requirement judged by a window
+ * chain (windows/). */
 int64_t rv_situation(rv_monitor *m, int64_t now, int64_t *words, int64_t room, int64_t *next);
 
-/* What a plan declares. */
+/* What the plan of a monitor declares. */
 typedef struct {
     int32_t signals;
     int32_t events;
     int32_t fields;
     int32_t requirements;
-    int32_t captured;          /* the most values that an attempt has */
+    int32_t captured;          /* the most values that an attempt captures */
 } rv_sizes;
 
 rv_sizes rv_sizes_of(const rv_monitor *m);
 
-/* The first field of an event, and how many it has. */
+/* Returns how many fields an event has; `*first` is the number of the first of them. */
 int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first);
 
-/* Columns: rows of one recording, in order of time; those of one instant are one sample, in which of the
- * values of a signal the last one counts. What is real is given as REAL, NaN for unknown; all else as
- * WHOLE or BYTE. */
+/* Columns: the rows of a recording, in order of time. Rows with equal stamps are one sample; if it
+ * has several values of a signal the last one counts. Real signals are given as REAL, NaN standing
+ * for unknown; everything else as WHOLE or BYTE. */
 enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
 
 typedef struct rv_column {
-    const void *values;        /* as `kind` says; NULL: of an event, or of a field that is unknown */
-    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update; of a field: it is not given */
+    const void *values;        /* elements as `kind` says; NULL: an event, or a field that is unknown
+                                * throughout */
+    const uint8_t *says;       /* per row an RV_SAYS_* value, or 255: no update (of a field: not given);
+                                * NULL: YES in every row */
     int32_t kind;
-    int32_t name;              /* of a field nothing */
-    const struct rv_column *fields; /* of an event: a column for each field, or NULL; it occurs with a
-                                * payload where one of them is given */
+    int32_t name;              /* unused in a column of a field */
+    const struct rv_column *fields; /* of an event, a column per field, or NULL; the event occurs with a
+                                     * payload in rows where some field is given */
 } rv_column;
 
-/* Judge rows; `done` counts those that were. No name has two columns. */
+/* Judge rows as rv_step would, one after the other; `done` receives how many rows were judged. At
+ * most one column per name. */
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
             int32_t count, int64_t *done);
 

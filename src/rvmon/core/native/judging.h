@@ -1,4 +1,12 @@
-/* What judges attempts, and what it remembers of them: the part of the state that one judge has. */
+/* Per-judge state: the open attempts of a requirement and the engine that decides them. A judge is
+ * one of four engines: an automaton that drives attempts one by one; an automaton with a queue,
+ * where attempts differ only by age (attempts/queue.c); a network that evaluates the formula over
+ * ranges of positions (networks/); a chain of nested windows (windows/).
+ *
+ * Throughout, "worse" and "better" are the two readings of unknown input: every unknown proposition
+ * resolved against the requirement, or in its favour. While they agree one state serves both; they
+ * are parted from the first unknown letter that makes a difference until they meet again. An
+ * attempt is decided when the worse reading passes or the better one fails. */
 #ifndef RVMON_JUDGING_H
 #define RVMON_JUDGING_H
 
@@ -6,28 +14,36 @@
 
 typedef struct run run;
 
-/* An open attempt; its clocks stand behind it, then those of its other reading. */
+/* An open attempt, in the pool of its home. `next` links it into the list of its judge, or of the
+ * free slots. Behind it lie its clocks, then those of its better reading: instants at which they
+ * were reset. */
 typedef struct {
-    int64_t triggered;
-    int64_t due;
+    int64_t triggered;         /* instant of the trigger */
+    int64_t due;               /* the next tick at which time alone changes it; NEVER */
     uint32_t number;
     int32_t next;
     int32_t location;
-    int32_t better;            /* its location if the unknown is taken for the better */
-    bool parted;               /* whether that reading is another */
-    bool sure;                 /* else it is in doubt whether there was a trigger */
-    bool trigger_unknown;              /* whether its trigger was unknown while it ran */
-    bool cannot_pass;               /* over before all that it speaks of had a value */
-    int64_t doubted_at;        /* where its readings parted; RV_NO_TIME: nowhere */
-    int32_t record;            /* of its margin, 1 for the first; 0: it is not measured */
+    int32_t better;            /* location in the better reading, if parted */
+    bool parted;               /* whether the two readings differ */
+    bool sure;                 /* whether it surely was triggered */
+    bool trigger_unknown;      /* episodes: whether `running` was unknown at some position of it */
+    bool cannot_pass;          /* it can at best be inconclusive: a signal had no value yet, or a
+                                * captured value is not known any more */
+    int64_t doubted_at;        /* the position at which its readings parted, for notes; RV_NO_TIME:
+                                * nowhere */
+    int32_t record;            /* its margin record, from 1; 0: not measured */
     int64_t clocks[];
 } attempt;
 
-/* What else an attempt of a part has whose attempts or instances have values of their own. */
+/* The rest of an attempt whose part captures values: at the same index as the attempt. Such
+ * attempts are spread over many runs, so numbers are assigned and records written at the end of a
+ * call, when the order over all instances is known (runs/captured.c). The three links are lists of
+ * the home. */
 typedef struct {
-    run *judge;                /* that judges it; NULL: it is none */
-    int64_t became;            /* when it was sure, or in doubt */
-    int64_t decided;
+    run *judge;                /* the run that judges it; NULL: the slot is free */
+    int64_t became;            /* when it became sure */
+    int64_t decided;           /* with `note`, `rule` (the judge), `verdict`, `decision`: as in its
+                                * record */
     int64_t note;
     int32_t next_sure;
     int32_t next_doubt;
@@ -38,94 +54,99 @@ typedef struct {
     uint8_t decision;
 } turn;
 
-/* Positions at which something is known. */
+/* Inclusive ranges of positions, disjoint and ascending. */
 typedef rv_range range;
 
 typedef struct {
     range *at;
     int32_t room;
-    int32_t first;             /* those before it were dropped */
+    int32_t first;             /* index of the oldest; those before were dropped */
     int32_t end;
 } ranges;
 
-/* What is known of a part of a formula: by value, where it is false and where true. */
+/* What a network knows of one operator: indexed by value, the positions at which it is known to be
+ * false, and to be true. */
 typedef struct {
     ranges known[2];
-    ranges news[2];            /* what became so last */
-    int64_t base;              /* the first position that was wanted and not known */
-    int64_t swept;             /* up to which its operands only lead on */
+    ranges news[2];            /* what became known since its parents read it */
+    int64_t base;              /* the first position that is wanted and not known */
+    int64_t swept;             /* from `base` up to here its value is the one it has here */
     int64_t wanted;
-    int64_t earliest[2];        /* by value, before when nothing new of it can be known */
+    int64_t earliest[2];       /* by value, the first instant at which something new can become known */
 } operator_state;
 
 typedef struct {
-    operator_state *nodes;
-    ranges samples;            /* their instants, from the oldest that is kept on */
+    operator_state *nodes;     /* by operator of the form */
+    ranges samples;            /* sampled time: instants of the samples, indexed by position, from
+                                * `oldest` on */
     int64_t oldest;
     int64_t now;
     int64_t was_now;
     int64_t first;
-    int64_t last;              /* the last position of which the letter is known */
+    int64_t last;              /* the last position whose letter is known */
     int64_t was_last;
-    int64_t closed;            /* the end of the trace, or NEVER */
+    int64_t closed;            /* the end of the trace once it is over; else NEVER */
 } network;
 
-/* The network of a judge: two of them from the first unknown letter on. */
+/* The network of a judge. `readings[1]`, the better one, is used from the first unknown letter on. */
 typedef struct {
     network readings[2];
-    uint8_t *leaf;             /* 1: true for the worse; 2: for the better */
-    uint8_t *next_leaf;        /* the same from the position `turn` on */
+    uint8_t *leaf;             /* by leaf, bits: 1, true in the worse reading; 2, in the better */
+    uint8_t *next_leaf;        /* the leaves from position `turn` on */
     int64_t turn;
     int32_t visits;
     bool begun;
     bool parted;
 } networks;
 
-/* Positions at which a value changes, in order, as a ring. */
+/* A Boolean function of positions, as the ascending positions at which it changes, in a ring. */
 typedef struct {
     int64_t *at;
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    int32_t asked;             /* so many were before the position that was asked for last */
-    bool begun;                /* the value before all of them */
+    int32_t asked;             /* how many lie before the position last asked for: queries mostly
+                                * ascend */
+    bool begun;                /* the value before the first change */
 } changes;
 
-/* One reading of a chain of windows: of each level where its value changes if the letter stays; level
- * 0 is the base. */
+/* One reading of a chain of windows: for each nesting level where the value changes if the letter
+ * stays as it is; level 0 is the innermost operand. */
 typedef struct {
     changes *levels;
-    changes ends;              /* of the leaf that ends what is kept up */
-    changes excused;           /* of that which is true where the windows do not matter */
-    int64_t start;             /* up to there it is kept up */
+    changes ends;              /* of the leaf that ends the outermost obligation */
+    changes excused;           /* of the leaf that makes the windows irrelevant while true */
+    int64_t start;             /* up to this position the obligation is met */
 } chain_reading;
 
-/* A chain of windows that judges: two readings from the first unknown letter on. */
+/* The state of a chain of nested windows (windows/chain.c); `readings[1]` as in `networks`. */
 typedef struct {
     chain_reading readings[2];
-    changes stamps;            /* the instants of samples, if only these are positions */
-    uint8_t *values;           /* by operator up to the base, room for what it is */
-    uint8_t letter[3];         /* the base, and the two leaves: 1 if it is true for the worse, and 2
-                                * for the better */
-    int32_t kept;              /* letters since what is known was dropped */
+    changes stamps;            /* sampled time: the instants of the samples */
+    uint8_t *values;           /* by operator up to the innermost operand, scratch for evaluating a
+                                * letter */
+    uint8_t letter[3];         /* innermost operand and the two leaves, in bits: 1, true in the worse
+                                * reading; 2, in the better */
+    int32_t kept;              /* letters since old knowledge was last dropped */
     bool begun;
     bool parted;
 } chain;
 
-/* An attempt in a queue. */
+/* An attempt in a queue: its one clock is its trigger, its location that of its segment. */
 typedef struct {
     int64_t triggered;
     uint32_t number;
     int32_t spare;
 } queued;
 
-/* So many of them, one behind the other, in one location. */
+/* `count` consecutive attempts of a queue that are in one location. */
 typedef struct {
     int32_t location;
     int32_t count;
 } segment;
 
-/* Locations that a queue may come to at once; a plan's maker looks through the orders of fewer. */
+/* Bound on segments. The plan's maker explores the orders in which locations can occur in a queue
+ * and allows a queue (JUDGE_IN_RUNS) only below this bound. */
 #define SEGMENTS_MOST 16
 
 typedef struct {
@@ -137,7 +158,8 @@ typedef struct {
     segment segments[SEGMENTS_MOST];
 } queue;
 
-/* Truths of the leaves of a judge at some instants, in order, as a ring: the instant, then the words. */
+/* Truths of a judge's leaves at some instants, ascending, in a ring. An entry is the instant, then
+ * the truths packed two bits each. */
 typedef struct {
     int64_t *words;
     int32_t room;              /* entries, a power of two, or 0 */
@@ -145,111 +167,144 @@ typedef struct {
     int32_t count;
 } truths;
 
-/* Letters, some of those that notes of a judge refer to. */
+/* A chunk of the letters that notes of a judge refer to (notes/letters.c). A letter is its
+ * position, then the packed truths of the propositions. */
 struct rv_piece {
-    rv_piece *next;            /* the later ones */
-    rv_piece *next_left;       /* of those that no open attempt needs any more, but notes do */
-    const int64_t *before;     /* the last letter; while it is the last piece */
-    void *held[2];             /* of who reads them */
-    uint32_t pinned;           /* whether notes refer to it: the epoch of these; see `rv_monitor` */
-    int32_t count;             /* words that are in it */
-    int32_t stride;            /* of a letter */
-    int32_t number;            /* among all, while they are written down or read */
-    int64_t words[];           /* the position, then the truths of propositions there */
+    rv_piece *next;            /* the following chunk of the same judge */
+    rv_piece *next_left;       /* next of those that only notes still need */
+    const int64_t *before;     /* the letter before the next one, in this chunk or the last; valid while
+                                * this is the last chunk */
+    void *held[2];             /* pointers of the reader: see rv_piece_held */
+    uint32_t pinned;           /* equals rv_monitor.pins if records' notes refer to it */
+    int32_t count;             /* words in use */
+    int32_t stride;            /* words per letter */
+    int32_t number;            /* index while a snapshot is written or read */
+    int64_t words[];
 };
 
-/* Letters that a note refers to. */
+/* The letters that a note refers to: from the begin of `first` to `last_count` words of `last`. */
 typedef struct {
     rv_piece *first;
     rv_piece *last;
     int32_t last_count;
 } span_of_letters;
 
-/* What a judge remembers for notes. */
+/* What a judge remembers for the notes of its attempts; see notes/notes.c. */
 typedef struct {
-    truths triggers;           /* at triggers, where they are others than at the one before */
-    truths doubts;             /* where something was unknown that its attempts may hang on */
-    rv_piece *first;           /* letters, of one that a network judges */
+    truths triggers;           /* the leaves at triggers; an entry stands for all triggers up to the
+                                * next entry */
+    truths doubts;             /* the leaves where an unknown value may keep attempts from being
+                                * decided */
+    rv_piece *first;           /* letters since the oldest open attempt, of a network */
     rv_piece *last;
-    rv_piece *pinned;          /* the last one that is, while it is kept */
+    rv_piece *pinned;          /* the last pinned piece that is still listed */
     int32_t pieces;
-    int32_t open_count;        /* attempts that were open when they were told of */
-    uint32_t epoch;            /* of the last state that was noted; see `rv_monitor` */
-    int64_t state;             /* its place; -1: none */
-    int64_t state_at;          /* its position */
-    int64_t began_at;          /* the last trigger */
-    int64_t doubted_at;        /* the last doubt */
-    int64_t undecidable_since;        /* the first of those that stay open for good; NEVER: there are none */
+    int32_t open_count;        /* open attempts, counted before their notes are written */
+    uint32_t epoch;            /* `epoch` of the monitor when `state` was written */
+    int64_t state;             /* index among the note words of the last state written, for sharing;
+                                * -1 */
+    int64_t state_at;          /* the position it describes */
+    int64_t began_at;          /* instant of the last trigger */
+    int64_t doubted_at;        /* instant of the last entry of `doubts` */
+    int64_t undecidable_since; /* the earliest trigger of an undecidable attempt; NEVER: there is
+                                * none */
 } noting;
 
-/* A node that notes tell of: since when it has its truth, and the last positions at which it was false
- * and true before; RV_NO_TIME: there is none. */
+/* History of a node: since when it has its truth, and the last positions at which it was false and
+ * true before; RV_NO_TIME: never. */
 typedef struct {
     int64_t since;
     int64_t last[2];
 } truth_times;
 
-/* The same, now and before the position at which it changed last. */
+/* That history now, and as it was before the last change, since a network may report a decision one
+ * position late. */
 typedef struct {
     truth_times now;
     truth_times was;
-    int64_t moved_at;          /* that position; RV_NO_TIME: it never did */
-    uint8_t truth;             /* before it */
+    int64_t moved_at;          /* position of the last change; RV_NO_TIME: it never changed */
+    uint8_t truth;             /* its truth before that */
 } logged_node;
 
-/* Such nodes of a run. */
+/* The histories of all nodes of a run that notes describe. */
 typedef struct {
     logged_node *nodes;
-    int64_t moved_at;          /* the last position at which one changed */
-    int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
+    int64_t moved_at;          /* position of the last change of any of them */
+    int64_t begun;             /* an instance created late knows nothing of before this position;
+                                * RV_NO_TIME: it saw the whole run */
 } truth_log;
 
-/* What becomes of a judge at a position. */
+/* Why a judge looks at the position at hand: its letter, or its trigger, changed. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
 typedef struct {
-    int64_t position;          /* that its attempts have come to */
-    int64_t lag;               /* what is decided so long before it is due is still to be found */
-    int64_t failed_at;         /* when the attempt of the episode that runs did */
-    int64_t again_at;          /* when the last one began that followed such a failure */
+    int64_t position;          /* the position up to which its attempts were driven */
+    int64_t lag;               /* networks: by how many ticks its timer was postponed; decisions may lie
+                                * that long before it */
+    int64_t failed_at;         /* when the attempt of the current episode failed; NEVER: it did not */
+    int64_t again_at;          /* start of the latest attempt that followed such a failure */
     networks *net;
     chain *chain;
     queue *queue;              /* NULL: its attempts are driven one by one */
     noting *noting;            /* NULL: nothing is noted */
     int32_t first;
-    int32_t last;
-    int32_t undecidable;              /* the first of those that stay open for good */
-    int32_t current;           /* the attempt of the episode that runs */
-    int32_t letter;            /* the class of letters that they stepped with */
-    int32_t other;             /* the same, the unknown taken for the better */
-    int32_t worse;             /* the letter as the nodes stand now, summed up */
-    int32_t better;
-    uint32_t count;
-    uint32_t doubts;
+    int32_t last;              /* its end; -1 */
+    int32_t undecidable;       /* list of its undecidable attempts, which are never looked at again; -1:
+                                * empty */
+    int32_t current;           /* the attempt of the current episode; -1 */
+    int32_t letter;            /* the letter class of the last step, in the worse reading */
+    int32_t other;             /* in the better reading */
+    int32_t worse;             /* running sum of the letter, worse reading: nodes add their weights as
+                                * they change */
+    int32_t better;            /* in the better reading */
+    uint32_t count;            /* attempts so far, sure ones */
+    uint32_t doubts;           /* attempts in doubt so far */
     uint32_t passed;
     uint32_t failed;
     uint32_t inconclusive;
-    uint8_t before;            /* the truth of its trigger at the position before */
-    uint8_t touched;
-    bool running;
-    bool restless;             /* whether an attempt may move at the next position, whatever comes */
-    bool slides;
-    bool sorted;               /* whether no attempt is due before an older one */
+    uint8_t before;            /* truth of its trigger at the position before, for edges */
+    uint8_t touched;           /* TOUCHED_LETTER and TOUCHED_TRIGGER bits for the position at hand; 0:
+                                * not listed */
+    bool running;              /* an episode is going on */
+    bool restless;             /* an attempt may move at the next position even if nothing changes */
+    bool slides;               /* some clock is restarted at every tick, so no attempt may be skipped */
+    bool sorted;               /* whether `due` ascends along the list */
     bool is_restless_listed;
     bool is_failing_listed;
-    bool blind;                /* whether its network, which looks back, missed positions: nothing more
-                                * is said of attempts */
+    bool blind;                /* its network looks back but missed positions of an outage: all further
+                                * attempts are undecidable */
 } judge;
 
-/* Why a signal was not known, behind what core.h says of numbers. */
+/* Why a signal was not known, continuing RV_IS_NONE and RV_IS_NAN. */
 enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
 
-/* A stretch over which a signal was not known. */
+/* An interval over which a signal had no known value, for notes. */
 typedef struct {
-    int64_t since;             /* of no meaning if it was never known */
-    int64_t until;             /* NEVER: it still is not */
+    int64_t since;             /* meaningless if it never had a value */
+    int64_t until;             /* NEVER: it still has none */
     int32_t local;
     int32_t why;
 } unknown_stretch;
+
+/* The state of a coverage group. */
+typedef struct {
+    int32_t current;           /* items that are true, or were and have not been false since */
+    uint8_t before;            /* truth of its occasion at the position before */
+    bool called;               /* it evaluates the position at hand */
+} covered;
+
+/* Coverage: the hits of a run. */
+typedef struct {
+    rv_hit *hits;              /* by item */
+    int32_t *current_items;    /* the current items of each group, from its first item on */
+    uint8_t *stands;           /* by item, whether it is current */
+    covered *groups;
+    int32_t *groups_called;
+    int32_t *called;           /* watches whose groups evaluate the next position */
+    uint8_t *is_called;        /* by watch */
+    int32_t *bins;             /* scratch: the bins of all axes that are true */
+    int32_t items;
+    int32_t called_count;
+} covering;
 
 #endif

@@ -1,4 +1,10 @@
-/* The state of a monitor. */
+/* The state of a monitor, outermost first: the monitor has a home for each part of the plan, a home
+ * one or more runs, a run its nodes and judges (judging.h). A part without captured values has
+ * exactly one run. One with `let` or `for each` has a root, a run per key of `for each` (an
+ * instance), and a run per open attempt with `let` values; they form a tree through parent,
+ * first_child and sibling.
+ *
+ * All memory comes from the monitor's arena; arrays that grow do so by doubling. */
 #ifndef RVMON_STATE_H
 #define RVMON_STATE_H
 
@@ -9,83 +15,91 @@
 #define NEVER RV_NEVER
 #define LIMIT (INT64_C(1) << 62)
 
-/* Truth values; NONE is of nothing yet. */
+/* Truth values in Kleene's order, so that `and` is the minimum and `or` the maximum. */
 enum { IS_FALSE = 0, IS_UNKNOWN = 1, IS_TRUE = 2 };
 
-/* The two last locations of every automaton. */
+/* Locations: 0 and 1 are final in every automaton; a network's attempts are WAITING until decided. */
 enum { FAILED = 0, PASSED = 1, WAITING = 2 };
 
 typedef struct home home;
 
-/* Timers: an indexed heap of the ids that are due some time. */
+/* Timers: a binary min-heap of ids by due instant, indexed, so that a timer can be moved or cleared
+ * in logarithmic time. A timer that is not set is due NEVER and not in the heap. */
 typedef struct {
     int64_t *due;              /* by id */
     int32_t *ids;              /* the heap */
-    int32_t *place;            /* by id, within the heap */
-    int64_t next;              /* when the first of them is due */
+    int32_t *place;            /* by id, its index in `ids` */
+    int64_t next;              /* due instant of the first */
     int32_t count;
 } timers;
 
-/* What lies between two numbers, neither of them among it. */
+/* An open interval of numbers. */
 typedef struct {
     double low;
     double high;
 } span;
 
+/* The last two updates of a signal, for `prev`, `delta`, `rate` and `changed`. */
 typedef struct {
     rv_number last;
     rv_number before;
-    int64_t at;
-    int64_t before_at;
+    int64_t at;                /* instant of `last` */
+    int64_t before_at;         /* instant of `before` */
     int32_t updates;           /* 0, 1, or 2 for more */
     int32_t spare;
 } history;
 
-/* Occurrences of one event at one position. */
+/* Occurrences of one event at the position at hand. */
 typedef struct {
-    rv_number *fields;
-    uint8_t *known;
+    rv_number *fields;         /* one row of fields per occurrence */
+    uint8_t *known;            /* per occurrence; 0: it may not have occurred */
     int32_t count;
     int32_t room;
 } occurrences;
 
+/* An inclusive range of instants; in the second ring of a window, a number instead (members.c). */
 typedef struct {
     int64_t begin;
     int64_t end;
 } stretch;
 
-/* How a name is: not lost; lost; lost up to an instant that is known; lost till its next update. */
+/* Outage state of a name: known; lost, end unknown; lost up to the instant in `until`; and, of a
+ * signal, over but without an update since. */
 enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
 
-/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. What is said of none:
- * AHEAD, before the first sample something was lost; DENSE, from here on every tick may be a position;
- * SPARSE, only samples are behind here. */
+/* What an update kept or delivered internally says, beyond core.h: an outage of a name begins, or
+ * ends. The rest concern no name: before the first sample there was an outage; from here on every
+ * tick may be a position; from behind here on only samples are positions again. */
 enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPARSE };
 
-/* Whether there are positions: surely; nobody knows; from the next one on. */
+/* Whether the trace has begun: it has; an outage before the first sample leaves it open; it will
+ * have at the next position. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
-/* Stretches of instants at which a `since` in bounds holds, or which are members of a window (members.h),
- * as a ring. Of a window, what is said of members stands in the first one of two, and in the second how
- * many may be some, and how many are to come until it is known which the last ones are. Of sums, `left` says
- * that all numbers were whole ones; of the last updates that are the least or greatest, `total` counts all. */
+/* Memory of a past operator: the ranges of instants at which a bounded `since` holds, or the
+ * members of a window (formulas/members.h), in a ring. A node has two. Of a `since` the second is
+ * the better reading, in use while `apart`. Of a window the second holds the members' numbers; its
+ * `total` counts the members that only may be some, its `lost` how many members have to come until
+ * the last ones are known again, and the `left` of the first tells that all numbers summed were
+ * whole. For a minimum or maximum of the last `most` members `total` numbers the members. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    bool left;
+    bool left;                 /* a `since`: its operands at the position before */
     bool right;
-    bool growing;              /* whether the end of the last one is still to come */
-    bool apart;                /* whether there is a second one, the unknown taken for the better */
+    bool growing;              /* the last range is still growing */
+    bool apart;                /* the second reading differs and is kept */
     int64_t total;             /* members that count */
-    int64_t lost;              /* members that are not known */
-    int64_t members;           /* all */
-    int32_t *slots;            /* the latest of equal members: distinct.c */
+    int64_t lost;              /* members whose number is unknown */
+    int64_t members;           /* all members */
+    int32_t *slots;            /* hash table of the latest of equal members: distinct.c */
     int32_t slot_room;
-    int32_t known_slots;       /* -1: the table is to be made anew */
+    int32_t known_slots;       /* slots in use; -1: the table has to be rebuilt */
 } stretches;
 
+/* Memory of a `since` from 0 on, or without an end: one instant is enough (formulas/past.c). */
 typedef struct {
     int64_t at;
     bool left;
@@ -93,9 +107,10 @@ typedef struct {
     bool apart;
 } edge;
 
-/* A sum of numbers, exactly: a number in two's complement of 32 bits a limb, the lowest worth
- * 2^-1088. The largest double times the longest duration, added up for as long, has bit 2240. Behind it
- * stands the sum of squares, or the same with what may be a member. */
+/* An exact sum (Kulisch's long accumulator, formulas/exact.c): two's complement fixed point in
+ * limbs of 32 bits, the lowest bit worth 2^-1088. 2240 bits hold the largest double times the
+ * longest duration, added at every tick of that duration. Behind it lies the sum of squares (for a
+ * variance, at twice that precision), or the sum in the better reading. */
 #define SUM_LIMBS 71
 #define SQUARE_LIMBS 142
 #define TALLY_LIMBS (SUM_LIMBS + SQUARE_LIMBS)
@@ -103,143 +118,143 @@ typedef struct {
     uint32_t limb[TALLY_LIMBS];
 } tally;
 
-/* The state of a part: of all requirements without values of their own, of an instance, or of an
- * attempt with captured values. What a fork copies stands in one block. */
+/* A run: the state of a part of the plan, of an instance, or of an attempt with captured values.
+ * Everything that a fork has to copy lies in one block, so that forking is a memcpy (runs/runs.c). */
 struct run {
     home *home;
     const part *part;
     const plan *all;           /* the whole plan */
     int64_t gap;               /* ticks between two positions; 0: only samples are positions */
-    run *next;                 /* of the same list */
+    run *next;                 /* in the list of its home */
     run *previous;
-    run *parent;               /* in which its attempt was triggered */
-    run *first_child;          /* of the attempts that were triggered in it */
-    run *sibling;              /* of those of its parent */
+    run *parent;               /* where its attempt was triggered; NULL: it is of none */
+    run *first_child;          /* the runs of attempts triggered in it */
+    run *sibling;
     run *previous_sibling;
-    uint64_t call;             /* the last one that concerned it */
-    int32_t id;                /* its number among the runs of its home */
-    judge *judges;
-    truth_log *truth_log;      /* NULL: nothing is noted */
-    timers rules;              /* by number of the judge */
-    int32_t *touched;
-    int32_t *restless;
-    int32_t *repeating;        /* pulses that were true at the position before */
-    int32_t *failing;          /* episodes whose attempt has failed */
-    int32_t *due_rules;        /* room for those that are due */
+    uint64_t call;             /* number of the last call that concerned it */
+    int32_t id;                /* its index in the runs of its home */
+    judge *judges;             /* by judge of the part */
+    truth_log *truth_log;      /* NULL: no notes are kept */
+    timers rules;              /* timers, by judge */
+    int32_t *touched;          /* judges that look at the position at hand */
+    int32_t *restless;         /* judges with attempts that may move at the next position */
+    int32_t *repeating;        /* judges whose pulse trigger was true at the position before */
+    int32_t *failing;          /* judges whose current episode has failed */
+    int32_t *due_rules;        /* scratch, for judges whose timer fired */
     int32_t touched_count;
     int32_t restless_count;
     int32_t repeating_count;
     int32_t failing_count;
-    /* Of an instance or an attempt with values of its own. */
-    int64_t opens_at;          /* nothing starts before; NEVER: nothing does */
-    int64_t cut;               /* from then on it is not known what was captured */
-    int64_t occurred;          /* when the value did first of which it is the instance */
-    uint32_t rank;             /* of its instance; 0: none, or of unknown value */
-    int32_t key;               /* the place of that value */
-    int32_t judged;            /* the judge of its attempt, if values are captured */
-    int32_t starters;          /* the judges of which attempts start here, as bits */
-    int32_t judging;           /* those of which attempts are judged here */
-    bool opening;              /* whether attempts start from the next position on */
-    bool over;                 /* whether what occurred belongs to the last position */
-    bool watched;              /* whether it is seen to whether its values stay known */
-    bool blurs;                /* whether that can end */
-    bool touched_now;          /* whether it came to a position in this call */
-    bool doubted;              /* whether it is not known that there is such an instance */
-    bool stays_busy;           /* whether the next position matters to what was captured here */
-    /* The arrays of a part's size. */
-    size_t copied;             /* bytes of the block that a fork copies as they stand */
+    /* Of an instance, or of an attempt with captured values. */
+    int64_t opens_at;          /* no attempt starts before; NEVER: none ever */
+    int64_t cut;               /* from then on the captured values are not known any more */
+    int64_t occurred;          /* first occurrence of the key of this instance */
+    uint32_t rank;             /* of its instance, by first occurrence, from 1; 0: root, or unknown key
+                                */
+    int32_t key;               /* index of that key in the home's keys */
+    int32_t judged;            /* the judge of its one attempt, with captured values */
+    int32_t starters;          /* judges whose attempts start here, as a bit set */
+    int32_t judging;           /* judges whose attempts are judged here, as a bit set */
+    bool opening;              /* attempts start from the next position on */
+    bool over;                 /* `payloads` are of the last position: captures still read them */
+    bool watched;              /* its parent has to check whether the captured values remain known */
+    bool blurs;                /* they can still become unknown */
+    bool touched_now;          /* it did something in this call, and is in the home's `touched` */
+    bool doubted;              /* it is unknown whether there is such an instance */
+    bool stays_busy;           /* visit the next position, for captured values or watches */
+    /* Arrays whose size depends on the part, laid out by cut_block. */
+    size_t copied;             /* size of the prefix of `block` that a fork copies */
     char *block;
-    rv_number *captured;
-    rv_number *value;
-    span *spans;               /* of each signal, where no comparison of it comes out otherwise */
-    history *history;
-    occurrences *payloads;
-    int32_t *chosen;           /* by event, the occurrence that a comparison looks at */
-    stretches *past;
-    edge *edges;
-    tally *tallies;
-    rv_number *amounts;        /* what windows come to */
-    timers wake;               /* nodes, then perishable signals */
-    uint64_t *dirty;           /* nodes to be worked out, as bits */
-    uint64_t *dirty_words;     /* words of that which are not 0, as bits */
-    int32_t *fading;           /* atoms that speak of the last position only */
-    int32_t *fresh;            /* the same of the next one */
-    int32_t *marks;            /* names of which something is to be forgotten after the position */
-    uint8_t *marked;
-    uint8_t *truth;
-    uint8_t *atom;
-    uint8_t *momentary;
+    rv_number *captured;       /* the key of `for each`, then each `let` */
+    rv_number *value;          /* by signal, its current value */
+    span *spans;               /* by signal, the interval in which no comparison of it changes */
+    history *history;          /* by signal with SIGNAL_HISTORY */
+    occurrences *payloads;     /* by event */
+    int32_t *chosen;           /* by event, the occurrence that the comparison at hand reads */
+    stretches *past;           /* two for each STRETCH or WINDOW node */
+    edge *edges;               /* two for each EDGE node, as `stretches` */
+    tally *tallies;            /* by `sum` of WINDOW nodes */
+    rv_number *amounts;        /* results of WINDOW_NUMBER nodes */
+    timers wake;               /* timers: of nodes, then of signals that go stale */
+    uint64_t *dirty;           /* nodes to be evaluated, as a bit set */
+    uint64_t *dirty_words;     /* words of `dirty` that are not 0, as a bit set */
+    int32_t *fading;           /* atoms valid at the last position only, to be read again */
+    int32_t *fresh;            /* atoms valid at the coming position only */
+    int32_t *marks;            /* names whose updates are forgotten after the position */
+    uint8_t *marked;           /* by name, whether it is in `marks` */
+    uint8_t *truth;            /* by node */
+    uint8_t *atom;             /* by atom, its truth */
+    uint8_t *momentary;        /* by atom, how many names with a source make it momentary */
     uint8_t *is_fading;
     uint8_t *is_fresh;
-    uint8_t *births;
-    uint8_t *updated;
-    uint8_t *changed;
-    uint8_t *occurs;
-    uint8_t *silent;
-    uint8_t *absent;
-    uint8_t *seen;
-    /* Of a plan by which names can be lost, else empty. */
-    uint8_t *lost;             /* by name, how it is */
-    int64_t *until;            /* by name, the last instant at which it is lost; till that is known
-                                * the first one */
-    rv_number *kept;           /* by signal, what came at that instant */
-    uint8_t *has_kept;
-    uint8_t *keeps;            /* whether what comes at that instant counts behind it */
-    measuring *margins;        /* by judge; NULL: nothing is measured */
-    timers margins_due;        /* by judge, when time alone may settle something */
-    int32_t *changed_inputs;          /* judges whose leaves may be others than was read */
-    int64_t measured_at;       /* the position up to which all are known */
+    uint8_t *births;           /* by signal, births so far: 1, a first value; 2, an update after it */
+    uint8_t *updated;          /* by name, whether it was updated at this position */
+    uint8_t *changed;          /* by signal, whether that brought another value */
+    uint8_t *occurs;           /* by event, a truth */
+    uint8_t *silent;           /* by event, `occurs` without an update: UNKNOWN if lost, else FALSE */
+    uint8_t *absent;           /* by name, whether it is lost, or without a source */
+    uint8_t *seen;             /* by slot, truths that nodes remember */
+    /* Outages, by name; empty if the part reads none. */
+    uint8_t *lost;             /* NOT_LOST, ... */
+    int64_t *until;            /* the last instant of the outage; while that is unknown, the first */
+    rv_number *kept;           /* the last value at the instant `until` */
+    uint8_t *has_kept;         /* whether there is one */
+    uint8_t *keeps;            /* whether a value at that instant counts after the outage */
+    measuring *margins;        /* margins, by judge; NULL: the plan has none */
+    timers margins_due;        /* timers, by judge: when time alone may settle a margin */
+    int32_t *changed_inputs;   /* judges whose leaves may have changed */
+    int64_t measured_at;       /* the position up to which margins are known */
     int32_t changed_count;
-    int32_t asked;             /* attempts whose margins are to come */
-    /* What is copied with them. */
+    int32_t asked;             /* attempts whose margins are still to come */
+    /* Scalars that a fork copies, too. */
     struct progress {
-        int64_t origin;
-        int64_t dense_from;    /* the first such tick */
-        int64_t begun;         /* the first position that is surely there */
-        int64_t position;
-        int64_t before;
-        int64_t alarm;         /* before that nothing happens without a change */
-        int64_t after;         /* the last sample that was taken */
-        int64_t awaited;       /* the tick of a clock that what was taken belongs to; or the position
-                                * at which names are lost */
-        int64_t ends_at;       /* a position behind which some are known to be found */
-        int64_t quiet_from;    /* between these nothing comes that is not there yet */
+        int64_t origin;        /* the first position, or the first one that may exist */
+        int64_t dense_from;    /* the first tick that may be a position (`dense`) */
+        int64_t begun;         /* the first position that surely exists; NEVER */
+        int64_t position;      /* the position visited last */
+        int64_t before;        /* the position before the one at hand */
+        int64_t alarm;         /* nothing happens before this instant unless an input changes */
+        int64_t after;         /* the last sample taken */
+        int64_t awaited;       /* with a gap: the tick that sees the samples taken since the last */
+        int64_t ends_at;       /* the next position at which some outage may be over; NEVER */
+        int64_t quiet_from;    /* between these two instants no input arrives */
         int64_t quiet_until;
-        int32_t lost_count;    /* names of which something is lost */
+        int32_t lost_count;    /* names in an outage */
         int32_t fading_count;
         int32_t fresh_count;
         int32_t marks_count;
-        int32_t births_left;
-        int32_t undetermined_left;
-        int32_t phase;         /* 1: all is born and determined */
+        int32_t births_left;   /* births still waited for */
+        int32_t undetermined_left; /* triggers that were never known */
+        int32_t phase;         /* 1 once nothing is left of these two (plan.md: phases) */
         bool started;
-        uint8_t starting;      /* a truth: whether this is the first position */
-        uint8_t presence;      /* whether there are positions now */
-        bool dense;            /* whether every tick may be one, where only samples are */
-        bool gathered;
-        bool dirty;            /* a position is to be looked at though no node is dirty */
+        uint8_t starting;      /* a truth: whether the position at hand is the first */
+        uint8_t presence;      /* ARE_THERE, ... */
+        bool dense;            /* sampled time, in an outage: every tick may be a position */
+        bool gathered;         /* something is to be forgotten after the position at hand */
+        bool dirty;            /* the position has to be visited though no node is dirty */
     } at;
 };
 
-/* A value of `for each` that occurred. */
+/* A key: a value of `for each` that occurred. */
 typedef struct {
     rv_number value;
-    int64_t occurred;
-    run *open;                 /* its instance; NULL: that is over */
+    int64_t occurred;          /* instant of its first occurrence */
+    run *open;                 /* its instance; NULL: it was closed */
     uint32_t rank;
-    int32_t next;              /* of those with the same hash */
-    int32_t older;             /* of those that are over */
+    int32_t next;              /* hash chain, or free list */
+    int32_t older;             /* links of the list of closed keys, in order of closing */
     int32_t newer;
 } key;
 
-/* An update of a part: the signal or event there, and what it says. */
+/* An update as a part sees it, with the part's own number of the name. */
 typedef struct {
     int32_t local;
     bool event;
     const rv_update *update;
 } incoming;
 
-/* An update that is kept for those that look at what was before, or until its tick comes. */
+/* An update that is stored: for runs that replay the past, or until its tick comes. `fields` are
+ * owned. */
 typedef struct {
     int64_t t;
     rv_number value;
@@ -247,156 +262,135 @@ typedef struct {
     int32_t local;
     bool event;
     int32_t says;
-    bool last;                 /* of its sample */
+    bool last;                 /* the last update of its sample */
 } past_update;
 
-/* What is known of a group of items. */
-typedef struct {
-    int32_t current;           /* so many items are true, or may still be since they were */
-    uint8_t before;            /* the truth of its occasion at the position before */
-    bool called;               /* whether it looks at the position at hand */
-} covered;
-
-/* What was hit in a run. */
-typedef struct {
-    rv_hit *hits;              /* by item */
-    int32_t *current_items;    /* of each group from its first on */
-    uint8_t *stands;           /* by item, whether it is one of those */
-    covered *groups;
-    int32_t *groups_called;
-    int32_t *called;           /* watches whose groups look at the next position */
-    uint8_t *is_called;        /* by watch */
-    int32_t *bins;             /* room for those of all axes that are true */
-    int32_t items;
-    int32_t called_count;
-} covering;
-
-/* What the runs of a part share. */
+/* What the runs of a part share: their lists, the pool of attempts, and the inbox of the sample at
+ * hand. */
 struct home {
     rv_monitor *monitor;
     const part *part;
-    run *root;                 /* without captured values */
-    run *last_root;            /* behind it the instances */
-    run *captured;             /* the first of an attempt */
-    run *last_captured;
-    run *spare;
-    run **runs;                /* by number, those put aside among them */
-    run **touched;             /* those that came to something in this call */
-    int32_t *called;           /* numbers of those that a call concerns */
-    timers alarms;             /* by number */
+    run *root;                 /* heads the list of root and instances */
+    run *last_root;            /* tail of that list */
+    run *captured;             /* list of the runs of attempts with `let` values */
+    run *last_captured;        /* tail of that list */
+    run *spare;                /* released runs, for reuse */
+    run **runs;                /* by id, released ones among them */
+    run **touched;             /* runs that did something in this call */
+    int32_t *called;           /* scratch: ids of the runs that a call concerns */
+    timers alarms;             /* timers, by id of the run */
     uint64_t call;
     int32_t run_count;
     int32_t run_room;
     int32_t touched_count;
     char *pool;                /* attempts */
-    attempt *lone;             /* room for one that stands in none */
-    unknown_stretch *unknowns;        /* NULL: nothing is noted */
-    int32_t *unknown_of;       /* by signal, the last of its own among those; -1: none is left */
+    attempt *lone;             /* scratch: a queued attempt in the form of one in the pool */
+    unknown_stretch *unknowns; /* when signals were unknown, for notes; NULL: no notes */
+    int32_t *unknown_of;       /* by signal, its latest entry there; -1: dropped */
     int32_t unknown_count;
     int32_t unknown_room;
-    turn *turns;
-    size_t stride;
-    int32_t capacity;
-    int32_t used;
-    int32_t free_slot;
-    incoming *inbox;
+    turn *turns;               /* by attempt, if values are captured */
+    size_t stride;             /* bytes of an attempt with its clocks */
+    int32_t capacity;          /* of `pool`, in attempts */
+    int32_t used;              /* slots of `pool` ever used */
+    int32_t free_slot;         /* list of free slots below `used`; -1 */
+    incoming *inbox;           /* updates of the sample at hand that the part reads */
     int32_t inbox_count;
     int32_t inbox_room;
-    int64_t previous;          /* the instant of the sample before the one at hand */
+    int64_t previous;          /* instant of the sample before the one at hand */
     int64_t alarm;
-    /* Of a part whose attempts or instances have values of their own. */
-    uint32_t count;
+    /* Of a part that captures values. */
+    uint32_t count;            /* counts as in `judge` */
     uint32_t doubts;
     uint32_t passed;
     uint32_t failed;
     uint32_t inconclusive;
-    rv_number *room;           /* for values that are captured to be compared */
-    rv_number *nothing;        /* the values of its signals where all are unknown; NULL till then */
-    int32_t sure[2];           /* what became so and is not numbered: first and last */
-    int32_t doubtful[2];
-    int32_t done[2];           /* what was decided and is not told */
-    past_update *past;
+    rv_number *room;           /* scratch: values captured again, to compare them */
+    rv_number *nothing;        /* by signal: all unknown, for captures in an outage; NULL as yet */
+    int32_t sure[2];           /* attempts to be numbered, that became sure: first and last */
+    int32_t doubtful[2];       /* the same of those in doubt */
+    int32_t done[2];           /* attempts to be reported */
+    past_update *past;         /* stored samples */
     int32_t past_count;
     int32_t past_room;
-    int32_t given;             /* so many of them were judged; others wait for their tick */
-    rv_update *held;           /* room for one of those samples */
+    int32_t given;             /* updates of `past` that were judged already */
+    rv_update *held;           /* scratch: a stored sample as updates */
     int32_t held_room;
-    key *keys;
-    int32_t *heads;            /* the first key by hash; -1: none */
+    key *keys;                 /* keys ever seen, but the oldest closed ones */
+    int32_t *heads;            /* hash table; -1: empty chain */
     int32_t key_room;
     int32_t key_count;
-    int32_t free_key;
-    int32_t oldest;            /* of those that are over; -1: none */
+    int32_t free_key;          /* list of free keys; -1 */
+    int32_t oldest;            /* closed keys; -1: none */
     int32_t newest;
     int32_t over_count;
     uint32_t last_rank;
-    networks *truths;          /* of the form of which it is kept where it is known; NULL till then */
-    bool is_blind;             /* whether positions were missed of that */
-    covering *covering;        /* of a part with watches; else NULL */
-    rv_hit **moves;            /* by judge, from each location to each; NULL: of none */
+    networks *truths;          /* the form whose truths are recorded (rv_truths); NULL as yet */
+    bool is_blind;             /* an outage hid positions from it, so nothing is told */
+    covering *covering;        /* coverage; NULL: none */
+    rv_hit **moves;            /* by judge, moves between locations (rv_moves); NULL: none */
 };
 
-/* Where an attempt stood before it moved. */
+/* Location and clocks of an attempt before its last move, for notes. */
 typedef struct {
     int64_t clocks[CLOCKS_MOST];
     int32_t location;
-    int32_t width;
+    int32_t width;             /* clocks in use */
 } before_decision;
 
 struct rv_monitor {
     arena memory;
     plan plan;
-    part *parts;
-    home *homes;
+    part *parts;               /* by part of the plan */
+    home *homes;               /* by part */
     rv_record *records;
-    rv_number *captured;
-    uint8_t *absent;
+    rv_number *captured;       /* captured values of records */
+    uint8_t *absent;           /* by name, declared to have no source */
     int64_t record_count;
     int64_t record_room;
-    int64_t sorted;            /* so many records are in order */
+    int64_t sorted;            /* records already in order */
     int64_t captured_count;
     int64_t captured_room;
-    int64_t *notes;            /* words, one note behind the other */
+    int64_t *notes;            /* note words, and the states that notes share (notes/told.c) */
     int64_t note_count;
     int32_t note_room;
     int32_t span_count;
     int32_t span_room;
-    span_of_letters *spans;    /* that notes refer to */
-    rv_piece *left;            /* letters that only these refer to */
-    uint32_t pins;             /* the epoch of notes that refer to letters */
+    span_of_letters *spans;    /* letter ranges of notes */
+    rv_piece *left;            /* pieces that only notes still need */
+    uint32_t pins;             /* current value of `pinned`: bumped to unpin all pieces at once */
     rv_let_go let_go;
     void *let_go_user;
-    int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */
+    int64_t settled_notes;     /* words of records' notes; those of open attempts follow */
     int32_t settled_spans;
-    int64_t *kept_of;          /* room to count records by requirement and verdict; NULL: all are kept */
-    int64_t keep;              /* so many are, of each */
-    int64_t laid_count;        /* attempts that were laid down since some were dropped, and before */
-    int64_t trim_at;           /* so many of both are borne */
-    uint32_t epoch;            /* of notes: what was placed in another one is forgotten */
-    before_decision before;    /* the token of the attempt at hand, before it moves */
+    int64_t *kept_of;          /* scratch: records by requirement and verdict; NULL: all are kept */
+    int64_t keep;              /* records kept of each */
+    int64_t laid_count;        /* undecidable attempts since the last trim */
+    int64_t trim_at;           /* rv_trim acts beyond this many records and undecidable attempts */
+    uint32_t epoch;            /* of notes: states written in another epoch are not shared */
+    before_decision before;    /* of the attempt at hand */
     int64_t began;
     int64_t last;
     int64_t after;             /* a sample has to be later */
-    int64_t reached;
+    int64_t reached;           /* no sample before this instant will come */
     rv_staleness *stale;       /* by signal */
-    margin_shape *shapes;      /* by judge, what is measured; NULL: nothing is */
+    margin_shape *shapes;      /* margins, by judge over all parts; NULL: the plan has none */
     margin_results margins;
-    uint8_t *late;             /* by requirement, whether something came too late for it */
-    /* Where only samples are positions. */
-    uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
+    uint8_t *late;             /* by requirement, whether a late sample concerned it */
+    /* Sampled time (`gap` 0): outages. */
+    uint8_t *losing;           /* by name, whether it is lost; one more: an outage without a name */
     int32_t losing_count;
-    int64_t dense_until;       /* the last tick that may be one; NEVER: it goes on; RV_NO_TIME: none
-                                * may be now */
-    int64_t dense_end;         /* that of the last such stretch */
-    int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
+    int64_t dense_until;       /* last tick that may be a position; NEVER: open; RV_NO_TIME: none */
+    int64_t dense_end;         /* the last tick of the latest outage */
+    int64_t heard;             /* when an outage last began or ended; RV_NO_TIME: never */
     bool measures_positions;
-    bool hurries;              /* whether rows are judged, and figures can wait for some more of them */
-    bool is_alone;             /* whether there is one part, without values of its own */
+    bool hurries;              /* rows are judged in bulk, so margins may be settled later */
+    bool is_alone;             /* there is one part, without captured values */
     bool finished;
     bool spoilt;
     bool keeps_notes;
-    bool tells_open;           /* whether open attempts are being told of */
-    bool told_open;            /* whether notes of them stand behind those of records */
+    bool tells_open;           /* notes of open attempts are being written */
+    bool told_open;            /* notes of open attempts stand behind those of records */
 };
 
 #endif

@@ -1,10 +1,12 @@
-/* The plan is checked before anything reads it: every index, size and bound, so that no bytes can
- * make the core read or write outside of its memory. */
+/* Opening and validating a plan. After rv_plan_check succeeded, every index, size and offset that
+ * the core takes from the plan is in range, so no bytes can make it read or write outside its
+ * memory. It does not check that the plan means anything sensible. Cost: linear in the plan, except
+ * that each judge with a table of letters looks through all links of its part (plan_judges.c). */
 #include "plan/plan_check.h"
 
 #include <string.h>
 
-/* The size of the records of each section. */
+/* Record size of each section, in the order of SEC_*. */
 static const size_t RECORD[SECTIONS] = {
     sizeof(int32_t),       sizeof(int32_t),        sizeof(subscription), sizeof(part_plan),
     sizeof(signal_plan),   sizeof(event_plan),     sizeof(atom_plan),    sizeof(node_plan),
@@ -13,7 +15,7 @@ static const size_t RECORD[SECTIONS] = {
     sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t),
     sizeof(margin_plan),   sizeof(measure_plan)};
 
-/* Where no record was found wrong. */
+/* No section is wrong: what rv_plan_check returns for a valid plan. */
 #define FINE (-1)
 
 static uint64_t hash_of_words(const uint64_t *words, size_t count)
@@ -31,7 +33,8 @@ static const section *table_of(const plan_header *h)
     return (const section *)(const void *)(h + 1);
 }
 
-/* Whether the bytes are a plan of this version, and each section lies within them. */
+/* Whether the header is that of a plan of this version and byte order, the hash fits, and every
+ * section lies within the bytes. 8-byte alignment makes the casts to records valid. */
 static bool is_whole(const void *bytes, size_t size)
 {
     const plan_header *h = bytes;
@@ -126,6 +129,7 @@ machine machine_view(const plan *p, const automaton_plan *a)
     return made;
 }
 
+/* Header fields. Names stay below a quarter of 32 bits, as leaves number a signal times 2 plus 1. */
 static bool check_header(const plan *p)
 {
     const plan_header *h = p->header;
@@ -141,6 +145,7 @@ static bool check_header(const plan *p)
                       p->counts[SEC_SUBSCRIPTIONS]);
 }
 
+/* Every subscription leads to a signal or event of a part that bears the same name. */
 static bool check_subscriptions(const plan *p)
 {
     int32_t name;
@@ -168,7 +173,9 @@ static bool check_subscriptions(const plan *p)
     return true;
 }
 
-/* The sizes of a part. */
+/* The ranges and counts of a part. Bounds against the number of nodes keep the memory of a run
+ * proportional to the plan; with captured values judges fit the bits of an int32, and there is one
+ * requirement. */
 static bool check_part(const plan *p, const part_plan *x)
 {
     const int32_t nodes = x->nodes.count;
@@ -205,7 +212,7 @@ static bool check_part(const plan *p, const part_plan *x)
                    && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));
 }
 
-/* Constants are known, so that none is NaN. */
+/* Constants are known and not NaN, which comparisons rely on. */
 static bool check_numbers(const plan *p)
 {
     int64_t i;
@@ -219,7 +226,7 @@ static bool check_numbers(const plan *p)
     return true;
 }
 
-/* Whether each requirement with captured values has one part, in their order. */
+/* Whether requirements that capture values have at most one part each, in ascending order. */
 static bool check_parts(const plan *p)
 {
     int32_t last = -1;
@@ -235,7 +242,8 @@ static bool check_parts(const plan *p)
     return true;
 }
 
-/* The section of a part that is wrong. */
+/* The first section found wrong for a part, or FINE. The order matters: later checks index by what
+ * earlier ones have validated. */
 static int32_t wrong_in_part(const plan *p, const part_plan *x)
 {
     int32_t i;

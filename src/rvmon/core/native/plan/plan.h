@@ -1,7 +1,9 @@
-/* The plan as C sees it: sections of records of fixed size. plan.md says what each means, `plan.py`
- * packs them, `plan.c` checks every index and size before anything else reads them.
+/* The binary plan as C structs: sections of fixed-size records. plan.md explains what each section
+ * means, `rvmon.core.plan` packs them, and plan.c validates every index and size before anything
+ * else reads them.
  *
- * All records are made of int32 and int64, so their layout is the same everywhere. */
+ * All records consist of int32, int64 and double in an order without padding, so that the layout is
+ * the same on every platform. */
 #ifndef RVMON_PLAN_H
 #define RVMON_PLAN_H
 
@@ -24,11 +26,11 @@ enum {
     SEC_WATCHES,               /* watch_plan[] */
     SEC_GROUPS,                /* group_plan[] */
     SEC_NUMBERS,               /* number_plan[]: constants of programs */
-    SEC_CODE,                  /* int32[]: programs, and what of them is not an index of its own */
+    SEC_CODE,                  /* int32[]: programs of expressions */
     SEC_LISTS,                 /* int32[]: all lists of indices */
     SEC_INTS,                  /* int32[]: tables of automata and diagrams */
-    SEC_TICKS,                 /* int64[]: cuts and ages of automata */
-    SEC_MARGINS,               /* margin_plan[]: of each judge what is measured; or none */
+    SEC_TICKS,                 /* int64[]: clock bounds of automata */
+    SEC_MARGINS,               /* margin_plan[]: by judge over all parts; or empty */
     SEC_MEASURES,              /* measure_plan[] */
     SECTIONS
 };
@@ -38,10 +40,10 @@ enum {
 
 typedef struct {
     char magic[8];
-    uint32_t order;            /* that of the bytes of a number */
+    uint32_t order;            /* PLAN_ORDER, as the packing machine stores it: tells the byte order */
     int32_t sections;
-    int64_t size;              /* of all, this header among it */
-    uint64_t hash;             /* FNV-1a of the words of 8 bytes behind the header */
+    int64_t size;              /* bytes of the plan, this header included */
+    uint64_t hash;             /* FNV-1a over the 8-byte words behind the header */
     int64_t gap;               /* ticks between two positions; 0: only samples are positions */
     int32_t signals;
     int32_t events;
@@ -52,11 +54,11 @@ typedef struct {
 } plan_header;
 
 typedef struct {
-    int64_t offset;            /* from the begin of the plan, a multiple of 8 */
-    int64_t count;             /* of records */
+    int64_t offset;            /* in bytes from the begin of the plan, a multiple of 8 */
+    int64_t count;             /* number of records */
 } section;
 
-/* Indices that stand one behind the other in SEC_LISTS. */
+/* A range of SEC_LISTS, or of another section where a comment says so. */
 typedef struct {
     int32_t first;
     int32_t count;
@@ -64,91 +66,97 @@ typedef struct {
 
 typedef struct {
     int32_t part;
-    int32_t local;             /* the signal or event there; events count from 0, too */
+    int32_t local;             /* its one requirement */
 } subscription;
 
-/* Some requirements that are judged together; those with values of their own are alone. */
+/* A part: requirements judged together; one that captures values is alone. REPLAYS: an attempt
+ * replays all past samples, as captured values change what was before; KEEPS_PAST: samples are
+ * stored for that; FRESH: an instance starts from the state of the root instead; FORGETS: an
+ * instance equal to the root can be closed; CAPTURES_NOW: a captured value changes with time alone. */
 enum { PART_REPLAYS = 1, PART_FRESH = 2, PART_FORGETS = 4, PART_KEEPS_PAST = 8, PART_CAPTURES_NOW = 16 };
 
 typedef struct {
-    list signals;              /* records of SEC_SIGNALS; so with what follows */
+    list signals;              /* this and the next five are ranges of the section of that name */
     list events;
     list atoms;
     list nodes;
-    list judges;               /* the requirements, then what judges attempts in doubt */
+    list judges;               /* requirements first, then the judges of attempts in doubt */
     list forms;
-    int32_t requirements;      /* so many of the judges are requirements */
-    int32_t fields;            /* of its events, together */
-    int32_t timers;            /* of nodes */
-    int32_t seen;              /* memories of each kind */
+    int32_t requirements;      /* how many of the judges are requirements */
+    int32_t fields;            /* fields of all its events together */
+    int32_t timers;            /* nodes that have a timer */
+    int32_t seen;              /* memory slots of nodes, by kind: `seen`, `edges`, `stretches` */
     int32_t edges;
     int32_t stretches;
-    int32_t perishable;        /* signals that go stale */
-    int32_t clocks;            /* the most that an automaton has, at least 1 */
-    int32_t undetermined;      /* how many judges have a `determined` */
-    int32_t births;            /* how many signals are waited for */
-    list stateful;             /* nodes to be worked out at each sample, if only these are positions */
+    int32_t perishable;        /* number of signals that can go stale */
+    int32_t clocks;            /* clocks that an attempt needs room for, at least 1 */
+    int32_t undetermined;      /* number of judges with a `determined` node */
+    int32_t births;            /* number of signals whose birth is waited for */
+    list stateful;             /* sampled time: nodes to be evaluated at each sample */
     list networked;            /* judges without an automaton */
-    /* What follows is of a part whose attempts or instances have values of their own. */
-    int32_t captured;          /* so many, that of `for each` the first; 0: none */
-    int32_t each;              /* 1: it is a `for each` */
+    /* For a part that captures values. */
+    int32_t captured;          /* number of captured values, the key of `for each` first; 0: none */
+    int32_t each;              /* 1: it has a key */
     int32_t requirement;       /* its number */
     int32_t flags;
-    int32_t root_starters;     /* judges of which attempts start in the root, as bits */
-    int32_t instance_starters; /* and in instances */
-    int32_t each_event;
-    int32_t each_field;        /* counted within its event */
-    list captures;             /* places in SEC_CODE of the programs of `let` */
-    list varying_atoms;        /* those that read captured values */
-    list varying_nodes;        /* those above them that remember nothing, operands first */
-    list varying;              /* all nodes above them */
+    int32_t root_starters;     /* judges whose attempts start in the root, as a bit set */
+    int32_t instance_starters; /* judges whose attempts start in an instance */
+    int32_t each_event;        /* the event and field that hold the key */
+    int32_t each_field;        /* number within its event */
+    list captures;             /* programs of the `let` values: offsets in SEC_CODE */
+    list varying_atoms;        /* atoms to read again */
+    list varying_nodes;        /* nodes that depend on its births */
+    list varying;              /* all nodes that depend on these */
     list lapsed;               /* nodes LAPSED */
-    list dead_timers;          /* nodes with timers that are not needed once the part is settled */
-    int32_t truths;            /* the form of whose operators it is kept where they are known; -1 */
-    list watches;              /* records of SEC_WATCHES; so with what follows */
+    list dead_timers;          /* nodes whose timers are not needed in phase 1 */
+    int32_t truths;            /* the form whose truths are recorded over time; -1: none */
+    list watches;              /* range of SEC_WATCHES, and next of SEC_GROUPS: coverage */
     list groups;
-    int32_t sums;              /* so many tallies of windows */
-    int32_t amounts;           /* and numbers that they come to */
+    int32_t sums;              /* number of exact sums of windows */
+    int32_t amounts;           /* number of windows whose result others read */
 } part_plan;
 
-/* Lists for the two phases: until all is born and determined, and from then on. */
+/* A list for each phase: [0] until every awaited signal was born and every trigger was known; [1],
+ * a subset, from then on. */
 typedef list phased[2];
 
+/* IGNORES_NAN: NaN is no update; MARKS: `updated` of it is asked; HISTORY: its last two updates are
+ * asked; CAPTURED: a `let` reads it. */
 enum { SIGNAL_IGNORES_NAN = 1, SIGNAL_MARKS = 2, SIGNAL_HISTORY = 4, SIGNAL_CAPTURED = 8 };
 
 typedef struct {
-    int64_t stale_after;       /* ticks; 0: it does not go stale */
-    int32_t name;
+    int64_t stale_after;       /* ticks without an update until it is unknown; 0: never */
+    int32_t name;              /* its number in the monitor */
     int32_t flags;
-    int32_t births;            /* 0: nobody asks; 1: its first value; 2: and an update after it */
-    int32_t perishable;        /* its number among these; -1: it is none */
-    phased on_change;          /* atoms to be read again when its value changes */
-    phased on_update;          /* and at each update */
+    int32_t births;            /* updates awaited: 0; 1, its first value; 2, one more update */
+    int32_t perishable;        /* its number among the signals that can go stale; -1: it cannot */
+    phased on_change;          /* atoms to read again when its value changes */
+    phased on_update;          /* atoms to read again at each update */
     list on_birth;             /* nodes */
-    list needs;                /* atoms that speak of one position if this has a source */
+    list needs;                /* atoms that are momentary if this has a source: see `momentary` */
     int64_t spare;
 } signal_plan;
 
+/* MARKS: `updated` of it is asked; FIELDS: payloads are read; KEY: its payload selects an instance. */
 enum { EVENT_MARKS = 1, EVENT_FIELDS = 2, EVENT_KEY = 4 };
 
 typedef struct {
     int32_t name;
     int32_t flags;
-    int32_t field;             /* its first field, in the part */
+    int32_t field;             /* its first field, among those of the part's events */
     int32_t fields;
-    int32_t key;               /* the field, within the event, whose value says which instance it
-                                * concerns; -1: all */
+    int32_t key;               /* the field that selects an instance; -1: all instances see it */
     phased on_occurrence;      /* atoms */
     list needs;
     int32_t spare;
 } event_plan;
 
-/* What is read off the input at a position. */
+/* An atom is what a formula reads from the input at a position, e.g. one comparison. */
 enum {
-    ATOM_SIGNAL,               /* a boolean signal */
-    ATOM_REAL,                 /* a real signal and a constant */
-    ATOM_COMPARE,              /* two programs */
-    ATOM_PAYLOAD,              /* two programs that read fields, over all occurrences */
+    ATOM_SIGNAL,               /* a Boolean signal */
+    ATOM_REAL,                 /* a real signal compared with a constant */
+    ATOM_COMPARE,              /* two expressions compared */
+    ATOM_PAYLOAD,              /* the same over fields: TRUE if some combination of occurrences is */
     ATOM_EVENT,
     ATOM_KNOWN_SIGNAL,
     ATOM_KNOWN_EVENT,
@@ -161,108 +169,112 @@ enum {
 enum { CMP_LT, CMP_LE, CMP_EQ, CMP_NE, CMP_GE, CMP_GT, CMPS };
 
 typedef struct {
-    double constant;           /* of ATOM_REAL */
+    double constant;           /* ATOM_REAL only */
     int32_t op;
     int32_t compare;
     int32_t input;             /* the signal or event */
-    int32_t left;              /* places in SEC_CODE */
+    int32_t left;              /* programs: offsets in SEC_CODE */
     int32_t right;
-    int32_t momentary;         /* how many names with a source make it speak of one position only */
+    int32_t momentary;         /* names that make it momentary: valid at one position; 0: it stays */
     list events;               /* of ATOM_PAYLOAD */
-    phased nodes;              /* leaves that show it */
-    int64_t tells;             /* 1: somebody reads its numbers, which may be others though its truth
-                                * is the same */
+    phased nodes;              /* nodes to evaluate when it changes */
+    int64_t tells;             /* 1: windows read its numbers: evaluate its nodes at every reading */
 } atom_plan;
 
+/* Operators of formulas of present and past; plan.md lists the fields that each of them uses. */
 enum {
     NODE_LEAF, NODE_CONSTANT, NODE_UNBORN, NODE_LAPSED, NODE_ELAPSED,
     NODE_NOT, NODE_AND, NODE_OR, NODE_SURE, NODE_DOUBT, NODE_PREVIOUS,
-    NODE_EVER,                 /* since, without bounds */
-    NODE_EDGE,                 /* since from 0 on, or without an end */
-    NODE_STRETCH,              /* since in bounds */
-    NODE_WINDOW,               /* what the members of a window come to: window.c */
-    NODE_PASSED,               /* so long has passed as a number says */
-    NODE_COMPARED,             /* an atom that reads what windows come to */
+    NODE_EVER,                 /* `since` without bounds: one truth remembers it */
+    NODE_EDGE,                 /* `since` from 0 on, or without an end: one instant does */
+    NODE_STRETCH,              /* any other `since`: ranges of instants */
+    NODE_WINDOW,               /* an aggregate over a window of the past: window.c */
+    NODE_PASSED,               /* a duration that an expression yields has passed */
+    NODE_COMPARED,             /* a comparison that reads windows' results */
     NODES
 };
 
 typedef struct {
-    int64_t low;               /* of a `since`; of ELAPSED, how long; of WINDOW, the program of its
-                                * limit, or the place of its number; of PASSED, that of the instant, in ticks */
-    int64_t high;              /* RV_NEVER: none */
+    int64_t low;               /* ticks; WINDOW: program of its limit, or number of its result; PASSED:
+                                * program */
+    int64_t high;              /* ticks; RV_NEVER: unbounded */
     int32_t op;
-    int32_t a;                 /* of a leaf, COMPARED or PASSED, the atom; of WINDOW, that of the numbers, -1: none;
-                                * of a constant, the truth; DOUBT: pulse */
-    int32_t b;                 /* of a leaf, the truth before birth; DOUBT: no trigger is sure; of WINDOW,
-                                * a fold with marks; of PASSED, a tick more */
-    int32_t slot;              /* its memory; -1: it has none */
-    int32_t timer;             /* -1: time alone does not change it */
-    list operands;             /* of a leaf and UNBORN: signals times 2, plus 1 if an update after the
-                                * first value is asked for */
+    int32_t a;                 /* the atom, WINDOW: of its numbers or -1; CONSTANT: truth; DOUBT: 1, a
+                                * pulse */
+    int32_t b;                 /* LEAF: truth while unborn; WINDOW: fold, flags; DOUBT, PASSED: see
+                                * plan.md */
+    int32_t slot;              /* number of its memory, of its operator's kind; -1: none */
+    int32_t timer;             /* number of its timer; -1: time alone does not change it */
+    list operands;             /* nodes; LEAF, UNBORN: 2 * signal, plus 1 for its second update */
     phased parents;
     list links;                /* records of SEC_LINKS */
-    int32_t sum;               /* of WINDOW, the number of its tally; -1: it has none */
-    int32_t most;              /* of WINDOW, so many members are in it; 0: any number */
-    int32_t chosen;            /* of WINDOW, from which operand on they are asked of each occurrence */
-    int32_t since;             /* of WINDOW, the captured instant that it begins with; -1: another */
+    int32_t sum;               /* WINDOW: number of its exact sum; -1: none */
+    int32_t most;              /* WINDOW: bound on the number of members; 0: none */
+    int32_t chosen;            /* WINDOW: operands from here on are evaluated per occurrence */
+    int32_t since;             /* WINDOW: the captured instant at which it begins; -1: none */
     int32_t spare;
 } node_plan;
 
-/* What members of a window come to: how many they are; as ticks; together; that by how many; times ticks;
- * how far they spread; how far the last is from the first; how many there are of different ones; the least
- * and the greatest; the first. */
+/* Aggregates: number of members; ticks they lasted; sum; mean; sum times ticks; variance; last
+ * minus first; number of distinct values; minimum; maximum; first. */
 enum {
     FOLD_COUNT, FOLD_DURATION, FOLD_SUM, FOLD_MEAN, FOLD_INTEGRAL, FOLD_VARIANCE, FOLD_DELTA, FOLD_DISTINCT,
     FOLD_MIN, FOLD_MAX, FOLD_AGO,
     FOLDS
 };
-/* The limit is not enough; the second operand says whether a member counts; there is no limit, but a number
- * that others read. */
+/* WINDOW_FOLD masks the aggregate. STRICT: it has to exceed the limit; COUNTED: the second operand
+ * says whether a member counts; NUMBER: there is no limit, other nodes read the result. */
 enum { WINDOW_FOLD = 15, WINDOW_STRICT = 16, WINDOW_COUNTED = 32, WINDOW_NUMBER = 64 };
 
-/* WATCH alone: the number is that of a watch, and weights mean nothing. */
+/* What a node tells a judge when its truth changes. With LINK_WATCH, which stands alone, `judge` is
+ * the number of a watch and weights mean nothing. */
 enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };
 
 typedef struct {
     int32_t judge;
     int32_t kind;
-    int32_t worse[3];          /* what FALSE, UNKNOWN, TRUE add to its letter */
+    int32_t worse[3];          /* by truth FALSE, UNKNOWN, TRUE: what it adds to the letter */
     int32_t better[3];
 } link_plan;
 
+/* EPISODIC: an attempt lasts while its trigger holds; HIDDEN: judges attempts in doubt; BLURS_ANYWHERE:
+ * in a doubted instance any position may capture other values; IN_RUNS: may have a queue; TRACED: its
+ * moves are counted. */
 enum {
     JUDGE_PULSE = 1, JUDGE_EPISODIC = 2, JUDGE_HIDDEN = 4, JUDGE_BLURS_ANYWHERE = 8,
     JUDGE_IN_RUNS = 16, JUDGE_TRACED = 32
 };
 
-/* What judges the attempts of a requirement, or those in doubt. Nodes; -1: there is none. */
+/* A judge: what decides the attempts of a requirement, or its attempts in doubt. The first six
+ * fields are nodes; -1: none. */
 typedef struct {
-    int32_t trigger;           /* -1: the end of the trace */
-    int32_t again;             /* FALSE where no attempt follows a failure */
-    int32_t unborn;            /* TRUE while something that is owed had no value */
-    int32_t determined;        /* TRUE as soon as the trigger was TRUE or FALSE */
-    int32_t running;           /* FALSE where its episode is over */
-    int32_t blurs;             /* UNKNOWN where other values may be captured */
-    int32_t owner;             /* the judge that counts its attempts */
+    int32_t trigger;           /* starts attempts; -1: the end of the trace does */
+    int32_t again;             /* FALSE where no attempt follows a failure in an episode */
+    int32_t unborn;            /* TRUE while a signal of the consequent was never known */
+    int32_t determined;        /* TRUE from the first position at which the trigger was known */
+    int32_t running;           /* FALSE where an episode is over */
+    int32_t blurs;             /* UNKNOWN where one may have begun with other values */
+    int32_t owner;             /* the requirement's judge, which counts its attempts */
     int32_t requirement;
     int32_t flags;
-    int32_t automaton;         /* in SEC_AUTOMATA; -1: a network judges */
-    int32_t form;              /* in the part; -1: none */
-    int32_t diagram;           /* of its letters, in SEC_INTS; -1: a table has their classes */
-    list propositions;         /* nodes: its letters, and the digits of its diagram, are told by these */
-    list leaves;               /* nodes that it reads of the input, as they are told of */
-    int32_t outcomes[8];       /* at the end: verdict + 4 * decision, by 1 holds, 2 cannot pass, 4
-                                * cannot fail */
+    int32_t automaton;         /* number in SEC_AUTOMATA; -1: no automaton, `form` judges */
+    int32_t form;              /* number in the part; -1: none */
+    int32_t diagram;           /* offset in SEC_INTS of the diagram of letters; -1: a table */
+    list propositions;         /* nodes: the propositions of its letters, by digit of the diagram */
+    list leaves;               /* leaves below these, for notes */
+    int32_t outcomes[8];       /* verdict + 4 * decision, by the sum of: 1, kept; 2, it cannot pass; 4,
+                                * it cannot fail */
 } judge_plan;
 
-/* An automaton. A row is a location with a region for each clock. Offsets in SEC_INTS, but `cuts` and
- * `ages` in SEC_TICKS. */
+/* A deterministic timed automaton. A row of its table is a location with a region (an interval
+ * between two cuts) for each of its clocks. The int32 tables are given by offsets in SEC_INTS,
+ * `cuts` and `ages` by offsets in SEC_TICKS; automata of the same shape share them. */
 typedef struct {
     int32_t initial;
     int32_t locations;
-    int32_t clocks;            /* the most of a location */
-    int32_t classes;           /* of letters */
-    int32_t letters;           /* 0: a diagram classes them */
+    int32_t clocks;            /* the most that a location has */
+    int32_t classes;           /* number of letter classes */
+    int32_t letters;           /* letters in `class_of`; 0: a diagram maps them */
     int32_t rows;
     int32_t targets_count;
     int32_t class_of;          /* [letters] */
@@ -270,89 +282,91 @@ typedef struct {
     int32_t widths;            /* [locations]: how many clocks */
     int32_t strides;           /* [locations * clocks] */
     int32_t cut_first;         /* [locations * clocks + 1], within `cuts` */
-    int32_t cuts;              /* [..]: ages at which a clock enters the next region */
-    int32_t edges;             /* [rows * classes] */
+    int32_t cuts;              /* [..]: ages, in ticks, at which a clock enters the next region */
+    int32_t edges;             /* [rows * classes]: the transition */
     int32_t targets;           /* [targets_count]: locations */
-    int32_t sources;           /* [targets_count * clocks]: the old clock; -1: now */
-    int32_t time_values;       /* [rows]: a truth if time alone decides there */
-    int32_t clause_first;      /* [locations + 1]: of the rule for the end */
-    int32_t test_first;        /* [clauses + 1] */
-    int32_t tests;             /* [2 * tests]: clock (-1: none), whether the end counts */
-    int32_t ages;              /* [tests] */
+    int32_t sources;           /* [targets_count * clocks]: the old clock kept; -1: reset */
+    int32_t time_values;       /* [rows]: TRUE or FALSE if reaching the region decides, else UNKNOWN */
+    int32_t clause_first;      /* [locations + 1]: it holds at the end if some clause has */
+    int32_t test_first;        /* [clauses + 1] */ /* [clauses + 1]: all its tests true: */
+    int32_t tests;             /* [2 * tests]: clock (-1: true); 1: at the end, 0: as time came */
+    int32_t ages;              /* [tests]: the age that clock has at least */
     int32_t spare;
 } automaton_plan;
 
-/* A formula for a network: operands first, the last operator is the root. */
+/* A future formula for a network, or, if `windows` is not empty, for a chain of windows. Operands
+ * precede operators; the last operator is the root. */
 typedef struct {
-    int64_t reach;             /* ticks after which a position only leads on to later ones; NEVER: none */
+    int64_t reach;             /* ticks until a truth is known or equals a later one; NEVER */
     list operators;
     int32_t leaves;
-    int32_t looks_back;        /* whether it has to see what is before its attempts */
-    list windows;              /* of a chain, operators, the innermost first; empty: it is none */
-    int32_t base;              /* of a chain, what the innermost is over: a leaf, or a junction */
-    int32_t left;              /* of a chain that is kept up, the leaf that ends that; -1: none does */
-    int32_t excused;           /* and the leaf that is true where the windows do not matter; -1 */
+    int32_t looks_back;        /* 1: it has to see positions before its attempts */
+    list windows;              /* chain: its window operators, innermost first; empty: no chain */
+    int32_t base;              /* chain: the operand of the innermost window, a leaf or junction */
+    int32_t left;              /* chain: the leaf whose truth ends the obligation; -1: none */
+    int32_t excused;           /* chain: the leaf that makes windows irrelevant while true; -1 */
     int32_t spare;
 } form_plan;
 
+/* Operators of networks. UNTIL and SINCE have no bounds; bounded ones are composed with WINDOW and
+ * SHIFT. */
 enum { OP_LEAF, OP_JUNCTION, OP_WINDOW, OP_SHIFT, OP_UNTIL, OP_SINCE, OPS };
 
 typedef struct {
-    int64_t low;               /* distances in ticks, or in positions if there is a gap */
+    int64_t low;               /* bounds in ticks, or in positions if there is a gap */
     int64_t high;
-    int64_t over;              /* ticks after which no further position comes to lie in a window; -1 in
-                                * the past; of a shift, ticks after which it speaks of something */
+    int64_t over;              /* ticks until no position can enter the window, or until the shifted
+                                * position; -1: past */
     int32_t kind;
-    int32_t turned;            /* all are asked for, or it is the dual */
-    int32_t kept;              /* whether the end of the trace counts as true for it */
-    int32_t left;              /* operators; of a leaf, its number */
-    int32_t right;             /* of a leaf, the node; -1: a constant */
-    list operands;             /* of a junction */
-    int32_t values[3];         /* of a leaf by truth: 1 if true for the worse, 2 for the better */
+    int32_t turned;            /* 1: the dual: `all` instead of `some` of the operands or positions */
+    int32_t kept;              /* 1: counts as true beyond the end of the trace */
+    int32_t left;              /* operand; of a leaf, its number among the leaves */
+    int32_t right;             /* second operand; of a leaf, its node, -1: constant */
+    list operands;             /* JUNCTION only */
+    int32_t values[3];         /* LEAF, by truth: 1 if true for the worse, plus 2 for the better */
 } operator_plan;
 
-/* A formula that is watched: a bin, or an occasion at which bins are looked at. */
+/* Coverage: a formula to watch, which is a bin or an occasion. */
 typedef struct {
     int32_t node;
-    int32_t is_pulse;          /* 1: it is over at the next position */
-    list groups;               /* of the part, that are looked at where it changes, or a pulse goes on */
+    int32_t is_pulse;          /* 1: true for one position only */
+    list groups;               /* groups to evaluate when it changes or repeats */
 } watch_plan;
 
-/* A coverpoint, or the cross of several: an item is a bin of each axis, the last one counted through
- * first. */
+/* Coverage: a coverpoint, or a cross of several. An item is one bin of each axis; the last axis
+ * varies fastest. */
 typedef struct {
-    int32_t occasion;          /* the watch that says where it is looked at; -1: everywhere */
-    int32_t first;             /* its first item, among those of the part's groups */
-    list axes;                 /* pairs: the first watch of an axis, and how many it has */
+    int32_t occasion;          /* the watch at which bins are sampled; -1: they are sampled always */
+    int32_t first;             /* number of its first item among those of all groups */
+    list axes;                 /* pairs: an axis's first watch, and its number of watches */
 } group_plan;
 
-/* What is measured of the attempts of a judge: a formula as a network has it. */
+/* Margins of a judge: its formula as a network, with measures for leaves. */
 typedef struct {
     list operators;
-    list measures;             /* records of SEC_MEASURES, one for each leaf in the order of their
-                                * numbers */
-    int32_t looks_back;        /* whether it has to see what is before its attempts */
+    list measures;             /* range of SEC_MEASURES, by leaf */
+    int32_t looks_back;        /* it has to see positions before its attempts */
     int32_t spare;
 } margin_plan;
 
 enum {
-    MEASURE_CONSTANT,          /* true */
-    MEASURE_TRUTH,             /* that of a node, infinite */
-    MEASURE_DENIED,            /* whether a node is FALSE for sure */
-    MEASURE_DISTANCE,          /* by how much the comparison that a leaf shows holds */
+    MEASURE_CONSTANT,          /* true: +infinity */
+    MEASURE_TRUTH,             /* a node's truth: + or -infinity */
+    MEASURE_DENIED,            /* whether a node is FALSE: + or -infinity */
+    MEASURE_DISTANCE,          /* the distance by which a leaf's comparison holds */
     MEASURES
 };
 
-/* What a leaf is measured by. */
+/* The measure of a leaf. */
 typedef struct {
-    double factor;             /* of a distance, that makes base units of it */
+    double factor;             /* DISTANCE: converts it to base units */
     int32_t kind;
-    int32_t turned;            /* whether it is negated */
-    int32_t node;              /* in the part; -1: of a constant */
+    int32_t turned;            /* 1: the leaf is negated */
+    int32_t node;              /* number in the part; -1: CONSTANT */
     int32_t spare;
 } measure_plan;
 
-/* A constant. */
+/* A constant of a program. */
 typedef struct {
     int64_t kind;
     union {
@@ -361,11 +375,11 @@ typedef struct {
     } as;
 } number_plan;
 
-/* Programs of a stack: each word is an operation and 256 times its argument; FIELD has the event as
- * its argument, and the number of the field within that in the next word. */
+/* Expressions as programs of a stack machine. A word is an operation plus 256 times its argument;
+ * CODE_FIELD has the event as argument and the field within it in the next word. */
 enum {
     CODE_END, CODE_NUMBER, CODE_SIGNAL, CODE_CAPTURED,
-    CODE_FIELD,                /* of the occurrence at hand; while capturing, of the last one */
+    CODE_FIELD,                /* of the occurrence being compared; in a `let`, of the last one */
     CODE_PREV, CODE_DELTA, CODE_RATE,
     CODE_ADD, CODE_SUB, CODE_MUL, CODE_DIV, CODE_NEG, CODE_ABS, CODE_MIN, CODE_MAX, CODE_SQRT,
     CODE_HYPOT, CODE_FLOOR, CODE_CEIL, CODE_ROUND, CODE_SIGN, CODE_MOD, CODE_CLAMP,
@@ -373,15 +387,16 @@ enum {
     CODE_POW, CODE_ANGLE_BETWEEN, CODE_DISTANCE_ON_EARTH,
     CODE_BIT_AND, CODE_BIT_OR, CODE_BIT_XOR, CODE_SHIFT_LEFT, CODE_SHIFT_RIGHT, CODE_BIT,
     CODE_NOW,                  /* ticks since the first position */
-    CODE_WINDOW,               /* what a window comes to */
+    CODE_WINDOW,               /* the result of a WINDOW_NUMBER node */
     CODES
 };
+/* Depth of the stack; programs stay below it. */
 #define PROGRAM_DEPTH 32
-/* Events whose fields one comparison may read. */
+/* Most events whose fields one comparison may read: combinations multiply. */
 #define PAYLOAD_EVENTS_MOST 8
-/* Axes that one group may have. */
+/* Most axes of a group. */
 #define AXES_MOST 64
-/* Locations of an automaton whose moves may be counted. */
+/* Most locations of an automaton whose moves are counted: counts are quadratic in them. */
 #define TRACED_MOST 64
 
 #endif

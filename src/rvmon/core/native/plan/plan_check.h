@@ -1,23 +1,25 @@
-/* The check of a plan: what plan.c, plan_formulas.c and plan_judges.c share. */
+/* What the files of the plan check share. Each check_... returns false as soon as a record is
+ * wrong. They rely on each other's order: wrong_in_part in plan.c runs them so that a check reads
+ * only what earlier ones have validated. */
 #ifndef RVMON_PLAN_CHECK_H
 #define RVMON_PLAN_CHECK_H
 
 #include "basics.h"
 
 #define MOST INT32_MAX
-/* Fields that all events have, and values that attempts of a requirement capture: so many at most. */
+/* Limits on all event fields, and on the values that a requirement captures: keep sizes in 32 bits. */
 #define FIELDS_MOST (1 << 20)
 #define CAPTURED_MOST 1023
-/* Items that all groups of a part have: so many at most. */
+/* Limit on the coverage items of a part. */
 #define ITEMS_MOST (1 << 22)
 
-/* Whether so many records from `first` on lie in a section. */
+/* Whether a section holds `count` records from `first` on. */
 static inline bool has(const plan *p, int32_t which, int64_t first, int64_t count)
 {
     return (first >= 0) && (count >= 0) && (first + count <= p->counts[which]);
 }
 
-/* A list of numbers that are at least `low` and less than `behind`. */
+/* Whether a list lies in SEC_LISTS and all its numbers are in [low, behind). */
 static inline bool lists(const plan *p, list l, int64_t low, int64_t behind)
 {
     int32_t i;
@@ -32,12 +34,13 @@ static inline bool lists(const plan *p, list l, int64_t low, int64_t behind)
     return true;
 }
 
+/* The same for the lists of both phases. */
 static inline bool both(const plan *p, const list *phases, int64_t low, int64_t behind)
 {
     return lists(p, phases[0], low, behind) && lists(p, phases[1], low, behind);
 }
 
-/* Whether numbers ascend from 0 to the end of what they count. */
+/* Whether count + 1 offsets start at 0, never decrease, and end at `end`. */
 static inline bool ascends(const int32_t *first, int64_t count, int64_t end)
 {
     int64_t i;
@@ -70,7 +73,7 @@ bool check_forms(const plan *p, const part_plan *x);
 bool check_watches(const plan *p, const part_plan *x);
 bool check_groups(const plan *p, const part_plan *x);
 
-/* ---- plan_formulas.c: what is measured */
+/* ---- plan_formulas.c: margins */
 bool check_margins(const plan *p, const part_plan *x);
 
 #endif

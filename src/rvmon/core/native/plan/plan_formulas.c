@@ -1,9 +1,10 @@
-/* The check of what a part reads: inputs, programs, atoms, nodes. */
+/* Validation of a part's inputs, expression programs, atoms, nodes and margins. */
 #include "input/input.h"
 #include "plan/plan_check.h"
 
 #include <math.h>
 
+/* Fields of a part's events are numbered without gaps, so that they fit its `fields`. */
 bool check_inputs(const plan *p, const part_plan *x)
 {
     int32_t i;
@@ -33,8 +34,8 @@ bool check_inputs(const plan *p, const part_plan *x)
     return fields == x->fields;
 }
 
-/* Walk a program: its stack neither runs empty nor over. `allowed`: the events of which it may read
- * fields; NULL: all. */
+/* Check a program: operands are in range, it ends, and its stack neither underflows nor reaches
+ * PROGRAM_DEPTH. No jumps, so one pass over the words is enough. */
 static bool check_program(const plan *p, const part_plan *x, int64_t place)
 {
     int32_t depth = 0;
@@ -123,7 +124,8 @@ bool check_atoms(const plan *p, const part_plan *x)
     return true;
 }
 
-/* How many operands an operator has: at least, and at most. */
+/* Operands of a node: as many as its operator needs, each before the node itself. So evaluation in
+ * index order terminates and needs no recursion. */
 static bool check_operands(const plan *p, const part_plan *x, const node_plan *n, int32_t place)
 {
     switch (n->op) {
@@ -143,7 +145,8 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
     }
 }
 
-/* The memory that a node has, and its timer; each timer is one node's. */
+/* Memory and timer of a node: the kind of memory that its operator needs. Timers have to be
+ * numbered in the order of their nodes, which makes each of them one node's. */
 static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_nodes)
 {
     int32_t slots = 0;
@@ -172,8 +175,8 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
     return n->timer == *timed_nodes - 1;
 }
 
-/* What a node adds to the letter of a judge, if that has a table of letters; else nothing. So no sum
- * of them leaves 32 bits; see `check_letters`. */
+/* What a link adds to a letter. Weights are 0 unless a table of letters classes them; then
+ * check_letters bounds their sums, so that a running sum stays in 32 bits. */
 static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
 {
     const judge_plan *j = &p->judges[x->judges.first + l->judge];
@@ -204,7 +207,7 @@ static bool check_links(const plan *p, const part_plan *x, list links)
     return true;
 }
 
-/* An atom of which numbers are read. */
+/* An atom whose left program yields the numbers of a window or PASSED node. */
 static bool check_read(const plan *p, const part_plan *x, int32_t number)
 {
     const atom_plan *a;
@@ -215,13 +218,14 @@ static bool check_read(const plan *p, const part_plan *x, int32_t number)
     return (a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD);
 }
 
-/* How much time has to pass, and the program of the instant. */
+/* Of PASSED: `a` yields the duration, `low` is the program of the instant it counts from. */
 static bool check_passed(const plan *p, const part_plan *x, const node_plan *n)
 {
     return check_read(p, x, n->a) && is_within(n->b, 0, 2) && check_program(p, x, n->low);
 }
 
-/* What members are, and the program of the limit. */
+/* Of WINDOW: the aggregate, its limit or result, its members. Minimum, maximum and first value have
+ * no order with a limit here: they exist as WINDOW_NUMBER only. */
 static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
@@ -277,9 +281,9 @@ bool check_nodes(const plan *p, const part_plan *x)
     return timed_nodes == x->timers;
 }
 
-/* The check of what is measured. */
+/* Margins. */
 
-/* What a measure reads is a node, a distance that of two numbers. */
+/* A measure reads a node; a DISTANCE a comparison of two numbers. */
 static bool check_measure(const plan *p, const part_plan *x, const measure_plan *m)
 {
     const node_plan *n;
@@ -304,7 +308,9 @@ static bool check_measure(const plan *p, const part_plan *x, const measure_plan 
     return (op == ATOM_REAL) || (op == ATOM_COMPARE) || (op == ATOM_PAYLOAD);
 }
 
-/* Each leaf has a measure of its own, and what is moved along is a sweep. */
+/* The formula that is measured: leaves are numbered in their order, one measure each. A SHIFT
+ * stands over an UNTIL ahead or a SINCE back, with a distance other than 0: what the sweep of
+ * margin_windows.c handles. */
 static bool check_margin(const plan *p, const part_plan *x, const margin_plan *g)
 {
     const operator_plan *nodes;

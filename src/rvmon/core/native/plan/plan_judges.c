@@ -1,4 +1,5 @@
-/* The check of what judges: automata, diagrams, networks and chains. */
+/* Validation of what decides attempts: automata, letter diagrams, networks and chains; and of
+ * coverage. */
 #include "plan/plan_check.h"
 
 static bool has_ints(const plan *p, int64_t first, int64_t count)
@@ -20,7 +21,8 @@ static bool ints_within(const plan *p, int64_t first, int64_t count, int64_t low
     return true;
 }
 
-/* The regions of each location lead to rows that there are. */
+/* The row of a location is its base plus, for each clock, the cuts passed times a stride: the
+ * largest such sum has to be a row of the table. Strides are non-negative, so the others are, too. */
 static bool check_rows(const plan *p, const automaton_plan *a)
 {
     int64_t last = 0;
@@ -57,7 +59,7 @@ static bool check_rows(const plan *p, const automaton_plan *a)
     return has(p, SEC_TICKS, a->cuts, last);
 }
 
-/* The rule for the end of a trace. */
+/* The rule for the end of the trace: clauses of a location, tests of a clause. */
 static bool check_clauses(const plan *p, const automaton_plan *a)
 {
     int64_t clauses;
@@ -102,7 +104,10 @@ bool check_automaton(const plan *p, const automaton_plan *a)
            && check_clauses(p, a);
 }
 
-/* A diagram leads down to classes: each child lies behind the node that it is of. */
+/* A diagram maps letters to classes through decisions. Each child lies behind its parent, so
+ * following them ends; decisions are contiguous, so one scan up to the farthest child checks all. A
+ * record: the proposition; the digit for each truth, for the worse and for the better reading; the
+ * number of children; the children. */
 static bool check_diagram(const plan *p, const judge_plan *j, int64_t at, int32_t classes)
 {
     const int64_t end = p->counts[SEC_INTS];
@@ -136,7 +141,8 @@ static bool check_diagram(const plan *p, const judge_plan *j, int64_t at, int32_
     return true;
 }
 
-/* What the letters of a judge can add up to lies in the table of classes. */
+/* Whether every letter that a judge's links can add up to is in its table: the least and the
+ * greatest sum, for both readings. */
 static bool check_letters(const plan *p, const part_plan *x, int32_t judge_number, int32_t letters)
 {
     int64_t low[2] = {0, 0};
@@ -170,11 +176,14 @@ static bool check_letters(const plan *p, const part_plan *x, int32_t judge_numbe
     return (low[0] >= 0) && (low[1] >= 0) && (high[0] < letters) && (high[1] < letters);
 }
 
+/* A node of the part, or -1 for none. */
 static bool is_node(const part_plan *x, int32_t node)
 {
     return is_within(node, -1, x->nodes.count);
 }
 
+/* The nodes, engine and tables of a judge. An episodic judge has to say when episodes end; captured
+ * values can blur only where there is a trigger. */
 bool check_judge(const plan *p, const part_plan *x, int32_t number)
 {
     const judge_plan *j = &p->judges[x->judges.first + number];
@@ -231,7 +240,7 @@ static bool check_operator(const plan *p, const part_plan *x, const operator_pla
     }
 }
 
-/* A chain: windows one over the other over leaves and junctions of them. */
+/* A chain: windows each over the one before, the innermost over a leaf or a junction. */
 static bool check_chain(const plan *p, const form_plan *f)
 {
     const operator_plan *nodes = &p->operators[f->operators.first];
@@ -260,7 +269,8 @@ static bool check_chain(const plan *p, const form_plan *f)
     return true;
 }
 
-/* The operators of a formula with so many leaves: operands before them, and none too many. */
+/* The operators of a formula with `leaves` leaves: operands precede their operators, and a state
+ * per leaf needs no more room than one per operator. */
 bool check_operators(const plan *p, const part_plan *x, list operators, int32_t leaves)
 {
     int32_t k;
@@ -301,7 +311,8 @@ bool check_watches(const plan *p, const part_plan *x)
     return true;
 }
 
-/* The items of a group; 0: its axes are wrong, or there are too many. */
+/* The number of items of a group; 0 if its axes are wrong or the product exceeds ITEMS_MOST. The
+ * limit is divided before it is compared, so the product does not overflow. */
 static int64_t items_of_group(const plan *p, const part_plan *x, const group_plan *g)
 {
     const int32_t *axes = LIST(p, g->axes);

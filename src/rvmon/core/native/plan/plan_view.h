@@ -1,39 +1,41 @@
-/* Where memory comes from, and a plan with a pointer for each of its sections. */
+/* The arena that all memory of a monitor comes from, and typed views of the plan. */
 #ifndef RVMON_PLAN_VIEW_H
 #define RVMON_PLAN_VIEW_H
 
 #include "margins/measuring.h"
 
-/* ---- memory.c: blocks of a few sizes, all given back at once */
+/* ---- memory.c: blocks of a few sizes, all released at once */
 
-#define SIZE_CLASSES (32 * sizeof(size_t)) /* four for each of its bits */
+#define SIZE_CLASSES (32 * sizeof(size_t)) /* four classes per power of two */
 
 typedef struct chunk {
     struct chunk *next;
-    struct chunk **link;       /* what points to it */
+    struct chunk **link;       /* what points to it: `chunks` of the arena, or `next` of the one
+                                * before */
 } chunk;
 
 typedef struct {
-    rv_memory from;
+    rv_memory from;            /* where chunks come from */
     chunk *chunks;
-    char *free;
-    size_t left;
-    size_t used;               /* all that was handed out anew, together */
-    void *spare[SIZE_CLASSES];
+    char *free;                /* unused rest of the newest chunk */
+    size_t left;               /* its size */
+    size_t used;               /* bytes ever handed out, less those reused */
+    void *spare[SIZE_CLASSES]; /* by size class, list of blocks given back */
 } arena;
 
-void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
-void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted); /* NULL: memory is short, it stays */
+void *arena_take(arena *a, size_t size);          /* zeroed; NULL: memory is short */
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted); /* NULL: memory is short, and
+                                                                       * `old` stays valid */
 void arena_give(arena *a, void *block, size_t size);
-void arena_move(arena *to, const arena *from);    /* `from` is not used any more */
-void arena_release(arena *a);                     /* all of it */
+void arena_move(arena *to, const arena *from);    /* `from` must not be used any more */
+void arena_release(arena *a);                     /* gives all memory back */
 
-/* ---- plan.c: the plan, checked, with a pointer for each section */
+/* ---- plan.c: the checked plan, with a typed pointer for each section */
 
-/* Clocks that one automaton may have. */
+/* Most clocks of one automaton: lets a step keep the old ones on the stack. */
 #define CLOCKS_MOST 64
 
-/* An automaton with a pointer for each of its tables; see `automaton_plan`. */
+/* An automaton with a pointer for each of its tables; `automaton_plan` says what each holds. */
 typedef struct {
     const int32_t *class_of;
     const int32_t *bases;
@@ -49,31 +51,34 @@ typedef struct {
     const int32_t *test_first;
     const int32_t *tests;
     const int64_t *ages;
-    int64_t gap;
-    int64_t step;
+    int64_t gap;               /* of the plan */
+    int64_t step;              /* ticks from a position to the next: `gap`, or 1 */
     int32_t initial;
     int32_t locations;
     int32_t clocks;
     int32_t classes;
 } machine;
 
-/* A comparison of a signal with a constant, which one leaf shows; a Boolean one is compared with 0. */
+/* A comparison of a signal with a constant whose one dependent is a leaf: see find_quick in
+ * input/atoms.c. A Boolean signal is compared with 0. */
 typedef struct {
     double constant;
-    uint64_t dirty;            /* its leaf, among those to be worked out, as a bit of a word */
-    uint64_t dirty_word;       /* that word, likewise */
-    int32_t word;
+    uint64_t dirty;            /* the bit of its leaf in that word of run.dirty */
+    uint64_t dirty_word;       /* the bit of that word in its word of run.dirty_words */
+    int32_t word;              /* index of that word in run.dirty */
     int32_t atom;
-    uint8_t truths[3];         /* by how a value stands to the constant */
+    uint8_t truths[3];         /* truth if the value is equal, less, greater: by IS_EQUAL, ... */
 } quick_compare;
 
-/* A signal that a few of these read and nothing else, once all is born. */
+/* A signal that in phase 1 is read by a few such comparisons only, so that an update can skip the
+ * general path. */
 typedef struct {
     const quick_compare *compares;
     int32_t count;
-    int32_t kind;              /* of its values; RV_UNKNOWN: it is no such signal */
+    int32_t kind;              /* kind of its values; RV_UNKNOWN: it is not such a signal */
 } quick_signal;
 
+/* A part of the plan: its ranges of sections as pointers, and tables derived from them once. */
 typedef struct {
     const part_plan *plan;
     const signal_plan *signals;
@@ -84,19 +89,19 @@ typedef struct {
     const form_plan *forms;
     const watch_plan *watches;
     const group_plan *groups;
-    machine *machines;         /* by judge that has an automaton */
-    int32_t *timed;            /* by timer, the node */
-    int32_t *perishable;       /* by number among these, the signal */
+    machine *machines;         /* by judge; unset where there is no automaton */
+    int32_t *timed;            /* by timer number, its node */
+    int32_t *perishable;       /* by number among those that go stale, the signal */
     quick_signal *quick;       /* by signal */
-    int32_t *networked;        /* judges that networks are, neither automata nor chains */
+    int32_t *networked;        /* judges decided by a network (not by a chain) */
     int32_t networked_count;
-    int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
-    int32_t logged;            /* so many these are */
-    bool has_episodes;         /* whether some attempt runs until its trigger is false */
-    margin_readers readers[2]; /* by phase */
-    bool restarts;             /* whether some failure may be followed by another attempt */
-    bool is_traced;            /* whether it is counted where some attempts go */
-    bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
+    int32_t *slots;            /* by node, its slot in truth_log; -1: notes do not describe it */
+    int32_t logged;            /* number of such slots */
+    bool has_episodes;         /* some judge is EPISODIC */
+    margin_readers readers[2]; /* who reads what for margins, by phase */
+    bool restarts;             /* some judge restarts after a failure */
+    bool is_traced;            /* some judge is TRACED */
+    bool is_watched;           /* it has watches or records truths over time */
 } part;
 
 typedef struct {
@@ -121,9 +126,9 @@ typedef struct {
     const int32_t *lists;
     const int32_t *ints;
     const int64_t *ticks;
-    const margin_plan *margins; /* by judge */
+    const margin_plan *margins; /* by judge over all parts */
     const measure_plan *measures;
-    int64_t counts[SECTIONS];
+    int64_t counts[SECTIONS];  /* records of each section */
     int32_t part_count;
 } plan;
 
