@@ -195,14 +195,11 @@ enum {
 };
 
 typedef struct {
-    int64_t low;               /* ticks; WINDOW: program of its limit, or number of its result; PASSED:
-                                * program */
+    int64_t low;               /* ticks; WINDOW, PASSED: a program (WINDOW_NUMBER: its result) */
     int64_t high;              /* ticks; RV_NEVER: unbounded */
     int32_t op;
-    int32_t a;                 /* the atom, WINDOW: of its numbers or -1; CONSTANT: truth; DOUBT: 1, a
-                                * pulse */
-    int32_t b;                 /* LEAF: truth while unborn; WINDOW: fold, flags; DOUBT, PASSED: see
-                                * plan.md */
+    int32_t a;                 /* the atom; CONSTANT: the truth; DOUBT: 1, a pulse; see plan.md */
+    int32_t b;                 /* LEAF: truth while unborn; WINDOW: fold and flags; see plan.md */
     int32_t slot;              /* number of its memory, of its operator's kind; -1: none */
     int32_t timer;             /* number of its timer; -1: time alone does not change it */
     list operands;             /* nodes; LEAF, UNBORN: 2 * signal, plus 1 for its second update */
