@@ -101,20 +101,29 @@ def gripper_opening(scene: Scene) -> float:
 
 def hand_offset(scene: Scene) -> tuple[float, float]:
     """Metres between the mass centres of gripper and nearest hand on each axis, without sign."""
-    x, z = gripper_centre(scene)
-    hands = [scene.hand] if scene.beside is None else [scene.hand, scene.beside.other_hand]
-    offsets = [(abs(hand.position.x - x), abs(hand.position.y - z)) for hand in hands]
-    return min(offsets, key=lambda offset: math.hypot(*offset))
+    return _hand_offset(scene, gripper_centre(scene))
 
 
-def person_distance(scene: Scene) -> float:
-    """Metres from the gripper's mass centre to the nearest of hands, head and forearm's axis."""
+def person_distances(scene: Scene) -> tuple[float, float]:
+    """Metres from the gripper's mass centre to the nearest hand, and to what of the person is.
+
+    That is a hand, the head or the forearm's axis.
+    """
     centre = pymunk.Vec2d(*gripper_centre(scene))
-    parts = [math.hypot(*hand_offset(scene)), (scene.head.position - centre).length]
+    to_hand = math.hypot(*_hand_offset(scene, centre))
+    parts = [to_hand, (scene.head.position - centre).length]
     if scene.beside is not None:
         (bone,) = scene.beside.forearm.shapes
         parts.append(bone.point_query(centre).distance + p.LOWER_ARM_RADIUS)
-    return min(parts)
+    return to_hand, min(parts)
+
+
+def _hand_offset(scene: Scene, centre: tuple[float, float]) -> tuple[float, float]:
+    hands = [scene.hand] if scene.beside is None else [scene.hand, scene.beside.other_hand]
+    offsets = [
+        (abs(x - centre[0]), abs(z - centre[1])) for x, z in (hand.position for hand in hands)
+    ]
+    return min(offsets, key=lambda offset: math.hypot(*offset))
 
 
 def beside_distance(scene: Scene, x: float, z: float) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from handover.world import parameters as p
@@ -12,9 +11,8 @@ from handover.world.measures import (
     gaze_is_ok,
     gripper_force,
     gripper_opening,
-    hand_offset,
     location_is_ok,
-    person_distance,
+    person_distances,
     tool_point,
     tool_speed,
 )
@@ -105,6 +103,7 @@ class Truth:
         hand, forearm, other_hand = peaks
         scene = self._scene
         grip = gripper_force(scene)
+        to_hand, to_person = person_distances(scene)
         return {
             "piece_height": round(scene.piece.position.y, 3),
             "gripper_holds": grip >= p.PRESSURE_MIN,
@@ -113,8 +112,8 @@ class Truth:
             "hand_force": round(max(hand, other_hand)),
             "other_hand_force": round(other_hand),
             "forearm_force": round(forearm),
-            "true_distance": round(math.hypot(*hand_offset(scene)), 3),
-            "person_distance": round(person_distance(scene), 3),
+            "true_distance": round(to_hand, 3),
+            "person_distance": round(to_person, 3),
             **self._beside(),
             "true_gaze": gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),

@@ -13,7 +13,7 @@ from handover.driver.play import begun
 from handover.generator.abstract_test import directed
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults
-from handover.world.measures import contact_forces, person_distance
+from handover.world.measures import contact_forces, person_distances
 from handover.world.world import World
 
 TESTS = {test.name: test for test in directed()}
@@ -53,9 +53,10 @@ def test_the_nearest_part_is_the_one_that_counts() -> None:
     """In front of a person it is the hand, beside one it is here the other hand."""
     faults = {at: SceneFaults(beside_m=at, far_hand=True) for at in (0.5, 0.7)}
     near, far = (
-        person_distance(World(random.Random(1), scene_faults=one).scene) for one in faults.values()
+        person_distances(World(random.Random(1), scene_faults=one).scene)[1]
+        for one in faults.values()
     )
-    in_front = person_distance(World(random.Random(1)).scene)
+    in_front = person_distances(World(random.Random(1)).scene)[1]
     assert near < far < in_front
 
 
