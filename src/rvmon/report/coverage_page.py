@@ -120,7 +120,8 @@ def coverage_page(summary: Summary) -> str:
     """Write the page; it needs no script and nothing but itself."""
     model = summary.coverage.model
     numbered = list(enumerate(model.groups.values()))
-    groups = [(number, group, summary.scores[group.name]) for number, group in numbered]
+    scored = [(number, group, summary.scores[group.name]) for number, group in numbered]
+    groups = [one for one in scored if one[2].items]
     whole = [one for one in groups if one[2].covered == one[2].items]
     rest = [one for one in groups if one not in whole]
     hides_whole = len(groups) > OPEN

@@ -144,11 +144,13 @@ def _groups(summary: Summary, console: Console) -> Table:
         table.add_column("", "" if summary.is_empty else _bar(summary.share, console), no_wrap=True)
     for group in summary.coverage.model.groups.values():
         score = summary.scores[group.name]
+        if not score.items:
+            continue  # nothing in it is a goal
         name = group.name if group.weight else f"{group.name} (not in the total)"
         cells: list[str | Text] = [name]
         cells += [group.subject.value] if wide else []
         cells += [f"{score.covered:,} of {score.items:,}", percent_text(score.covered, score.items)]
-        cells += [_bar(score.covered / score.items if score.items else 1, console)] if wide else []
+        cells += [_bar(score.covered / score.items, console)] if wide else []
         table.add_row(*cells)
     return table
 

@@ -8,8 +8,9 @@ from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import STEERING, hostile_names
 
 from rvmon.cli import main
-from rvmon.coverage import Group, Item, Subject, TestRecord, combination, group_of, model_of
+from rvmon.coverage import Group, Hit, Item, Subject, TestRecord, combination, group_of, model_of
 from rvmon.coverage.database import Database, read
+from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict import Verdict
 
 
@@ -40,6 +41,24 @@ def test_the_overview(door, capsys):
     assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
     assert "crashed: ZeroDivisionError: the gap is 0 1 test: wild-2" in lines
     assert lines[-1] == "what is missing: --holes"
+
+
+def test_a_group_without_goals_is_no_row(tmp_path, capsys):
+    """Nothing was to be covered there: neither the terminal nor the page calls that 100 %."""
+    path = tmp_path / "base.cov"
+    groups = [group_of("near", Subject.COVERPOINT, [Item("yes")])]
+    groups.append(group_of("pairs", Subject.TRANSITIONS, []))
+    groups.append(group_of("seen", Subject.COVERPOINT, [Item("light", BinKind.IGNORE)]))
+    with Database.open(path) as database:
+        database.declare(model_of(groups))
+        database.record(TestRecord("one", when=0), {"seen": {"light": Hit(1)}})
+    page = tmp_path / "base.html"
+    code, lines = shown(capsys, str(path), "--report", str(page))
+    assert code == 0
+    assert not [line for line in lines if line.startswith(("pairs", "seen"))]
+    assert "near coverpoint 0 of 1 0 % ░░░░░░░░░░░░░░░░░░░░" in lines
+    assert "0 of 1</td>" in page.read_text()
+    assert "0 of 0</td>" not in page.read_text()
 
 
 def test_holes_stand_with_their_reasons(door, capsys):
