@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import pickle
 import time
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import replace
 from functools import partial
@@ -273,19 +274,54 @@ def outcomes(
     )
 
 
-def play_apart(campaign: Campaign, job: Job) -> Outcome:
-    """Play one test in a process of its own, which is ended if it takes too long.
+class Waiting(Iterator[Job]):
+    """Tests to be played; there may be more after it was empty, as each batch follows the last."""
+
+    def __init__(self) -> None:
+        self.jobs: deque[Job] = deque()
+
+    def __next__(self) -> Job:
+        if not self.jobs:
+            raise StopIteration
+        return self.jobs.popleft()
+
+
+class PlayerApart:
+    """Plays one test after the other in another process, which is ended if one takes too long.
+
+    It is begun anew after a test that ended it, or that cannot be played.
 
     Args:
-        campaign: that the test is of; its code is not measured.
-        job: what is played.
-
-    Raises:
-        RvmonError: the system cannot be made, or the process not be begun.
+        campaign: that the tests are of; its code is not measured.
+        robot: of its robots the one that is tested.
     """
-    alone = replace(campaign, robots={job.robot: campaign.robots[job.robot]}, code=None)
-    with closing(outcomes(alone, [job], jobs=1, controls=False)) as results:
-        return next(results)[0]
+
+    def __init__(self, campaign: Campaign, robot: str) -> None:
+        self._campaign = replace(campaign, robots={robot: campaign.robots[robot]}, code=None)
+        self._robot = robot
+        self._waiting = Waiting()
+        self._results = self._begun()
+
+    def play(self, test: Test) -> Outcome:
+        """What came of a test.
+
+        Raises:
+            TestError: it cannot be played.
+            RvmonError: the system cannot be made, or the process not be begun.
+        """
+        self._waiting.jobs.append(Job(test, self._robot))
+        try:
+            return next(self._results)[0]
+        except TestError:
+            self._results = self._begun()
+            raise
+
+    def close(self) -> None:
+        """End the process."""
+        self._results.close()
+
+    def _begun(self) -> Generator[tuple[Outcome, Outcome | None], None, None]:
+        return outcomes(self._campaign, self._waiting, jobs=1, controls=False)
 
 
 def _without_result(robots: Mapping[str, Robot], job: Job, ended: Ended) -> tuple[Outcome, None]:

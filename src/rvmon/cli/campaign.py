@@ -190,7 +190,7 @@ def _replay(arguments: Namespace) -> int:
 def _shrink(arguments: Namespace) -> int:
     from rvmon.cli.campaign_one_test import shrink_file
 
-    return shrink_file(arguments.campaign(arguments), arguments)
+    return shrink_file(_judged_by(arguments), arguments)
 
 
 def _mutate(arguments: Namespace) -> int:
@@ -228,8 +228,10 @@ def _one_robot(campaign: Campaign, arguments: Namespace) -> str:
 
 
 def _judged_by(arguments: Namespace) -> Campaign:
-    """The campaign, by other requirements for all of its robots if some are given."""
+    """The campaign with the time that is given, and other requirements for all of its robots."""
     campaign: Campaign = arguments.campaign(arguments)
+    if getattr(arguments, "timeout", None) is not None:
+        campaign = replace(campaign, timeout_s=arguments.timeout)
     spec = getattr(arguments, "spec", None)
     if spec is None:
         return campaign
@@ -247,8 +249,7 @@ def _as_asked(arguments: Namespace) -> Campaign:
     refuse_unknown(arguments.campaign(arguments))
     if arguments.junit is not None:
         refuse_no_file(arguments.junit)
-    campaign = _judged_by(arguments)
-    return campaign if arguments.timeout is None else replace(campaign, timeout_s=arguments.timeout)
+    return _judged_by(arguments)
 
 
 def _words(arguments: Namespace, *options: str) -> list[object]:

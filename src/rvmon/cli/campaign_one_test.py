@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from contextlib import closing
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
@@ -11,13 +12,12 @@ from rvmon.cdv.campaign_page import comparable_jobs
 from rvmon.cdv.gate import judge_test
 from rvmon.cdv.output import typed
 from rvmon.cdv.pages import Replay, play_again, replay_page
-from rvmon.cdv.plan import Job, Outcome, Played
-from rvmon.cdv.play import Bench, outcome_of, play_apart, player
+from rvmon.cdv.plan import Job, Played
+from rvmon.cdv.play import Bench, PlayerApart, outcome_of
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
 from rvmon.cli.output import busy, say_json, warn
-from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.files import write_whole
@@ -107,17 +107,9 @@ def _job(campaign: Campaign, arguments: Namespace) -> Job:
 
 
 def _smallest(campaign: Campaign, job: Job, requirement: str | None) -> Shrunk[Test] | None:
-    """The smallest test; where the run hangs or is lost, each is played in a process of its own."""
-    outcome = play_apart(campaign, job)
-    here = None
-    if outcome.ending in (Ending.COMPLETED, Ending.CRASHED):
-        here = player({job.robot: campaign.robots[job.robot]}, None, None)
-
-    def play(test: Test) -> Outcome:
-        again = Job(test, job.robot)
-        return play_apart(campaign, again) if here is None else here(again)[0]
-
-    return shrink(job.test, outcome, play, requirement)
+    """The smallest test; a smaller one may hang, or be lost, and does no harm."""
+    with closing(PlayerApart(campaign, job.robot)) as player:
+        return shrink(job.test, player.play(job.test), player.play, requirement)
 
 
 def _show(form: str, spec: Spec, played: Replay) -> None:

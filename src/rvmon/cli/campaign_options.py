@@ -37,9 +37,7 @@ def add_run_options(parser: ArgumentParser) -> None:
 def _add_playing_options(parser: ArgumentParser) -> None:
     _add_seed_and_jobs(parser)
     add_dask(parser)
-    parser.add_argument(
-        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
-    )
+    _add_timeout(parser)
     parser.add_argument(
         "--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML"
     )
@@ -98,6 +96,7 @@ def add_shrink_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
     )
+    _add_timeout(parser)
     parser.add_argument(
         "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
     )
@@ -113,6 +112,7 @@ def add_mutate_options(parser: ArgumentParser) -> None:
         help="of each random strategy (100); or a folder of tests, which is the suite",
     )
     _add_seed_and_jobs(parser)
+    _add_timeout(parser)
     parser.add_argument(
         "--of",
         choices=("code", "spec", "both"),
@@ -138,6 +138,12 @@ def add_mutate_options(parser: ArgumentParser) -> None:
 def _add_seed_and_jobs(parser: ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="all follows from it (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+
+
+def _add_timeout(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
+    )
 
 
 def add_judging_options(parser: ArgumentParser) -> None:

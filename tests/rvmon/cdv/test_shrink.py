@@ -1,8 +1,10 @@
 """A failing test becomes the smallest one that fails alike, and a regression test."""
 
 import importlib
+import json
 import runpy
 import sys
+import time
 from typing import ClassVar
 
 import pytest
@@ -187,6 +189,30 @@ def test_what_ends_its_process_is_shrunk_in_others(campaign, tmp_path, capsys):
     told = capsys.readouterr()
     assert '"does": "exit"' in told.out
     assert "the run is lost" in told.err
+
+
+class Stuck:
+    """Waits for ever for a level that is not there, and shows the others."""
+
+    def play(self, test, observer):
+        if 4 not in test.numbers:
+            time.sleep(3600)
+        if 2 not in test.numbers:
+            raise cdv.TestError("two is what it begins with")
+        for t, number in enumerate(test.numbers):
+            observer(t, {"level": number})
+        return cdv.Run(len(test.numbers))
+
+
+@pytest.mark.process
+def test_a_smaller_test_that_hangs_is_ended(spec, tmp_path, capsys):
+    """It fails otherwise; so does one that cannot be played. What is left does neither."""
+    made = cdv.Campaign("stuck", Steps, {}, {"stuck": cdv.Robot(Stuck, spec)})
+    path = save(steps(2, 9, 1, 4), tmp_path)
+    assert main(made, ["shrink", str(path), "--timeout", "1.5"]) == 0
+    told = capsys.readouterr()
+    assert json.loads(told.out)["numbers"] == [2, 5, 4]
+    assert "T1 fails" in told.err
 
 
 CAMPAIGN = """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -14,7 +13,7 @@ from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.plan import Job, Played
-from rvmon.cdv.play import INTERRUPTED, outcomes
+from rvmon.cdv.play import INTERRUPTED, Waiting, outcomes
 from rvmon.coverage import Ending, model_of
 from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.verdict import Verdict
@@ -93,7 +92,7 @@ def close(
     names = strategies or campaign.closing.strategies or tuple(campaign.strategies)
     proposer = Proposer(campaign, robot, goals, names, seed, witnesses)
     tests: list[Added] = []
-    waiting = _Waiting()
+    waiting = Waiting()
     ended = ""
     try:
         with closing(outcomes(campaign, waiting, jobs=jobs, controls=False)) as results:
@@ -139,18 +138,6 @@ def close(
         seconds=time.monotonic() - begun,
         ended=ended if goals.open else "",
     )
-
-
-class _Waiting(Iterator[Job]):
-    """Tests to be played; there may be more after it was empty, as each batch follows the last."""
-
-    def __init__(self) -> None:
-        self.jobs: deque[Job] = deque()
-
-    def __next__(self) -> Job:
-        if not self.jobs:
-            raise StopIteration
-        return self.jobs.popleft()
 
 
 def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals:
