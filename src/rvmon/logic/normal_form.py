@@ -79,6 +79,7 @@ class Lowering:
         self.reader = Reader(factory, period, measured=measured, held=held)
         self.favour = favour
         self._meets_blanks = sampled
+        self._measured = measured
         self._opened = opened
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}
@@ -180,8 +181,8 @@ class Lowering:
     def _if_there(self, operand: Core) -> Core:
         """A formula that is unknown where there may be no position, as a proposition is anyway."""
         factory = self.factory
-        if isinstance(operand, Literal):
-            return operand
+        if isinstance(operand, Literal) or self._measured:
+            return operand  # what is measured is where there surely are positions
         there = factory.leaf(Elapsed(0))  # true, but where there may be no position
         whole = factory.all_of([factory.literal(there, Sense.TRUE), operand])
         return factory.any_of([whole, factory.literal(there, Sense.FALSE)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, overload
 
 from rvmon.errors import TraceError, UnknownNameError
@@ -12,13 +12,14 @@ from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import OneCall
 from rvmon.monitor.planned import planned_core
+from rvmon.native import Bounds, Figure
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
 
 
 @dataclass(frozen=True, slots=True)
-class Robustness:
+class Robustness(Bounds):
     """How far a formula is from the other truth value, in base units.
 
     Attributes:
@@ -53,7 +54,7 @@ class Robustness:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class Measured(Figure):
     """The robustness of one attempt, or at one position.
 
     Attributes:
@@ -67,18 +68,12 @@ class Measured:
     requirement: str
     number: int | None
     t: int
-    robustness: Robustness
+    robustness: Robustness = field()
     in_doubt: bool = False
 
 
-_FIELDS = (
-    *((Measured, name) for name in ("requirement", "number", "t", "robustness", "in_doubt")),
-    *((Robustness, name) for name in ("low", "high", "kept")),
-)
-"""In the order of `module_margins.h`."""
-
-FIGURES = Measured, Robustness, tuple(getattr(type_, name) for type_, name in _FIELDS)
-"""What the core makes figures of: types, and what sets their fields."""
+FIGURES = Measured, Robustness
+"""What the core makes figures of."""
 
 
 class Stream(Sequence[tuple[int, Robustness]]):

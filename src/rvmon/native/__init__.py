@@ -46,4 +46,6 @@ else:
 
 Monitor = _core.Monitor
 Record = _core.Record
+Figure = _core.Figure
+Bounds = _core.Bounds
 memory_of = _core.memory_of

@@ -19,6 +19,12 @@ class Record:
     _details: Callable[[Any, Any], Mapping[str, Any]]
     _noted: Any
 
+class Bounds:
+    """Three numbers; `Robustness` derives from it and names them."""
+
+class Figure:
+    """What a figure says, of which bounds are made as they are read; `Measured` derives from it."""
+
 class Monitor:
     """A run of a packed plan; what a call does that is not explained here, `core.h` says.
 
@@ -168,13 +174,11 @@ class Monitor:
         """The instants of the first and the last sample, and that which time has come to."""
 
     def next_due(self) -> int | None: ...
-    def measure(
-        self, figures: tuple[type[Measured], type[Robustness], tuple[Any, ...]], positions: bool, /
-    ) -> None:
+    def measure(self, figures: tuple[type[Measured], type[Robustness]], positions: bool, /) -> None:
         """Have steps give figures, not attempts; of a plan that says what is measured.
 
         Args:
-            figures: the types, and the descriptors of their fields.
+            figures: the types, which derive from `Figure` and `Bounds`.
             positions: see `rv_measure_positions`.
         """
 

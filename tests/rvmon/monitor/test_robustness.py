@@ -1,6 +1,9 @@
 """Robustness as users ask for it."""
 
+import copy
 import doctest
+import pickle
+from dataclasses import FrozenInstanceError
 from pathlib import Path
 
 import pytest
@@ -355,3 +358,17 @@ def test_what_windows_come_to_is_at_a_distance(time, required, low):
     samples = [(t, {"x": 2.0 * t + 2, "e": True, "p": t > 0}) for t in range(4)]
     found = rvmon.loads(text).robustness(samples).attempts["R1", 1]
     assert found.low == found.high == pytest.approx(low)
+
+
+def test_a_figure_is_a_value():
+    """It is compared, copied and given to other processes as what it says, and stays as it is."""
+    monitor = rvmon.loads(f"{HEAD}upon start then x <= 2 cm").robustness_monitor(streams=True)
+    attempt, position = monitor.step_ns(0, {"x": 1.0})
+    assert (attempt.number, position.number) == (1, None)
+    assert position == type(position)("R1", None, 0, type(position.robustness)(0.01, 0.01, 0.01))
+    assert hash(position) == hash(copy.deepcopy(position))
+    assert pickle.loads(pickle.dumps(position)) == position != attempt  # noqa: S301 - ours
+    with pytest.raises(FrozenInstanceError):
+        position.t = 1
+    with pytest.raises(TypeError):
+        type(position)("R1", None, 0, 0.01)

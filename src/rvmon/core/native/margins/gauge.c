@@ -112,20 +112,30 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
     return done;
 }
 
-/* Take what the leaves are from a position on. */
-void gauge_take(gauging *w, int64_t at, const double *values)
+/* Take what the leaves are from some positions on: those of each lie so far apart from those of the next
+ * one. */
+void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart)
 {
     const margin_shape *s = w->shape;
-    const bool all = w->sparse || !w->g->begun;
+    const bool first = !w->g->begun;
     int32_t i;
-    if (w->sparse) {
-        note_position(w, at);
+    int64_t k;
+    for (k = 0; w->sparse && (k < count); k++) {
+        note_position(w, times[k]);
     }
     for (i = 0; i < s->plan->measures.count; i++) {
-        if ((s->leaves[i] >= 0) && (all || (values[i] != w->g->letter[i]))) {
-            w->g->letter[i] = values[i];
-            tell_step(w, s->leaves[i], at, values[i]);
+        const double *own = &values[(int64_t)i * apart];
+        double last = w->g->letter[i];
+        if (s->leaves[i] < 0) {
+            continue; /* it never changes */
         }
+        for (k = 0; k < count; k++) {
+            if (w->sparse || (own[k] != last) || (first && (k == 0))) {
+                last = own[k];
+                tell_step(w, s->leaves[i], times[k], last);
+            }
+        }
+        w->g->letter[i] = last;
     }
     w->g->begun = true;
 }
@@ -158,7 +168,7 @@ void gauge_run(gauging *w)
     int32_t i;
     for (i = 0; i < s->count; i++) {
         switch (s->nodes[i].kind) {
-        case OP_LEAF: break;
+        case OP_LEAF: w->g->nodes[i].known = w->now; break;
         case OP_WINDOW: gauge_window(w, i); break;
         case OP_SHIFT: gauge_shift(w, i); break;
         default: gauge_join(w, i); break;
@@ -169,7 +179,7 @@ void gauge_run(gauging *w)
         w->g->reported = step_at(news, w->g->read)->value;
         w->g->read++;
     }
-    answer(w, operand_known(w, root) + 1);
+    answer(w, w->g->nodes[root].known + 1);
 }
 
 /* ---- shapes */
@@ -274,7 +284,7 @@ static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags,
 }
 
 /* Work out the shape of what is measured; false if memory is short. */
-bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
+bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shape *s)
 {
     const plan *p = &m->plan;
     const int32_t count = g->operators.count;
@@ -287,8 +297,16 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
     s->count = count;
     s->places = taken(m, count, sizeof *s->places);
     s->leaves = taken(m, g->measures.count, sizeof *s->leaves);
-    if ((fixed == NULL) || (lags == NULL) || (s->places == NULL) || (s->leaves == NULL)) {
+    s->reals = taken(m, g->measures.count, sizeof *s->reals);
+    if ((fixed == NULL) || (lags == NULL) || (s->places == NULL) || (s->leaves == NULL)
+        || (s->reals == NULL)) {
         return false;
+    }
+    for (i = 0; i < g->measures.count; i++) {
+        const measure_plan *own = &s->measures[i];
+        s->reals[i] = learn_real(of, own);
+        s->occurs = s->occurs || ((own->kind == MEASURE_DISTANCE)
+                                  && (of->atoms[of->nodes[own->node].a].op == ATOM_PAYLOAD));
     }
     for (i = 0; i < count; i++) {
         s->places[i].edge = s->edges;

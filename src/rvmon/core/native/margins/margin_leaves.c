@@ -125,17 +125,19 @@ static margin_range of_occurrences(const run *r, const atom_plan *a, double fact
     return found;
 }
 
-static double real_apart(const atom_plan *a, const measure_plan *m, double value)
+/* How a leaf that compares a signal with a real constant is measured. */
+margin_real learn_real(const part *of, const measure_plan *m)
 {
-    const double distance = (value == a->constant) ? 0.0 : value - a->constant; /* of infinite ones, too */
-    return signed_by(a->compare, distance * m->factor);
-}
-
-/* What a leaf is that shows how a number compares with a constant. */
-double measured_real(const atom_plan *a, const measure_plan *m, double value)
-{
-    const double found = real_apart(a, m, value);
-    return (m->turned != 0) ? 0.0 - found : found;
+    margin_real made = {0.0, 0.0, -1, false};
+    const atom_plan *a = (m->kind == MEASURE_DISTANCE) ? &of->atoms[of->nodes[m->node].a] : NULL;
+    if ((a != NULL) && (a->op == ATOM_REAL)) {
+        const double rises = signed_by(a->compare, m->factor);
+        made.constant = a->constant;
+        made.slope = (m->turned != 0) ? -rises : rises;
+        made.input = a->input;
+        made.absolute = (a->compare == CMP_EQ) || (a->compare == CMP_NE);
+    }
+    return made;
 }
 
 /* The distance of the comparison that a leaf shows. */
@@ -144,15 +146,12 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     const node_plan *n = &r->part->nodes[m->node];
     const atom_plan *a = &r->part->atoms[n->a];
     margin_range found = ANYTHING;
-    if (a->op == ATOM_REAL) {
-        const rv_number *x = &r->value[a->input];
-        if (x->kind == RV_REAL) {
-            return exactly(real_apart(a, m, x->as.real));
-        }
-    } else if (a->op == ATOM_COMPARE) {
+    if (a->op == ATOM_COMPARE) {
         found = of_programs(r, a, m->factor, NULL);
-    } else {
+    } else if (a->op == ATOM_PAYLOAD) {
         found = of_occurrences(r, a, m->factor);
+    } else {
+        /* The signal is unknown. */
     }
     /* What is not born is what it is taken for. Once all is, nobody follows the truth of what has a
      * distance. */
@@ -162,9 +161,15 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     return found;
 }
 
-margin_range measured_leaf(const run *r, const measure_plan *m)
+/* What a leaf is at least and at most. */
+margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number)
 {
+    const measure_plan *m = &s->measures[number];
+    const margin_real *real = &s->reals[number];
     margin_range found = {INFINITE, INFINITE};
+    if ((real->input >= 0) && (r->value[real->input].kind == RV_REAL)) {
+        return exactly(measured_real(real, r->value[real->input].as.real));
+    }
     switch (m->kind) {
     case MEASURE_CONSTANT: break;
     case MEASURE_TRUTH: found = of_truth(r->truth[m->node]); break;
@@ -216,7 +221,7 @@ static margin_range bounds_of(const operator_plan *n, const margin_edge *edges)
 }
 
 /* Tell another value, unless it is none. */
-static void tell_other(gauging *w, int32_t place, int64_t at, double value)
+static inline void tell_other(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_node *o = &w->g->nodes[place];
     if (w->sparse || !o->begun || (value != o->carried)) {
@@ -226,7 +231,7 @@ static void tell_other(gauging *w, int32_t place, int64_t at, double value)
     }
 }
 
-static void tell_junction(gauging *w, int32_t place, int64_t at)
+static inline void tell_junction(gauging *w, int32_t place, int64_t at)
 {
     const margin_place *shape = &w->shape->places[place];
     const margin_edge *edges = &w->g->edges[shape->edge];
@@ -242,7 +247,7 @@ static void tell_junction(gauging *w, int32_t place, int64_t at)
 }
 
 /* S(i) = max(meets(i), min(stays(i), S(i - 1))), or its dual. */
-static void tell_since(gauging *w, int32_t place, int64_t at)
+static inline void tell_since(gauging *w, int32_t place, int64_t at)
 {
     const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
     const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
@@ -250,60 +255,48 @@ static void tell_since(gauging *w, int32_t place, int64_t at)
     tell_other(w, place, at, within(o->carried, bounds.low, bounds.high));
 }
 
-/* The next step of an operand that was not taken; NULL: there is none. */
-static inline const margin_step *next_of(const gauging *w, int32_t operand, const margin_edge *own)
+/* Where an operand has its next step that was not taken; NEVER: there is none. */
+static inline int64_t next_of(const margin_steps *from, const margin_edge *own)
 {
-    const margin_steps *from;
-    if (operand < 0) {
-        return NULL; /* it never changes */
-    }
-    from = &w->g->nodes[operand].out;
-    return (own->read < from->end) ? step_at(from, own->read) : NULL;
-}
-
-/* Take what operands are at a position; the next one at which one of them changes. */
-static inline int64_t take_operands(const gauging *w, const margin_place *shape, int64_t at)
-{
-    const int32_t *operands = &w->shape->operands[shape->edge];
-    margin_edge *edges = &w->g->edges[shape->edge];
-    int64_t found = NEVER;
-    int32_t i;
-    for (i = 0; i < shape->edge_count; i++) {
-        const margin_step *next = next_of(w, operands[i], &edges[i]);
-        if ((next != NULL) && (next->at == at)) {
-            edges[i].value = next->value;
-            edges[i].read++;
-            next = next_of(w, operands[i], &edges[i]);
-        }
-        found = (next != NULL) ? least(found, next->at) : found;
-    }
-    return found;
+    return (own->read < from->end) ? step_at(from, own->read)->at : NEVER;
 }
 
 /* Take what operands are at the positions at which one of them changes, up to where all are known. */
-static void join_operands(gauging *w, int32_t place, void (*tell)(gauging *w, int32_t place, int64_t at))
+static inline void join_operands(gauging *w, int32_t place,
+                                 void (*tell)(gauging *w, int32_t place, int64_t at))
 {
-    const margin_place *shape = &w->shape->places[place];
-    const int32_t *operands = &w->shape->operands[shape->edge];
-    margin_node *o = &w->g->nodes[place];
+    const margin_place *own = &w->shape->places[place];
+    const int32_t *operands = &w->shape->operands[own->edge];
+    margin_edge *edges = &w->g->edges[own->edge];
+    const margin_node *nodes = w->g->nodes;
     int64_t known = NEVER;
-    int64_t at;
+    int64_t next = NEVER;
     int32_t i;
-    for (i = 0; i < shape->edge_count; i++) {
-        if (operands[i] >= 0) {
-            known = least(known, operand_known(w, operands[i]));
+    for (i = 0; i < own->edge_count; i++) {
+        edges[i].next = NEVER;
+        if (operands[i] >= 0) { /* else it never changes */
+            const margin_node *from = &nodes[operands[i]];
+            known = least(known, from->known);
+            edges[i].next = next_of(&from->out, &edges[i]);
+            next = least(next, edges[i].next);
         }
     }
-    if (known <= o->joined) {
-        return;
-    }
-    o->joined = known;
-    at = take_operands(w, shape, -NEVER);
-    while (at <= known) {
-        const int64_t next = take_operands(w, shape, at);
+    while (next <= known) {
+        const int64_t at = next;
+        next = NEVER;
+        for (i = 0; i < own->edge_count; i++) {
+            margin_edge *one = &edges[i];
+            if (one->next == at) {
+                const margin_steps *from = &nodes[operands[i]].out;
+                one->value = step_at(from, one->read)->value;
+                one->read++;
+                one->next = next_of(from, one);
+            }
+            next = least(next, one->next);
+        }
         tell(w, place, at);
-        at = next;
     }
+    w->g->nodes[place].joined = (known > w->g->nodes[place].joined) ? known : w->g->nodes[place].joined;
 }
 
 static void follow_until(gauging *w, int32_t place, int64_t at)

@@ -110,17 +110,19 @@ static bool prepare_readers(rv_monitor *m, part *of, int32_t phase)
 bool margins_prepare(rv_monitor *m)
 {
     const int64_t count = m->plan.counts[SEC_MARGINS];
-    int64_t i;
+    int32_t i;
+    int32_t k;
     if (count == 0) {
         return true;
     }
     m->shapes = arena_take(&m->memory, (size_t)count * sizeof *m->shapes);
-    for (i = 0; (m->shapes != NULL) && (i < count); i++) {
-        if (!make_shape(m, &m->plan.margins[i], &m->shapes[i])) {
-            return false;
-        }
-    }
     for (i = 0; (m->shapes != NULL) && (i < m->plan.part_count); i++) {
+        const list own = m->parts[i].plan->judges;
+        for (k = own.first; k < own.first + own.count; k++) {
+            if (!make_shape(m, &m->parts[i], &m->plan.margins[k], &m->shapes[k])) {
+                return false;
+            }
+        }
         if (!prepare_readers(m, &m->parts[i], 0) || !prepare_readers(m, &m->parts[i], 1)) {
             return false;
         }

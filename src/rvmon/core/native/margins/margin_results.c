@@ -215,8 +215,9 @@ static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reache
     w.side = side;
     w.answers = answers;
     for (k = 0; k < q->letter_count; k++) {
-        if (q->letters[k].at <= floored(end->instant, w.step)) {
-            gauge_take(&w, q->letters[k].at, (side == 0) ? q->letters[k].low : q->letters[k].high);
+        const margin_letter *one = &q->letters[k];
+        if (one->at <= floored(end->instant, w.step)) {
+            gauge_take(&w, &one->at, 1, (side == 0) ? one->low : one->high, 1);
         }
     }
     gauge_run(&w);

@@ -56,39 +56,23 @@ static void tell_windows(const windowing *x, int64_t stop)
     o->next = at;
 }
 
-/* The same where only samples are positions. */
-static void tell_windows_of_samples(windowing *x, int64_t stop)
-{
-    const margin_steps *stamps = &x->w->g->stamps;
-    margin_steps *wedge = &x->o->wedge;
-    while ((x->o->positions < stamps->end) && (step_at(stamps, x->o->positions)->at <= stop)) {
-        const int64_t position = step_at(stamps, x->o->positions)->at;
-        x->o->positions++;
-        drop_exits(wedge, position);
-        tell_step(x->w, x->place, position,
-                  (wedge->first < wedge->end) ? step_at(wedge, wedge->first)->value : x->nothing);
-    }
-    if (x->o->next <= stop) {
-        x->o->next = stop + 1;
-    }
-}
-
-/* Take a step of the operand into the wedge. */
-static void enter_wedge(windowing *x, int64_t at, double value)
+/* Take a value into the wedge, of which the last window that holds it is that of `leaves`. */
+static inline void enter_wedge(const windowing *x, int64_t leaves, double value)
 {
     margin_steps *wedge = &x->o->wedge;
-    if (!x->w->sparse && (wedge->first < wedge->end)) {
-        step_at(wedge, wedge->end - 1)->at = at - x->low - 1;
-    }
-    while (wedge->first < wedge->end) {
-        const double last = step_at(wedge, wedge->end - 1)->value;
-        if (x->every ? (last < value) : (last > value)) {
-            break;
+    int64_t end = wedge->end;
+    if (x->every) {
+        while ((wedge->first < end) && (step_at(wedge, end - 1)->value >= value)) {
+            end--;
         }
-        wedge->end--;
+    } else {
+        while ((wedge->first < end) && (step_at(wedge, end - 1)->value <= value)) {
+            end--;
+        }
     }
-    if ((wedge->end - wedge->first < wedge->room) || room_for_step(x->w, wedge, wedge->first)) {
-        add_step(wedge, x->w->sparse ? at - x->low : NEVER, value);
+    wedge->end = end;
+    if ((end - wedge->first < wedge->room) || room_for_step(x->w, wedge, wedge->first)) {
+        add_step(wedge, leaves, value);
     }
 }
 
@@ -111,25 +95,59 @@ static bool next_entry(windowing *x, int64_t most, margin_step *found)
     return false;
 }
 
-/* Take in what the operand is and tell all values, up to where windows are known. */
+/* Take in what the operand is and tell all values, up to where windows are known: where every integer
+ * is a position. */
+static void slide_along(windowing *x, int64_t until)
+{
+    margin_steps *wedge = &x->o->wedge;
+    margin_step entry = {0, 0.0};
+    while (next_entry(x, until + x->high + 1, &entry)) {
+        tell_windows(x, entry.at - x->high - 1);
+        if (wedge->first < wedge->end) {
+            step_at(wedge, wedge->end - 1)->at = entry.at - x->low - 1;
+        }
+        enter_wedge(x, NEVER, entry.value);
+    }
+    tell_windows(x, until);
+}
+
+/* Take in the values of the operand up to a position. */
+static inline void enter_samples(const windowing *x, int64_t last)
+{
+    const margin_step *next;
+    while ((x->from != NULL) && (x->edge->read < x->from->end)) {
+        next = step_at(x->from, x->edge->read);
+        if (next->at > last) {
+            break;
+        }
+        x->edge->read++;
+        enter_wedge(x, next->at - x->low, next->value);
+    }
+}
+
+/* The same where only samples are positions. */
+static void slide_over_samples(const windowing *x, int64_t until)
+{
+    const margin_steps *stamps = &x->w->g->stamps;
+    margin_steps *wedge = &x->o->wedge;
+    while ((x->o->positions < stamps->end) && (step_at(stamps, x->o->positions)->at <= until)) {
+        const int64_t position = step_at(stamps, x->o->positions)->at;
+        x->o->positions++;
+        enter_samples(x, position + x->high);
+        drop_exits(wedge, position);
+        tell_step(x->w, x->place, position,
+                  (wedge->first < wedge->end) ? step_at(wedge, wedge->first)->value : x->nothing);
+    }
+    enter_samples(x, until + x->high + 1); /* few of them are kept */
+    x->o->next = (x->o->next <= until) ? until + 1 : x->o->next;
+}
+
 static void slide_window(windowing *x, int64_t until)
 {
-    bool more = true;
-    while (more) {
-        margin_step entry = {0, 0.0};
-        int64_t stop = until;
-        more = next_entry(x, until + x->high + 1, &entry);
-        if (more) {
-            stop = entry.at - x->high - 1;
-        }
-        if (x->w->sparse) {
-            tell_windows_of_samples(x, stop);
-        } else {
-            tell_windows(x, stop);
-        }
-        if (more) {
-            enter_wedge(x, entry.at, entry.value);
-        }
+    if (x->w->sparse) {
+        slide_over_samples(x, until);
+    } else {
+        slide_along(x, until);
     }
 }
 
@@ -163,7 +181,7 @@ void gauge_window(gauging *w, int32_t place)
     x.high = n->high;
     if (w->end == NULL) {
         if (x.from != NULL) {
-            until = least(until, operand_known(w, n->left) - n->high);
+            until = least(until, w->g->nodes[n->left].known - n->high);
         } else {
             x.edge->read = w->g->nodes[n->left].out.end;
         }

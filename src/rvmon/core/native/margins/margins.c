@@ -6,25 +6,6 @@
 
 #include <string.h>
 
-/* Whether each position of a sample is asked for. */
-bool is_streamed(const run *r, int32_t index)
-{
-    return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
-           && (index < r->part->plan->requirements);
-}
-
-/* Whether what is measured has to be followed though nothing is asked for. */
-bool is_kept_up(const run *r, int32_t index)
-{
-    return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
-}
-
-/* Whether its attempts begin at the end: the last position may be asked for when all is over. */
-bool awaits_the_end(const run *r, int32_t index)
-{
-    return r->part->judges[index].trigger < 0;
-}
-
 /* Filled in where it is used: a copy at once would wait for what was just written. */
 void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached)
 {
@@ -49,8 +30,8 @@ void margins_mark_changed(run *r, int32_t what)
 {
     const margin_readers *readers = &r->part->readers[r->at.phase];
     int32_t i;
-    if (r->margins == NULL) {
-        return;
+    if ((r->margins == NULL) || (GAP(r) == 0)) {
+        return; /* where samples are positions all are read at each */
     }
     for (i = readers->first[what]; i < readers->first[what + 1]; i++) {
         const int32_t index = readers->judges[i];
@@ -79,11 +60,12 @@ void give_letters(gauging *w, int64_t last)
     measuring *q = w->q;
     int32_t given = 0;
     for (; (given < q->letter_count) && (q->letters[given].at <= last); given++) {
+        const margin_letter *one = &q->letters[given];
         w->g = &q->readings[0];
-        gauge_take(w, q->letters[given].at, q->letters[given].low);
+        gauge_take(w, &one->at, 1, one->low, 1);
         if (q->parted) {
             w->g = &q->readings[1];
-            gauge_take(w, q->letters[given].at, q->letters[given].high);
+            gauge_take(w, &one->at, 1, one->high, 1);
         }
     }
     if ((given == 1) && (q->letter_count == 2)) {
@@ -168,7 +150,9 @@ static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
         gauge_run(&w);
     }
     tell_answers(r, index);
-    set_margin_due(r, index, now, reached);
+    if (!is_streamed(r, index)) {
+        set_margin_due(r, index, now, reached);
+    }
 }
 
 /* What is at most is another from the first letter on in which something is unknown. */
@@ -196,21 +180,25 @@ static void read_measures(run *r, int32_t index, int64_t position)
 {
     const margin_shape *s = shape_of(r, index);
     measuring *q = &r->margins[index];
+    margin_letter *now = &q->letters[0];
+    margin_letter *then = &q->letters[1];
     bool differs = false;
     bool passes = false;
     int32_t i;
     for (i = 0; i < s->plan->measures.count; i++) {
-        const margin_range now = measured_leaf(r, &s->measures[i]);
-        margin_range then = now;
-        q->letters[0].low[i] = now.low;
-        q->letters[0].high[i] = now.high;
-        differs = differs || (now.low != now.high);
-        passes = passes_on(r, &s->measures[i], &then) || passes;
-        q->letters[1].low[i] = then.low;
-        q->letters[1].high[i] = then.high;
+        const margin_range found = measured_leaf(r, s, i);
+        now->low[i] = found.low;
+        now->high[i] = found.high;
+        differs = differs || (found.low != found.high);
     }
-    q->letters[0].at = position;
-    q->letters[1].at = position + 1;
+    for (i = 0; s->occurs && (i < s->plan->measures.count); i++) {
+        margin_range found = {now->low[i], now->high[i]};
+        passes = passes_on(r, &s->measures[i], &found) || passes;
+        then->low[i] = found.low;
+        then->high[i] = found.high;
+    }
+    now->at = position;
+    then->at = position + 1;
     q->letter_count = passes ? 2 : 1;
     if (differs && !q->parted) {
         part_margins(r, index);
@@ -246,7 +234,9 @@ void enter_position(run *r, int32_t index, int64_t t)
     }
     read_measures(r, index, position);
     q->position = t;
-    timers_set(&r->margins_due, index, awaits_the_end(r, index) ? NEVER : -LIMIT);
+    if (!is_streamed(r, index)) {
+        timers_set(&r->margins_due, index, awaits_the_end(r, index) ? NEVER : -LIMIT);
+    }
 }
 
 /* Ask for a position of which the letter is not given yet. */
@@ -278,7 +268,7 @@ void ask_for(run *r, int32_t index, int64_t position, int32_t record)
     one->high = INFINITE;
     one->record = record;
     r->asked += (record != 0) ? 1 : 0;
-    if ((q->asks_end == q->asks_first + 1) && !awaits_the_end(r, index)) {
+    if ((q->asks_end == q->asks_first + 1) && !awaits_the_end(r, index) && !is_streamed(r, index)) {
         const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
         timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
     }
@@ -316,24 +306,31 @@ static void visit_measured(run *r, int32_t index, int64_t t)
     }
 }
 
+/* Of so many judges, the first ones, each position is asked for. */
+static int32_t streamed_count(const run *r)
+{
+    return is_streamed(r, 0) ? r->part->plan->requirements : 0;
+}
+
 /* Read what is measured at the position at `t`, when attempts have begun there: where samples are
  * positions of all, else of those whose leaves may be others. */
 void margins_visit(run *r, int64_t t)
 {
-    const int32_t streamed = r->home->monitor->measures_positions ? r->part->plan->requirements : 0;
+    const int32_t streamed = streamed_count(r);
     int32_t i;
-    if ((GAP(r) == 0) || (r->measured_at == -LIMIT)) {
+    if ((GAP(r) > 0) && (r->measured_at == -LIMIT)) {
         mark_all_changed(r);
     }
     r->measured_at = t;
+    for (i = 0; (GAP(r) == 0) && (i < r->part->plan->judges.count); i++) {
+        visit_measured(r, i, t);
+    }
     for (i = 0; i < r->changed_count; i++) {
         visit_measured(r, r->changed_inputs[i], t);
     }
     r->changed_count = 0;
-    for (i = 0; i < streamed; i++) {
-        if (is_streamed(r, i) && (t - step_of(r) < r->at.after)) {
-            ask_for(r, i, floored(t, step_of(r)), 0);
-        }
+    for (i = 0; (i < streamed) && (t - step_of(r) < r->at.after); i++) {
+        ask_for(r, i, floored(t, step_of(r)), 0);
     }
 }
 
@@ -341,10 +338,16 @@ void margins_visit(run *r, int64_t t)
  * time alone may do. */
 static void settle_run(run *r, int64_t reached)
 {
-    const int64_t seen = (r->measured_at == reached) ? reached : reached - 1;
+    const int64_t seen = floored((r->measured_at == reached) ? reached : reached - 1, step_of(r));
+    const int32_t streamed = streamed_count(r);
+    int32_t i;
+    for (i = 0; i < streamed; i++) {
+        if (r->margins[i].active && !awaits_the_end(r, i)) {
+            come_to_margin(r, i, seen, reached);
+        }
+    }
     while (timers_next(&r->margins_due) <= reached) {
-        const int32_t index = r->margins_due.ids[0];
-        come_to_margin(r, index, floored(seen, step_of(r)), reached);
+        come_to_margin(r, r->margins_due.ids[0], seen, reached);
     }
 }
 

@@ -88,15 +88,16 @@ static inline const margin_shape *shape_of(const run *r, int32_t index)
     return &r->home->monitor->shapes[r->part->plan->judges.first + index];
 }
 
-/* Up to where an operand is known. */
-static inline int64_t operand_known(const gauging *w, int32_t place)
-{
-    return (w->shape->nodes[place].kind == OP_LEAF) ? w->now : w->g->nodes[place].known;
-}
-
 static inline margin_ask *ask_at(const measuring *q, int64_t number)
 {
     return &q->asks[number & (q->asks_room - 1)];
+}
+
+/* What a leaf is that compares a signal with a real constant. Nothing is not -0. */
+static inline double measured_real(const margin_real *x, double value)
+{
+    const double distance = (value == x->constant) ? 0.0 : value - x->constant; /* of infinite ones, too */
+    return (x->absolute ? fabs(distance) : distance) * x->slope + 0.0;
 }
 
 /* ---- margin_steps.c */
@@ -140,22 +141,38 @@ bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g);
 void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered);
 void gauge_begin_amid(gauging *w, int64_t last);
 bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g);
-void gauge_take(gauging *w, int64_t at, const double *values);
+void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart);
 void gauge_run(gauging *w);
 double bound_of_anything(const gauging *w);
 
-bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s);
+bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shape *s);
 
 /* ---- margin_leaves.c */
-margin_range measured_leaf(const run *r, const measure_plan *m);
-double measured_real(const atom_plan *a, const measure_plan *m, double value);
+margin_real learn_real(const part *of, const measure_plan *m);
+margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
+/* Whether each position of a sample is asked for. */
+static inline bool is_streamed(const run *r, int32_t index)
+{
+    return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
+           && (index < r->part->plan->requirements);
+}
+
+/* Whether what is measured has to be followed though nothing is asked for. */
+static inline bool is_kept_up(const run *r, int32_t index)
+{
+    return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
+}
+
+/* Whether its attempts begin at the end: the last position may be asked for when all is over. */
+static inline bool awaits_the_end(const run *r, int32_t index)
+{
+    return r->part->judges[index].trigger < 0;
+}
+
 /* ---- margins.c, of a run */
-bool is_streamed(const run *r, int32_t index);
 void margins_cut(run *r, int32_t index, int64_t t);
-bool is_kept_up(const run *r, int32_t index);
-bool awaits_the_end(const run *r, int32_t index);
 void give_letters(gauging *w, int64_t last);
 void part_margins(run *r, int32_t index);
 void enter_position(run *r, int32_t index, int64_t t);

@@ -38,7 +38,8 @@ typedef struct {
 /* An operand of an operator. */
 typedef struct {
     int64_t read;              /* the number of its first step that was not taken */
-    double value;              /* what it is where that was taken */
+    int64_t next;              /* where it begins; NEVER: there is none */
+    double value;              /* what it is where the last one was taken */
 } margin_edge;
 
 typedef struct {
@@ -117,6 +118,14 @@ typedef struct {
     bool alone;                /* whether its value matters where that of the formula is asked for alone */
 } margin_place;
 
+/* How a leaf is measured that compares a signal with a real constant. */
+typedef struct {
+    double constant;
+    double slope;              /* by how much it grows with what the signal is above the constant */
+    int32_t input;             /* the signal; -1: it is no such leaf */
+    bool absolute;             /* with the distance from it, above or below */
+} margin_real;
+
 typedef struct {
     const margin_plan *plan;
     const operator_plan *nodes;
@@ -127,8 +136,10 @@ typedef struct {
     int32_t count;
     int32_t edges;
     int32_t *leaves;           /* by measure, the place of its leaf; -1: nobody reads its steps */
+    margin_real *reals;        /* by measure */
     int64_t lag;               /* no position is settled less than so many ticks behind it */
     bool passes;               /* whether time alone can make something known */
+    bool occurs;               /* whether a leaf may speak of what occurs at a position alone */
 } margin_shape;
 
 /* Which judges measure what a name says, or a node. */

@@ -397,11 +397,9 @@ static PyMethodDef core_methods[] = {
 static int execute(PyObject *module)
 {
     PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
-    PyObject *base = record_type(module);
     const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0)
-                      && (base != NULL) && (PyModule_AddObjectRef(module, "Record", base) == 0);
+                      && add_record_type(module) && add_figure_types(module);
     Py_XDECREF(type);
-    Py_XDECREF(base);
     return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
 }
 

@@ -132,19 +132,11 @@ typedef struct {
 
 typedef int (*telling)(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
 
-/* The fields of a figure, then those of its robustness. */
-enum {
-    FIGURE_REQUIREMENT, FIGURE_NUMBER, FIGURE_T, FIGURE_ROBUSTNESS, FIGURE_IN_DOUBT, FIGURE_LOW,
-    FIGURE_HIGH, FIGURE_KEPT, FIGURE_COUNT
-};
-
 /* What figures are made of. */
 struct figures {
     PyObject *owner;           /* what the rest is borrowed from */
-    PyTypeObject *measured;
-    PyTypeObject *robustness;
-    PyObject *slots[FIGURE_COUNT];
-    descrsetfunc set[FIGURE_COUNT];
+    PyTypeObject *measured;    /* derived from Figure */
+    PyTypeObject *robustness;  /* derived from Bounds */
 };
 
 /* ---- module_notes.c */
@@ -158,8 +150,18 @@ PyObject *noted_with(const note_copy *note, PyObject *values);
 
 /* ---- module_record.c */
 attempt_record *new_record(PyTypeObject *type);
-PyObject *record_type(PyObject *module);
+PyObject *new_uncollected(PyTypeObject *type);
+void free_uncollected(PyObject *self);
+bool add_base_type(PyObject *module, const char *name, PyType_Spec *spec, const PyMemberDef *set,
+                   const PyGetSetDef *got);
+bool add_record_type(PyObject *module);
+bool derives(PyTypeObject *type, void (*dealloc)(PyObject *self));
 bool is_record(PyTypeObject *type);
+
+/* ---- module_figures.c */
+bool add_figure_types(PyObject *module);
+bool are_of_figures(const struct figures *f);
+PyObject *figure_of(const struct figures *f, PyObject *requirement, const rv_margin *x);
 
 /* ---- module_intake.c */
 bool lay(intake *in, PyObject *values, bool looked);

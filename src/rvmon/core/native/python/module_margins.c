@@ -1,14 +1,11 @@
-/* How module.c gives out margins: as figures, the fields of which are set by their descriptors, or as
- * bytes. */
+/* How module.c gives out margins: as figures, or as bytes. */
 #include "python/module.h"
 
-/* measure((measured, robustness, descriptors), positions): have steps give figures. */
+/* measure((measured, robustness), positions): have steps give figures. */
 PyObject *measure_of(monitor *c, PyObject *args)
 {
     PyObject *types;
-    PyObject *descriptors;
     int positions;
-    int i;
     struct figures *made;
     if (!PyArg_ParseTuple(args, "O!p", &PyTuple_Type, &types, &positions)) {
         return NULL;
@@ -21,86 +18,17 @@ PyObject *measure_of(monitor *c, PyObject *args)
     if (made == NULL) {
         return PyErr_NoMemory();
     }
+    if (!PyArg_ParseTuple(types, "O!O!", &PyType_Type, &made->measured, &PyType_Type, &made->robustness)
+        || !are_of_figures(made)) {
+        PyMem_Free(made);
+        return NULL;
+    }
     c->figures = made;
     made->owner = Py_NewRef(types);
-    if (!PyArg_ParseTuple(types, "O!O!O!", &PyType_Type, &made->measured, &PyType_Type,
-                          &made->robustness, &PyTuple_Type, &descriptors)) {
-        return NULL;
-    }
-    if (PyTuple_Size(descriptors) != FIGURE_COUNT) {
-        PyErr_SetString(PyExc_ValueError, "not the fields of a figure");
-        return NULL;
-    }
-    for (i = 0; i < FIGURE_COUNT; i++) {
-        made->slots[i] = PyTuple_GetItem(descriptors, i);
-        made->set[i] = (descrsetfunc)(uintptr_t)PyType_GetSlot(Py_TYPE(made->slots[i]),
-                                                               Py_tp_descr_set);
-        if (made->set[i] == NULL) {
-            PyErr_SetString(PyExc_TypeError, "no field of a figure");
-            return NULL;
-        }
-    }
     if (positions != 0) {
         rv_measure_positions(c->m);
     }
     return Py_NewRef(Py_None);
-}
-
-static bool share_field(const struct figures *f, PyObject *made, int slot, PyObject *value)
-{
-    return (value != NULL) && (f->set[slot](f->slots[slot], made, value) == 0);
-}
-
-/* The same with an object that is given away. */
-static bool set_field(const struct figures *f, PyObject *made, int slot, PyObject *value)
-{
-    const bool done = share_field(f, made, slot, value);
-    Py_XDECREF(value);
-    return done;
-}
-
-/* A number as an object, which may be that of another. */
-static PyObject *bound_of(double value, double other, PyObject *of_other)
-{
-    return ((value == other) && (of_other != NULL)) ? Py_NewRef(of_other)
-                                                    : PyFloat_FromDouble(value);
-}
-
-/* Bounds are mostly one number. */
-static PyObject *robustness_of(const struct figures *f, const rv_margin *x)
-{
-    PyObject *made = PyType_GenericAlloc(f->robustness, 0);
-    PyObject *low = PyFloat_FromDouble(x->low);
-    PyObject *high = bound_of(x->high, x->low, low);
-    PyObject *kept = bound_of(x->kept, x->low, low);
-    if ((made == NULL) || !share_field(f, made, FIGURE_LOW, low)
-        || !share_field(f, made, FIGURE_HIGH, high) || !share_field(f, made, FIGURE_KEPT, kept)) {
-        Py_CLEAR(made);
-    }
-    Py_XDECREF(low);
-    Py_XDECREF(high);
-    Py_XDECREF(kept);
-    return made;
-}
-
-static PyObject *figure_object(const monitor *c, const rv_margin *x)
-{
-    const struct figures *f = c->figures;
-    PyObject *made = PyType_GenericAlloc(f->measured, 0);
-    PyObject *number = (x->of_position != 0U) ? Py_NewRef(Py_None)
-                                             : PyLong_FromUnsignedLong(x->number);
-    if ((made != NULL)
-        && share_field(f, made, FIGURE_REQUIREMENT, PyTuple_GetItem(c->ids, x->requirement))
-        && share_field(f, made, FIGURE_NUMBER, number)
-        && set_field(f, made, FIGURE_T, PyLong_FromLongLong(x->t))
-        && set_field(f, made, FIGURE_ROBUSTNESS, robustness_of(f, x))
-        && share_field(f, made, FIGURE_IN_DOUBT, (x->in_doubt != 0U) ? Py_True : Py_False)) {
-        Py_DECREF(number);
-        return made;
-    }
-    Py_XDECREF(number);
-    Py_XDECREF(made);
-    return NULL;
 }
 
 /* Copies of some figures as objects: what is made of them may set off the collector, and that
@@ -122,7 +50,8 @@ static PyObject *figure_tuple(const monitor *c, const rv_margin *found, int64_t 
     }
     made = PyTuple_New((Py_ssize_t)count);
     for (i = 0; (made != NULL) && (i < count); i++) {
-        PyObject *one = figure_object(c, &copies[i]);
+        const rv_margin *figure = &copies[i];
+        PyObject *one = figure_of(c->figures, PyTuple_GetItem(c->ids, figure->requirement), figure);
         if ((one == NULL) || (PyTuple_SetItem(made, (Py_ssize_t)i, one) < 0)) {
             Py_CLEAR(made);
         }

@@ -10,15 +10,29 @@ static bool is_collected(PyTypeObject *type)
     return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
 }
 
-/* A record without fields, of which the collector does not know, whose time it would take for nothing;
- * NULL with an error. */
+/* An object of which the collector does not know, whose time it would take for nothing, and of which
+ * nothing is set; NULL with an error. */
+PyObject *new_uncollected(PyTypeObject *type)
+{
+    return is_collected(type) ? _PyObject_GC_New(type) : PyType_GenericAlloc(type, 0);
+}
+
+/* Free an object that was made so. */
+void free_uncollected(PyObject *self)
+{
+    PyTypeObject *type = Py_TYPE(self);
+    if (is_collected(type)) {
+        PyObject_GC_Del(self);
+    } else {
+        PyObject_Free(self);
+    }
+    Py_DECREF(type);
+}
+
+/* A record without fields; NULL with an error. */
 attempt_record *new_record(PyTypeObject *type)
 {
-    attempt_record *made;
-    if (!is_collected(type)) {
-        return (attempt_record *)PyType_GenericAlloc(type, 0);
-    }
-    made = (attempt_record *)_PyObject_GC_New(type);
+    attempt_record *made = (attempt_record *)new_uncollected(type);
     if (made != NULL) {
         (void)memset(made->objects, 0, sizeof *made - offsetof(attempt_record, objects));
     }
@@ -28,7 +42,6 @@ attempt_record *new_record(PyTypeObject *type)
 static void record_dealloc(PyObject *self)
 {
     attempt_record *own = (attempt_record *)self;
-    PyTypeObject *type = Py_TYPE(self);
     const int32_t count = own->is_worked_out ? OBJECTS : NOTED;
     int32_t i;
     for (i = 0; i < count; i++) {
@@ -36,12 +49,7 @@ static void record_dealloc(PyObject *self)
     }
     Py_XDECREF(own->values);
     free_note(&own->note);
-    if (is_collected(type)) {
-        PyObject_GC_Del(self);
-    } else {
-        PyObject_Free(self);
-    }
-    Py_DECREF(type);
+    free_uncollected(self);
 }
 
 /* What was set; or the values that it captured, and behind them the note, if there is one. */
@@ -157,38 +165,48 @@ static bool add_name(PyObject *names, const char *text)
     return done;
 }
 
-/* The type, which says of itself what a dataclass that derives from it need not find places for; NULL
- * with an error. */
-PyObject *record_type(PyObject *module)
+/* Add a type to the module, which says of itself what a dataclass that derives from it need not find
+ * places for; false with an error. */
+bool add_base_type(PyObject *module, const char *name, PyType_Spec *spec, const PyMemberDef *set,
+                   const PyGetSetDef *got)
 {
-    PyObject *type = PyType_FromModuleAndSpec(module, &record_spec, NULL);
+    PyObject *type = PyType_FromModuleAndSpec(module, spec, NULL);
     PyObject *names = PyList_New(0);
-    const PyMemberDef *set;
-    const PyGetSetDef *got;
     bool done = (type != NULL) && (names != NULL);
-    for (set = record_members; done && (set->name != NULL); set++) {
+    for (; done && (set->name != NULL); set++) {
         done = add_name(names, set->name);
     }
-    for (got = record_getset; done && (got->name != NULL); got++) {
+    for (; done && (got->name != NULL); got++) {
         done = add_name(names, got->name);
     }
-    if (!done || (PyObject_SetAttrString(type, "__slots__", names) < 0)) {
-        Py_CLEAR(type);
-    }
+    done = done && (PyObject_SetAttrString(type, "__slots__", names) == 0)
+           && (PyModule_AddObjectRef(module, name, type) == 0);
     Py_XDECREF(names);
-    return type;
+    Py_XDECREF(type);
+    return done;
+}
+
+bool add_record_type(PyObject *module)
+{
+    return add_base_type(module, "Record", &record_spec, record_members, record_getset);
+}
+
+/* Whether a type, or one that it derives from, frees its objects so: it has what these have; false
+ * with an error. */
+bool derives(PyTypeObject *type, void (*dealloc)(PyObject *self))
+{
+    PyTypeObject *base = type;
+    while ((base != NULL) && (PyType_GetSlot(base, Py_tp_dealloc) != RVMON_SLOT(dealloc))) {
+        base = PyType_GetSlot(base, Py_tp_base);
+    }
+    if (base == NULL) {
+        PyErr_SetString(PyExc_TypeError, "it derives from another type");
+    }
+    return base != NULL;
 }
 
 /* Whether a type derives from Record; false with an error. */
 bool is_record(PyTypeObject *type)
 {
-    PyTypeObject *base = type;
-    while ((base != NULL) && (PyType_GetSlot(base, Py_tp_dealloc) != RVMON_SLOT(record_dealloc))) {
-        base = PyType_GetSlot(base, Py_tp_base);
-    }
-    if (base == NULL) {
-        PyErr_SetString(PyExc_TypeError, "attempts derive from Record");
-    }
-    return base != NULL;
+    return derives(type, record_dealloc);
 }
-

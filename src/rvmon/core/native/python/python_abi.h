@@ -45,7 +45,6 @@ typedef ptrdiff_t Py_ssize_t;
 typedef struct _longobject PyLongObject;
 typedef struct _ts PyThreadState;
 typedef PyObject *(*PyCFunction)(PyObject *, PyObject *);
-typedef int (*descrsetfunc)(PyObject *, PyObject *, PyObject *);
 typedef int (*inquiry)(PyObject *);
 typedef int (*visitproc)(PyObject *, void *);
 typedef int (*traverseproc)(PyObject *, visitproc, void *);
@@ -140,6 +139,7 @@ typedef struct bufferinfo {
 
 #define Py_mod_exec 2
 
+#define T_DOUBLE 4
 #define T_BOOL 14
 #define T_OBJECT_EX 16
 #define T_LONGLONG 17
@@ -147,7 +147,6 @@ typedef struct bufferinfo {
 #define Py_tp_base 48
 #define Py_tp_clear 51
 #define Py_tp_dealloc 52
-#define Py_tp_descr_set 55
 #define Py_tp_methods 64
 #define Py_tp_new 65
 #define Py_tp_traverse 71

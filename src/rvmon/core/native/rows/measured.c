@@ -202,31 +202,33 @@ static const double *reals_of(const batch *s, const atom_plan *a)
     return NULL;
 }
 
-/* What a leaf is in some rows, each in its place of a row of all of them. */
-static bool lay_leaf(const batch *s, const run *r, const measure_plan *m, int64_t row, int64_t end,
-                     double *low, double *high, int32_t each)
+/* What a leaf is in some rows; whether it is somewhere another at most than at least. */
+static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, int32_t number, int64_t row,
+                     int64_t end)
 {
+    const measure_plan *m = &shape->measures[number];
     const atom_plan *a = (m->kind == MEASURE_DISTANCE) ? &r->part->atoms[r->part->nodes[m->node].a] : NULL;
     const bool varies = (a != NULL) && (a->op != ATOM_PAYLOAD);
+    const double *reals = varies ? reals_of(s, a) : NULL;
+    double *low = &s->leaves[0][number * TOGETHER];
+    double *high = &s->leaves[1][number * TOGETHER];
     margin_range now = {0.0, 0.0};
     bool differs = false;
-    const double *reals = varies ? reals_of(s, a) : NULL;
     int64_t i;
     for (i = row; (reals != NULL) && (i < end); i++) {
-        const double value = measured_real(a, m, reals[i]);
-        low[(i - row) * each] = value;
-        high[(i - row) * each] = value;
+        low[i - row] = measured_real(&shape->reals[number], reals[i]);
+        high[i - row] = low[i - row];
     }
     for (i = (reals != NULL) ? end : row; i < end; i++) {
         if (varies) {
             hold_row(s, i);
         }
         if (varies || (i == row)) {
-            now = measured_leaf(r, m);
+            now = measured_leaf(r, shape, number);
             differs = differs || (now.low != now.high);
         }
-        low[(i - row) * each] = now.low;
-        high[(i - row) * each] = now.high;
+        low[i - row] = now.low;
+        high[i - row] = now.high;
     }
     return differs;
 }
@@ -236,28 +238,21 @@ static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_
 {
     const margin_shape *shape = shape_of(r, index);
     measuring *q = &r->margins[index];
-    const int32_t each = shape->plan->measures.count;
     gauging w;
     bool differs = false;
-    int64_t i;
     int32_t k;
     begin_gauging(&w, r, index, s->times[end - 1], s->times[end - 1]);
     give_letters(&w, s->times[row] - 1);
     q->letter_count = 0;
-    for (k = 0; k < each; k++) {
-        differs = lay_leaf(s, r, &shape->measures[k], row, end, &s->leaves[0][k], &s->leaves[1][k], each)
-                  || differs;
+    for (k = 0; k < shape->plan->measures.count; k++) {
+        differs = lay_leaf(s, r, shape, k, row, end) || differs;
     }
     if (differs && !q->parted) {
         part_margins(r, index);
     }
-    for (i = row; i < end; i++) {
-        w.g = &q->readings[0];
-        gauge_take(&w, s->times[i], &s->leaves[0][(i - row) * each]);
-        if (q->parted) {
-            w.g = &q->readings[1];
-            gauge_take(&w, s->times[i], &s->leaves[1][(i - row) * each]);
-        }
+    for (k = 0; k < (q->parted ? 2 : 1); k++) {
+        w.g = &q->readings[k];
+        gauge_take(&w, &s->times[row], end - row, s->leaves[k], TOGETHER);
     }
 }
 
