@@ -1,4 +1,12 @@
-/* Attempts: numbered, decided, settled at the end. */
+/* The life of an attempt apart from how its formula is judged: slots of the pool, numbers, sureness,
+ * episodes, the decision and its record, the rule for the end of the trace.
+ *
+ * Attempts of a part share one pool (`home.pool`), linked by slot: from `judge.first` those that may
+ * still be decided, in the order they began; from `judge.undecidable` those that stay open for good;
+ * from `home.free_slot` the free ones. Slots, not pointers: the pool moves as it grows.
+ *
+ * An attempt is *sure* if its trigger was TRUE, else *in doubt*: it has a number of its own and cannot
+ * fail. Source: docs/reference/semantics.md, section 3. */
 #include "attempts/attempts.h"
 #include "margins/margins.h"
 #include "notes/notes.h"
@@ -13,12 +21,13 @@ bool is_true(const run *r, int32_t node)
     return (node >= 0) && (r->truth[node] == IS_TRUE);
 }
 
+/* Whether an attempt is that of the episode which runs now. */
 bool is_current(const run *r, int32_t index, int32_t at)
 {
     return r->judges[index].current == at;
 }
 
-/* Make room for so many open attempts; false if there is none. */
+/* Grow the pool to `wanted` slots; false: memory is short, and the run is spoilt. */
 bool grow_pool(home *h, int64_t wanted)
 {
     rv_monitor *m = h->monitor;
@@ -41,6 +50,7 @@ bool grow_pool(home *h, int64_t wanted)
     return true;
 }
 
+/* A slot of the pool, with stale contents; -1: memory is short. */
 int32_t new_attempt(run *r)
 {
     home *h = r->home;
@@ -51,7 +61,7 @@ int32_t new_attempt(run *r)
         at = h->used;
         h->used++;
     } else {
-        /* There is none. */
+        /* Memory is short: -1. */
     }
     return at;
 }
@@ -62,8 +72,8 @@ void free_attempt(home *h, int32_t at)
     h->free_slot = at;
 }
 
-/* Number an attempt of which it is known now that there was a trigger, or not known. Those with
- * captured values are numbered at the end of the call, when all that began are known. */
+/* Number an attempt that begins at `t`, or becomes sure there. Attempts with captured values run in
+ * forks that are visited in no particular order: they are numbered at the end of the call. */
 void number_attempt(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
@@ -78,7 +88,7 @@ void number_attempt(run *r, int32_t index, int32_t at, int64_t t)
     }
 }
 
-/* Whether an attempt that runs from here on has a trigger that is true. */
+/* Whether an attempt that begins here is sure: its trigger is TRUE (the end of the trace always is). */
 bool is_sure(const run *r, int32_t index)
 {
     const judge_plan *j = &r->part->judges[index];
@@ -89,7 +99,8 @@ bool is_sure(const run *r, int32_t index)
            && ((j->trigger < 0) || (r->truth[j->trigger] == IS_TRUE));
 }
 
-/* Take the truth of the trigger of the attempt that runs, at `t`. */
+/* Note the truth of the trigger at `t` for the attempt of the running episode: one UNKNOWN means that
+ * the episode may have ended there, the first TRUE makes the attempt sure. */
 static void update_doubt_of_trigger(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
@@ -102,20 +113,21 @@ static void update_doubt_of_trigger(run *r, int32_t index, int32_t at, int64_t t
     }
 }
 
-/* Whether an attempt of a judge runs until its trigger is false. */
+/* Whether a judge's attempts are episodes: one runs until its trigger is FALSE. */
 bool runs_on(const run *r, int32_t index)
 {
     return (r->part->judges[index].flags & (JUDGE_EPISODIC | JUDGE_HIDDEN)) == JUDGE_EPISODIC;
 }
 
-/* The episode that runs is over, or goes on with another attempt. */
+/* Detach the attempt of the running episode: the trigger is FALSE, or another attempt takes over. */
 void leave_episode(run *r, int32_t index)
 {
     r->judges[index].current = -1;
     r->judges[index].failed_at = NEVER;
 }
 
-/* Take the truth of the trigger of an episode, before the attempts see the position. */
+/* Feed an episodic judge the truth of its trigger at `t`. Before its attempts read the letter: an
+ * episode ends before the first position at which the trigger is FALSE. */
 void take_episode_trigger(run *r, int32_t index, int64_t t)
 {
     const judge_plan *j = &r->part->judges[index];
@@ -129,11 +141,12 @@ void take_episode_trigger(run *r, int32_t index, int64_t t)
     } else if (current >= 0) {
         update_doubt_of_trigger(r, index, current, t);
     } else {
-        /* None runs, or its attempt has failed. */
+        /* No episode runs, or its attempt was decided. */
     }
 }
 
-/* Be done with an attempt. */
+/* Record a decision at `t`; with captured values it is kept until the end of the call. `note`: place of
+ * its reason among notes, -1: none. */
 void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
               int64_t note)
 {
@@ -151,6 +164,9 @@ void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decisi
     }
 }
 
+/* Decide an attempt by the prefix up to `t`. INCONCLUSIVE where a pass is excluded (a signal of the
+ * consequent was unborn at the episode's end) or a failure is (the attempt is in doubt). A sure episode
+ * that fails is listed: `again` says from which position another attempt follows. */
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
 {
     const judge_plan *j = &r->part->judges[index];
@@ -171,13 +187,13 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
         conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t,
                  (r->truth_log != NULL) ? note_nothing(r, index, x) : -1);
     } else {
-        const bool noted = (r->truth_log != NULL) && x->sure; /* else it was met, triggered or not */
+        const bool noted = (r->truth_log != NULL) && x->sure; /* in doubt and met: not reported */
         conclude(r, index, at, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX,
                  (j->trigger < 0) ? x->triggered : t, noted ? note_decision(r, index, x, t) : -1);
     }
 }
 
-/* Unlink an attempt from those of a judge; `before` is the one before it, -1 if there is none. */
+/* Unlink an attempt from its judge's list; `before`: its predecessor, -1: none. */
 static void unlink(run *r, int32_t index, int32_t before, int32_t at)
 {
     judge *j = &r->judges[index];
@@ -192,7 +208,7 @@ static void unlink(run *r, int32_t index, int32_t before, int32_t at)
     }
 }
 
-/* Take an attempt that is decided out of those of a judge. */
+/* Unlink a decided attempt. With captured values its slot is still needed for the record. */
 void remove_attempt(run *r, int32_t index, int32_t before, int32_t at)
 {
     unlink(r, index, before, at);
@@ -201,20 +217,20 @@ void remove_attempt(run *r, int32_t index, int32_t before, int32_t at)
     }
 }
 
-/* Whether nothing more can be said of an attempt: it fails for the worse, and passes for the better. */
+/* Whether no later letter can decide an attempt: the worse reading failed, the better one passed. */
 bool is_undecidable(const attempt *x)
 {
     return x->parted && (x->location == FAILED) && (x->better == PASSED);
 }
 
-/* Put an attempt that stays open for good where nobody comes by until the end. */
+/* Move an attempt that stays open for good to the list that no position visits. */
 void move_to_undecidable(run *r, int32_t index, int32_t before, int32_t at)
 {
     unlink(r, index, before, at);
     add_undecidable(r, index, at);
 }
 
-/* Put an attempt there that is in no list. */
+/* The same for an attempt that is in no list. */
 void add_undecidable(run *r, int32_t index, int32_t at)
 {
     judge *j = &r->judges[index];
@@ -226,8 +242,8 @@ void add_undecidable(run *r, int32_t index, int32_t at)
     }
 }
 
-/* The open attempt of a judge behind another, those for good last; -1 before the first, and behind
- * all. */
+/* Iterate over a judge's open attempts, undecidable ones last: the one after slot `at` (-1: the first),
+ * or -1 at the end. Queued attempts are not among them. */
 int32_t next_open(const run *r, int32_t index, int32_t at)
 {
     const judge *j = &r->judges[index];
@@ -240,7 +256,7 @@ int32_t next_open(const run *r, int32_t index, int32_t at)
     return attempt_at(r->home, at)->next;
 }
 
-/* Whether the rule for the end of a trace makes an attempt true. */
+/* Whether an open attempt's formula is TRUE by the rule for the end of the trace. */
 static bool holds_at_trace_end(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
     if (is_chained(r, index)) {
@@ -252,7 +268,7 @@ static bool holds_at_trace_end(run *r, int32_t index, const attempt *x, int64_t 
     return holds_at_end(&r->part->machines[index], x->location, x->clocks, end, reached);
 }
 
-/* The number that an attempt is told of by: those in doubt have numbers of their own. */
+/* The number in the record of an attempt. */
 uint32_t reported_number(const run *r, int32_t at)
 {
     const attempt *x = attempt_at(r->home, at);
@@ -260,7 +276,9 @@ uint32_t reported_number(const run *r, int32_t at)
     return (apart && !x->sure) ? r->home->turns[at].doubt_number : x->number;
 }
 
-/* Settle an attempt that is undecided at the end. */
+/* Report an attempt that is open at `end`, the last instant of the trace; time has come to `reached`.
+ * `outcomes` of the plan holds verdict and decision by the three bits of `state`: the formula holds by
+ * the rule for the end; the attempt cannot pass; it cannot fail. */
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached)
 {
     const judge_plan *j = &r->part->judges[index];

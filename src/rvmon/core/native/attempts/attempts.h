@@ -1,14 +1,27 @@
-/* Attempts: begun, taken through positions and time by automata, decided. */
+/* Attempts: how one starts, moves through positions and time, and is decided.
+ *
+ * An attempt is one occasion on which a requirement's consequent has to hold. A *judge* (judging.h)
+ * holds the open attempts of one requirement and reads a *letter*: the class of the valuation of its
+ * propositions. Three engines decide attempts: the automaton of this folder (most requirements), a
+ * delay network (networks/), a chain of windows (windows/); the plan says which.
+ *
+ * Unknown inputs give two *readings* of an attempt: `worse` takes every unknown for FALSE, `better`
+ * for TRUE (negation normal form). It passes when the worse one has passed, fails when the better one
+ * has failed, and can never be decided once worse has failed and better has passed.
+ *
+ * Instants are ticks (ns). `index` is a judge of the run's part, `at` a slot of the attempt pool. */
 #ifndef RVMON_ATTEMPTS_H
 #define RVMON_ATTEMPTS_H
 
 #include "basics.h"
 
 /* ---- automata.c: one attempt through positions and time */
+
+/* One reading of an attempt, in its automaton. */
 typedef struct {
     int32_t location;
-    int64_t *clocks;
-    rv_hit *moves;             /* where it is counted where it goes; NULL: it is not */
+    int64_t *clocks;           /* per clock, the instant at which it was reset; owned by the attempt */
+    rv_hit *moves;             /* counters of its edges; NULL: they are not counted */
 } token;
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
@@ -79,8 +92,9 @@ static inline bool has_attempts(const judge *j)
     return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
 }
 
-/* Queues of attempts: what queue.c and queue_steps.c share. */
-/* A queue with its judge. */
+/* ---- what queue.c and queue_steps.c share */
+
+/* A queue with its judge and the judge's automaton. */
 typedef struct {
     run *r;
     judge *j;
@@ -100,6 +114,7 @@ static inline queueing queueing_of(run *r, int32_t index)
     return g;
 }
 
+/* The i-th oldest attempt of a queue. */
 static inline queued *item(const queue *q, int32_t i)
 {
     return &q->items[(q->head + i) & (q->room - 1)];

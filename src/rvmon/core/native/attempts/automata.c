@@ -1,14 +1,21 @@
-/* Automata: one attempt through positions and through time.
+/* Deterministic timed automata: one token (one reading of an attempt) through positions and time.
  *
- * A row is a location with a region for each clock; the edge of a row and a class of letters says
- * where the attempt goes, and which old clock each new one is. */
+ * A clock is the instant of its last reset; its age is cut into *regions* by the constants of the
+ * location. A *row* is a location with one region per clock; the edge of (row, class of letters) gives
+ * the target and, for each clock of the target, the old clock it continues or -1: reset now. So a step
+ * is a table look-up, O(clocks * cuts). Within a region equal letters take the same edge, hence time
+ * without changes is jumped over from one region boundary (*cut*) to the next.
+ *
+ * Source: progression after Bacchus and Kabanza (1998), made into tables: docs/explanation/automata.md,
+ * sections 1 to 3. */
 #include "attempts/attempts.h"
 #include "results/results.h"
 
 #include <string.h>
 
-/* The class of a letter of which there are too many for a table: the digits that matter are asked
- * for one after the other. */
+/* The class of the letter by a decision diagram, where there are too many letters for a table. A node
+ * of it: proposition, digit by truth in the worse reading [3], in the better [3], number of children,
+ * children (~class: a leaf). */
 static int32_t class_by_diagram(const run *r, const judge_plan *j, bool better)
 {
     const int32_t *propositions = LIST(PLAN(r), j->propositions);
@@ -32,7 +39,8 @@ int32_t class_of_letter(const run *r, int32_t index, bool better)
                                                     : r->judges[index].worse];
 }
 
-/* The row of a token at an instant, and until when it is the same if the token stays. */
+/* The row of a token at `t`; `until`: the instant of the next cut, when the row is another one though
+ * the token stays. */
 static inline int32_t row_of(const machine *a, const token *k, int64_t t, int64_t *until)
 {
     const int32_t width = a->widths[k->location];
@@ -54,6 +62,7 @@ static inline int32_t row_of(const machine *a, const token *k, int64_t t, int64_
     return row;
 }
 
+/* Read a letter at the position at `t`; returns whether location or clocks are others than before. */
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
 {
     int64_t until;
@@ -66,7 +75,7 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
         count_move(a, k->moves, k->location, target, 1, t);
     }
     k->location = target;
-    if (width == 1) { /* as mostly */
+    if (width == 1) { /* the usual case, without the copy */
         const int64_t anchor = (sources[0] < 0) ? t : k->clocks[sources[0]];
         moved = moved || (anchor != k->clocks[0]);
         k->clocks[0] = anchor;
@@ -80,13 +89,17 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
             k->clocks[c] = anchor;
         }
     } else {
-        /* It has none. */
+        /* The target has no clocks. */
     }
     return moved;
 }
 
-/* Whether a token that came from a step at `t` would stay where it is if the letter stays, or `slides`:
- * but for clocks that each tick starts again. `due` is when the next region of the other ages begins. */
+/* Whether a token that was stepped at `t` loops from the next position on while the letter stays. Its
+ * clocks stay, or (`slides`) some are reset at each tick, and follow the last position. `due`: the next
+ * cut of the clocks that stay, up to which this is certain.
+ *
+ * Where only samples are positions (gap 0) the next position is not known: nothing is foretold but
+ * `due`. */
 bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due, bool *slides)
 {
     const int64_t next = t + a->step;
@@ -116,7 +129,7 @@ bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t 
         } else if (anchors[c] != k->clocks[c]) {
             return false;
         } else {
-            /* It is as it was. */
+            /* The clock stays. */
         }
     }
     if (slid) {
@@ -126,6 +139,8 @@ bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t 
     return true;
 }
 
+/* The first cut of a token's clocks after `t`. With `before`, only of the clocks that equal those:
+ * a clock that slides with time reaches no cut. */
 int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before)
 {
     const int64_t *cuts = a->cuts;
@@ -149,8 +164,8 @@ int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *bef
     return found;
 }
 
-/* Let time pass from `t` to `until` without a position; returns the instant of the decision, or the
- * next at which there may be one. */
+/* Let time pass from `t` to `until` without a position: a deadline is decided as the clock passes it,
+ * whatever the next letter is. Returns the instant of the decision, or the next cut behind `until`. */
 int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
 {
     int64_t cut = next_cut(a, k, t, NULL);
@@ -170,7 +185,8 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
     return cut;
 }
 
-/* Whether a step led to the same place: each clock is as it was, or went on with time. */
+/* Whether a step from (`was`, `before`) was a loop: same location, and each clock stayed or moved by
+ * one step (`slides`). The same edge is then taken until a clock that stayed reaches a cut. */
 static bool loops(const machine *a, int32_t was, const int64_t *before, const token *behind,
                   bool *slides)
 {
@@ -187,8 +203,10 @@ static bool loops(const machine *a, int32_t was, const int64_t *before, const to
     return loop;
 }
 
-/* Step a token through equal letters at `first` and each position up to `last`, jumping where it
- * only loops; returns the instant of the decision, or when it will not just loop on. */
+/* Step a token through equal letters at `first` and each position up to `last`. Once it loops it jumps
+ * to the position before the next cut, so the cost is the number of cuts and moves, not of positions.
+ * Between the ticks of a clock (step > 1) time alone may decide. Returns the instant of the decision,
+ * or the first one after which the token does not just loop on. */
 int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
                   bool *slides)
 {
@@ -239,6 +257,9 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
     return due;
 }
 
+/* Whether a location counts as TRUE at the end of the trace: some clause has only tests that hold. A
+ * test is (clock, or -1: nothing to test; whether its age is measured at `end` or at `reached`) with a
+ * least age. */
 bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int64_t end,
                   int64_t reached)
 {

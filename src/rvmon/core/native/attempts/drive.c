@@ -1,4 +1,14 @@
-/* The attempts of a judge through positions and time. */
+/* Takes all attempts of a judge through positions and time, and decides them.
+ *
+ * Three ways: a *visit* reads the letter at a position; a *pass* lets time go on with the letter as it
+ * is; a *reach* comes to an instant whose letter is not known yet, so that only deadlines before it and
+ * time itself can decide. Each attempt has a `due`: the next instant at which it changes though its
+ * letter does not; the judge's timer (`rules`) is the least of them. A visit with the letter of before
+ * touches only attempts that are due. A judge is *restless* if an attempt may move again at the next
+ * position though nothing changes; it *slides* if some clock is reset at each tick, so that such clocks
+ * have to be brought up to date before another letter comes.
+ *
+ * Networks and chains of windows have visits and passes of their own, which are called from here. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "notes/notes.h"
@@ -7,6 +17,8 @@
 
 #include <string.h>
 
+/* How attempts are taken: a letter at one position; the same letter at all positions from one instant
+ * to another; time without a position. */
 enum { BY_STEP, BY_RUN, BY_TIME };
 
 void set_rule_due(run *r, int32_t index, int64_t due)
@@ -14,6 +26,7 @@ void set_rule_due(run *r, int32_t index, int64_t due)
     timers_set(&r->rules, index, due);
 }
 
+/* Have a judge look at the next position, whatever changes there. */
 void set_restless(run *r, int32_t index)
 {
     judge *j = &r->judges[index];
@@ -25,17 +38,19 @@ void set_restless(run *r, int32_t index)
     }
 }
 
-/* Where attempts of a judge are taken. */
+/* One way of taking the attempts of a judge. */
 typedef struct {
     run *r;
     judge *j;
     const machine *a;
     int32_t index;
-    int32_t how;
-    int64_t from;
-    int64_t t;
+    int32_t how;               /* BY_STEP, BY_RUN, BY_TIME */
+    int64_t from;              /* BY_RUN: the first position; BY_TIME: where time comes from */
+    int64_t t;                 /* the last instant */
 } drive_context;
 
+/* Take one reading; returns the instant of its decision (location FAILED or PASSED), or else the next
+ * instant at which it changes though the letter does not. */
 static int64_t drive_token(const drive_context *g, token *k, int32_t letter)
 {
     const machine *a = g->a;
@@ -51,20 +66,21 @@ static int64_t drive_token(const drive_context *g, token *k, int32_t letter)
             set_restless(g->r, g->index);
             due = g->t + 1;
         } else {
-            /* It waits for another letter, or for time. */
+            /* `due` is the next cut: until then only another letter moves it. */
         }
     } else if (g->how == BY_RUN) {
         due = run_token(a, k, letter, g->from, g->t, &g->j->slides);
     } else {
         due = settle_token(a, k, g->from, g->t);
         if ((a->gap > 0) && (k->location > PASSED)) {
-            due = least(due, g->t); /* the position there is still to come */
+            due = least(due, g->t); /* the letter at `t` is not read yet: keep the attempt due */
         }
     }
     return due;
 }
 
-/* Decide an attempt whose run, with a letter, has come to that at `t`. */
+/* Decide an attempt at `t`. A jump BY_RUN may have left the noted state behind: step it up to `t`, as
+ * the reason tells where the attempt stood just before. */
 static void decide_driven(const drive_context *g, int32_t at, bool passed, int32_t letter, int64_t t)
 {
     if ((g->r->truth_log != NULL) && (g->how == BY_RUN)) {
@@ -73,7 +89,8 @@ static void decide_driven(const drive_context *g, int32_t at, bool passed, int32
     decide(g->r, g->index, at, passed, t);
 }
 
-/* Drive one attempt of which some reading of the unknown may differ; false if it was decided. */
+/* Take both readings of one attempt; false: it is decided. The worse one decides a pass, the better one
+ * a failure; the opposite outcome of a reading only ends that reading. */
 static bool drive_readings(const drive_context *g, int32_t at, attempt *x)
 {
     const machine *a = g->a;
@@ -83,7 +100,7 @@ static bool drive_readings(const drive_context *g, int32_t at, attempt *x)
     token better;
     const bool was_parted = x->parted;
     int64_t own = NEVER;
-    worse.moves = NULL; /* which of both it is nobody knows */
+    worse.moves = NULL; /* edges are counted where they are certain */
     better.moves = NULL;
     worse.location = x->location;
     worse.clocks = x->clocks;
@@ -123,7 +140,7 @@ static bool drive_readings(const drive_context *g, int32_t at, attempt *x)
     return true;
 }
 
-/* Drive one attempt, up to when it is due; false if it was decided. */
+/* Take one attempt and set when it is due; false: it is decided. */
 static bool drive(const drive_context *g, int32_t at, attempt *x)
 {
     int64_t due;
@@ -157,8 +174,9 @@ static drive_context drive_context_of(run *r, int32_t index, int32_t how, int64_
     return g;
 }
 
-/* Drive all attempts; if the letter stays as it `was` and none slides, those that are not due by `t`
- * stay as they are, too. */
+/* Take all attempts, unlink those that are decided or can never be, and set the judge's timer. With
+ * `was` the letter is the one of before and no clock slides: attempts that are not due by `t` stay, and
+ * as the list is sorted by `due` the first of them ends the loop. */
 static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t t, bool was)
 {
     const drive_context g = drive_context_of(r, index, how, from, t);
@@ -172,7 +190,7 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
     while (at >= 0) {
         attempt *x = attempt_at(r->home, at);
         const int32_t next = x->next;
-        const bool waits = some && (x->due > t); /* and so do all behind it */
+        const bool waits = some && (x->due > t); /* sorted: so do all after it */
         if (!waits && !drive(&g, at, x)) {
             remove_attempt(r, index, before, at);
         } else if (is_undecidable(x)) {
@@ -191,7 +209,8 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
     set_rule_due(r, index, next_due);
 }
 
-/* Let time come to `t` with the letters as they are; positions up to there are stepped. */
+/* Pass: let time come to `t` with the letter as it is, through all positions up to `t`. Where only
+ * samples are positions (gap 0) there are none. */
 void pass_to(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -218,11 +237,12 @@ void pass_to(run *r, int32_t index, int64_t t)
         j->position += whole_steps(t - position, step);
         j->restless = false;
     } else {
-        /* Time has come there before. */
+        /* The judge has seen `t`. */
     }
 }
 
-/* Step the attempts of an automaton at each tick up to `t`, the letter being as it was. */
+/* The same in an outage where only samples are positions, but any tick may be one: attempts of an
+ * automaton read the (unknown) letter at every tick up to `t`. */
 void pass_ticks(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -236,7 +256,7 @@ void pass_ticks(run *r, int32_t index, int64_t t)
     j->position = t;
 }
 
-/* Step what is queued, if something is. */
+/* Step the queue, if it is not empty. */
 static void step_or_rest(run *r, int32_t index, int64_t t)
 {
     if (queue_is_empty(&r->judges[index])) {
@@ -246,7 +266,8 @@ static void step_or_rest(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Take all attempts of a judge to the position `t`, at which the truths are. */
+/* Visit: take a judge to the position at `t`, whose truths the nodes have. Positions between the last
+ * visit and `t` had the letter of before: they are passed first if something was due or slides. */
 void visit_judge(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -297,7 +318,7 @@ void visit_judge(run *r, int32_t index, int64_t t)
     j->position = t;
 }
 
-/* Let time come to `t`, of which the letter is not known, from the instant before. */
+/* Reach: let time come to `t`, whose letter is not known yet; before it all have the old one. */
 void reach_judge(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -326,6 +347,7 @@ void reach_judge(run *r, int32_t index, int64_t t)
     drive_all(r, index, BY_TIME, j->position, t, !j->slides);
 }
 
+/* Have an attempt read the letter at `t`, its first position; false: it is decided. */
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t)
 {
     const drive_context g = drive_context_of(r, index, BY_STEP, t, t);

@@ -1,12 +1,17 @@
-/* Attempts of which age alone decides: a queue in the order of their triggers, cut into segments of one
- * location. A letter moves a segment at once; where a region of ages ends, the place is found by
- * halving. So a position costs as much as there are segments, however many attempts are open.
+/* Attempts in bulk: a queue in the order of their triggers, divided into segments of equal location.
  *
- * Who made the plan has proved (JUDGE_IN_RUNS) that there is one clock at most, which starts at the
- * trigger, and that older attempts are never led behind younger ones. As soon as something unknown
- * matters, attempts are driven one by one.
+ * The plan's maker has proved for such an automaton (JUDGE_IN_RUNS) that it has at most one clock,
+ * which is reset at the trigger, and that its locations have an order which every letter preserves:
+ * read from the oldest attempt to the youngest, locations never go back in it. So attempts of one
+ * location stand together and differ in age alone; a letter moves a whole segment, split where an age
+ * region ends (binary search). A position costs O(segments * regions * log attempts) plus the attempts
+ * it decides, and an open attempt takes 16 bytes.
  *
- * Source: AUTOMATA 3. */
+ * Readings of the unknown would break the order: at the first unknown letter the queue is dissolved
+ * into attempts of the pool, which drive.c takes one by one. The judge's list is empty while its queue
+ * is not, and the other way round.
+ *
+ * The proof: `moves_in_runs` in logic/automaton.py. Steps are in queue_steps.c. */
 #include "attempts/attempts.h"
 #include "notes/notes.h"
 #include "results/results.h"
@@ -23,7 +28,7 @@ bool queue_is_empty(const judge *j)
     return (j->queue == NULL) || (j->queue->count == 0);
 }
 
-/* The queue of a judge, if it may have one; false if memory is short. */
+/* Give a judge an empty queue if its automaton allows one; false: memory is short. */
 bool make_queue(run *r, int32_t index)
 {
     const judge_plan *plan_of_judge = &r->part->judges[index];
@@ -47,7 +52,8 @@ void clear_queue(judge *j)
     }
 }
 
-/* One that is queued, as an attempt by itself; until the next one is asked for. */
+/* A queued attempt in the form of the pool's, in the part's scratch slot: valid until the next call.
+ * `due` is in the past, so that it is driven when it is put into the pool. */
 static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t location)
 {
     attempt *x = r->home->lone;
@@ -62,7 +68,7 @@ static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t
     return x;
 }
 
-/* Tell of one that was decided, which stood in a location before. */
+/* Report a queued attempt that is decided at `t`; `location`: where it stood just before. */
 void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
 {
     const attempt *x = attempt_of_queued(g->r, one, location);
@@ -74,11 +80,12 @@ void report_queued(const queueing *g, const queued *one, int32_t location, bool 
     report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
 }
 
-/* Make a queue larger; false if memory is short. */
+/* Double the ring of a queue; false: memory is short. */
 static bool widen_queue(rv_monitor *m, queue *q)
 {
     const int32_t room = (q->room > 0) ? 2 * q->room : 8;
-    queued *made = (q->room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
+    queued *made =
+        (q->room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
     int32_t i;
     if (made == NULL) {
         m->spoilt = true;
@@ -94,7 +101,8 @@ static bool widen_queue(rv_monitor *m, queue *q)
     return true;
 }
 
-/* One that is queued; with `append`, it is put behind those that there are. NULL: memory is short. */
+/* The i-th slot of a queue; with `append` a new one at its end (`i` is the old count). NULL: memory is
+ * short. */
 queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
 {
     if (append) {
@@ -106,8 +114,8 @@ queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
     return item(q, i);
 }
 
-/* Put an attempt that begins at `t` behind the others, unless that decides it; false if memory is
- * short. */
+/* Start an attempt at `t`: step it once, report it if that decides it, else append it. The last segment
+ * is where the youngest stand. False: memory is short. */
 bool queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
@@ -143,7 +151,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         q->segments[q->segment_count].count = 1;
         q->segment_count++;
     } else {
-        r->home->monitor->spoilt = true;
+        r->home->monitor->spoilt = true; /* only a forged plan gets here */
         return false;
     }
     if (!rests(g.a, &k, t, g.j->letter, &due, &slides) || slides) {
@@ -154,7 +162,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     return true;
 }
 
-/* Drive those that are queued one by one from now on: something unknown matters. */
+/* Move all queued attempts to the judge's list: the letter is unknown. */
 void dissolve_queue(run *r, int32_t index)
 {
     const queueing g = queueing_of(r, index);
@@ -183,7 +191,8 @@ void dissolve_queue(run *r, int32_t index)
     clear_queue(g.j);
 }
 
-/* Settle those that are queued when time has come to the end. */
+/* Report the queued attempts, which are open at the end of the trace. They are sure, so that `outcomes`
+ * depends on the rule for the end alone. */
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     const judge_plan *own = &r->part->judges[index];
@@ -204,13 +213,13 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
     }
 }
 
-/* The trigger and number of one that is queued, the oldest first. */
+/* The i-th oldest attempt of a judge's queue: its trigger and number. */
 const queued *queue_item(const judge *j, int32_t i)
 {
     return item(j->queue, i);
 }
 
-/* The same as an attempt by itself. */
+/* The same in the form of the pool's attempts; valid until the next call. */
 const attempt *queued_attempt(const run *r, int32_t index, int32_t i)
 {
     const queue *q = r->judges[index].queue;

@@ -1,10 +1,14 @@
-/* Attempts of a queue through positions and time: a letter moves a segment at once. */
+/* Steps of a queue (queue.c): a letter, or time, moves whole segments.
+ *
+ * A step goes through the segments from the oldest to the youngest attempt, splits each at the age
+ * regions, looks the edge of each piece up once, and writes new segments; pieces that go to the same
+ * location as the one before them are merged. The ring is compacted in place. */
 #include "attempts/attempts.h"
 #include "results/results.h"
 
 #include <string.h>
 
-/* The first item from one on, and before another, that was triggered after `t`. */
+/* The first item of [from, end) that was triggered after `t`; `end`: none. */
 static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
 {
     int32_t low = from;
@@ -12,7 +16,7 @@ static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
     if (left == 0) {
         return low;
     }
-    while (left > 1) { /* which half is next nobody can foretell: no branch */
+    while (left > 1) { /* a conditional move: a branch here would be mispredicted half the time */
         const int32_t half = left / 2;
         low += (item(q, low + half - 1)->triggered <= t) ? half : 0;
         left -= half;
@@ -20,6 +24,7 @@ static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
     return low + ((item(q, low)->triggered <= t) ? 1 : 0);
 }
 
+/* The ages at which the clock of a location enters the next region. */
 static const int64_t *cuts_of(const machine *a, int32_t location, int32_t *count)
 {
     const int32_t at = location * a->clocks;
@@ -32,15 +37,15 @@ static int32_t row_of_region(const machine *a, int32_t location, int32_t region)
     return a->bases[location] + region * a->strides[location * a->clocks];
 }
 
-/* Where time alone leads those of a row. */
+/* Where time alone leads from a row, whatever the next letter is. */
 static int32_t settled_at(const machine *a, int32_t row, int32_t location)
 {
     const int32_t truth = a->time_values[row];
     return (truth == IS_UNKNOWN) ? location : ((truth == IS_TRUE) ? PASSED : FAILED);
 }
 
-/* The end of the items from one on that are in one region at `t`, and that region. The oldest are in
- * the last ones. */
+/* The age region of item `from` at `t`, and the end of the items of [from, end) that share it. Items
+ * are sorted by age, the oldest first, so regions come in falling order. */
 static int32_t end_of_region(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t,
                              int32_t *region)
 {
@@ -64,7 +69,7 @@ static void tell_decided(const queueing *g, int32_t location, int32_t from, int3
     }
 }
 
-/* So many of a segment go somewhere. */
+/* Count an edge that `count` attempts take together. */
 static void count_segment(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t)
 {
     rv_hit *moves = moves_of(g->r, g->index);
@@ -73,14 +78,15 @@ static void count_segment(const queueing *g, int32_t location, int32_t target, i
     }
 }
 
-/* The segments that are made while the queue is gone through: what stays moves up. */
+/* The segments that a step has made so far. */
 typedef struct {
     segment made[SEGMENTS_MOST];
-    int32_t count;
-    int32_t base;              /* the place of the first item that stays */
-    int32_t kept;
+    int32_t count;             /* of segments */
+    int32_t base;              /* the place of the first item that stays: the new head */
+    int32_t kept;              /* items that stay */
 } regrouping;
 
+/* Keep the items [from, end), which are in `location` now; they move up over decided ones. */
 static void keep_items(const queueing *g, regrouping *s, int32_t location, int32_t from, int32_t end)
 {
     const int32_t count = end - from;
@@ -92,7 +98,7 @@ static void keep_items(const queueing *g, regrouping *s, int32_t location, int32
         s->made[s->count].count = count;
         s->count++;
     } else {
-        g->r->home->monitor->spoilt = true; /* no plan of ours comes here */
+        g->r->home->monitor->spoilt = true; /* only a forged plan gets here */
         return;
     }
     if (s->kept == 0) {
@@ -115,7 +121,7 @@ static void replace_segments(const queueing *g, const regrouping *s)
     (void)memcpy(q->segments, s->made, sizeof q->segments);
 }
 
-/* Whether all of a segment stay where they are at the next position if the letter stays. */
+/* Whether all items of a segment stay in its location at the next position if the letter stays. */
 static bool rests_all(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t)
 {
     int32_t at = from;
@@ -131,7 +137,7 @@ static bool rests_all(const queueing *g, int32_t location, int32_t from, int32_t
     return true;
 }
 
-/* When the first of a segment enters another region after `t`. */
+/* The first instant after `t` at which an item of a segment enters another age region. */
 static int64_t next_region(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t)
 {
     int32_t count;
@@ -147,7 +153,8 @@ static int64_t next_region(const queueing *g, int32_t location, int32_t from, in
     return found;
 }
 
-/* Set when the queue is due, as it stands at `t`; with `moving`, it may go on moving by itself. */
+/* Set when the queue is due next, as it stands at `t`. With `moving` a letter was read: if an attempt
+ * would go on moving by the same letter, it is due at the next position. */
 static void set_queue_due(const queueing *g, int64_t t, bool moving)
 {
     int64_t due = NEVER;
@@ -167,8 +174,7 @@ static void set_queue_due(const queueing *g, int64_t t, bool moving)
     set_rule_due(g->r, g->index, due);
 }
 
-/* Take all that are queued through what the letter says at the position at `t`, or, between positions, what
- * time alone decides then. */
+/* One step of the queue at `t`: by the letter if it is a position, else by time alone. */
 static void step_queue(const queueing *g, int64_t t, bool is_position)
 {
     regrouping s;
@@ -182,8 +188,9 @@ static void step_queue(const queueing *g, int64_t t, bool is_position)
             int32_t region;
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t row = row_of_region(g->a, location, region);
-            const int32_t target = is_position ? g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]]
-                                               : settled_at(g->a, row, location);
+            const int32_t target = is_position
+                ? g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]]
+                : settled_at(g->a, row, location);
             count_segment(g, location, target, until - from, t);
             if (target <= PASSED) {
                 tell_decided(g, location, from, until, target == PASSED, t);
@@ -197,14 +204,15 @@ static void step_queue(const queueing *g, int64_t t, bool is_position)
     set_queue_due(g, t, is_position);
 }
 
-/* Take all that are queued to the position at `t`, of which the letter was read. */
+/* Visit the position at `t`, whose letter the judge has. */
 void queue_visit(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     step_queue(&g, t, true);
 }
 
-/* Let time come to `t`; if there is a position at every tick, up to there with the letter as it is. */
+/* Let time come to `t` with the letter as it is: steps at the due instants, nothing between them. Where
+ * only samples are positions time alone decides, and the next sample has to be looked at. */
 void queue_pass(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
@@ -222,7 +230,7 @@ void queue_pass(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Let time come to `t`, of which the letter is not known. */
+/* Let time come to `t`, whose letter is not known yet: time alone decides. */
 void queue_reach(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);

@@ -1,4 +1,7 @@
-/* Attempts as they begin: where a trigger starts one, and how its judge takes it in. */
+/* Starting attempts: when the truth of a trigger starts one, and how its judge takes it in.
+ *
+ * Called at a position after its formulas are evaluated and before the run moves on. Costs one slot of
+ * the pool per attempt, or 16 bytes in a queue (queue.c). */
 #include "attempts/attempts.h"
 #include "margins/margins.h"
 #include "notes/notes.h"
@@ -7,17 +10,23 @@
 
 #include <string.h>
 
-/* Whether a judge has to see positions though no attempt is open. */
+/* Whether a judge reads every letter even while it has no open attempt: a network with past operators,
+ * whose later attempts depend on positions before them. */
 bool needs_every_position(const run *r, int32_t index)
 {
     const judge_plan *judged = &r->part->judges[index];
-    if ((judged->automaton >= 0) || (judged->form < 0) || (r->part->forms[judged->form].looks_back == 0)) {
+    if ((judged->automaton >= 0) || (judged->form < 0)
+        || (r->part->forms[judged->form].looks_back == 0)) {
         return false;
     }
     return (r->part->plan->captured == 0) || (((r->judging >> index) & 1) != 0);
 }
 
-/* Whether the truth of its trigger starts an attempt of a judge. */
+/* Feed a judge the truth of its trigger at this position; returns whether an attempt starts.
+ *
+ * A level starts one at its edge from FALSE to TRUE, a pulse at each position where it is TRUE, an
+ * episode where its trigger stops being FALSE. The judge of attempts in doubt (HIDDEN) starts one where
+ * its DOUBT node becomes UNKNOWN. */
 bool take_trigger(run *r, int32_t index, uint8_t truth)
 {
     const judge_plan *judged = &r->part->judges[index];
@@ -25,7 +34,7 @@ bool take_trigger(run *r, int32_t index, uint8_t truth)
     judge *j = &r->judges[index];
     bool start = (truth == IS_TRUE) && (pulse || (j->before == IS_FALSE));
     if ((r->part->plan->captured > 0) && !starts_here(r, index) && !j->running) {
-        return false; /* its attempt has begun, and is over */
+        return false; /* this run exists for one attempt, which is over */
     }
     j->before = truth;
     if ((judged->flags & JUDGE_EPISODIC) != 0) {
@@ -34,16 +43,16 @@ bool take_trigger(run *r, int32_t index, uint8_t truth)
                                                         : (truth != IS_FALSE));
         j->running = start || (j->running && (truth != IS_FALSE));
     } else if (pulse && (truth == IS_TRUE)) {
-        /* It starts another one at the next position, if it is still true there. */
+        /* Nothing changes where a pulse stays TRUE, so it has to be listed to be looked at again. */
         r->repeating[r->repeating_count] = index;
         r->repeating_count++;
     } else {
-        /* It waits for the next edge. */
+        /* A level: the next edge changes its node. */
     }
     return start;
 }
 
-/* Judge an attempt at the position at `t`, at which it begins; false if that decides it. */
+/* Judge an attempt at `t`, its first position; false: it is decided. */
 static bool remains(run *r, int32_t index, int32_t at, int64_t t)
 {
     if (is_chained(r, index)) {
@@ -55,7 +64,8 @@ static bool remains(run *r, int32_t index, int32_t at, int64_t t)
     return drive_from(r, index, at, t);
 }
 
-/* Start an attempt that is judged in this run. */
+/* Start an attempt that this run judges, at the position at `t`. `triggered` is earlier than `t` if the
+ * attempt was triggered in a parent run (captured values). */
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const judge_plan *judged = &r->part->judges[index];
@@ -64,7 +74,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     attempt *x;
     int32_t at;
     if (judged_here && (!has_attempts(j) || (j->position < t))) {
-        visit_judge(r, index, t);
+        visit_judge(r, index, t); /* a judge without attempts has not followed the letters */
     }
     if (r->truth_log != NULL) {
         note_trigger(r, index, triggered);
@@ -76,7 +86,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     }
     at = new_attempt(r);
     if (at < 0) {
-        leave_episode(r, index); /* or it would be tried again at each position */
+        leave_episode(r, index); /* memory is short: do not try again at each position */
         return;
     }
     x = attempt_at(r->home, at);
@@ -107,7 +117,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         j->current = at;
     }
     if (!judged_here) {
-        x->cannot_pass = true; /* what it owes here will not be known */
+        x->cannot_pass = true; /* the letter here is lost: what it owes here will never be known */
         x->parted = true;
         x->location = FAILED;
         x->better = PASSED;
@@ -117,7 +127,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     }
 }
 
-/* Judge an attempt that is in no list from the position at `t` on. */
+/* Judge an attempt that is in no list at `t`, and list it with its judge unless that decides it. */
 void enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -139,11 +149,11 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
     } else if (r->part->plan->captured == 0) {
         free_attempt(r->home, at);
     } else {
-        /* It is told of at the end of the call. */
+        /* With captured values the slot is freed when it is reported, at the end of the call. */
     }
 }
 
-/* Start an attempt at the position at `t`. */
+/* Start an attempt at the position at `t`: in this run, or, if it captures values, in a fork of it. */
 void begin(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     if ((r->part->plan->captures.count > 0) && starts_here(r, index)) {

@@ -1,4 +1,5 @@
-/* What the members of a window come to as a number, and when that may be another though nothing comes. */
+/* The fold of a window as a number that expressions read (CODE_WINDOW), and when it can change though
+ * no input does. Numbers are rounded once, from exact sums; unknown where a possible member matters. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -6,8 +7,11 @@
 
 #include <string.h>
 
-/* ---- the least and the greatest: members that a later one outdoes matter no more */
+/* ---- MIN and MAX */
 
+/* A monotonic wedge: an entry that is not better than the new number expires before it, and can never
+ * be the extreme again. The front is then the extreme of the window; amortised O(1). An unknown number
+ * beats every entry, and a known one beats none that is unknown. */
 bool push_extreme(window *w, const rv_number *number)
 {
     stretches *s = w->s;
@@ -40,7 +44,7 @@ static rv_number real_of(double number)
     return (number - number != 0.0) ? UNKNOWN_NUMBER : found;
 }
 
-/* A whole number over another. */
+/* The quotient of two whole numbers, rounded once. */
 static rv_number share_of(int64_t number, int64_t by)
 {
     uint32_t sum[SUM_LIMBS] = {0};
@@ -49,12 +53,14 @@ static rv_number share_of(int64_t number, int64_t by)
     return real_of(exact_nearest(sum, by));
 }
 
-/* What may be a member must not matter. */
+/* An exact sum over `by`: whole if all numbers were. Unknown if some were, or if the two readings, with
+ * and without possible members, differ. */
 static rv_number sum_of(const window *w, int64_t by)
 {
     const uint32_t *sum = w->x->limb;
     int64_t whole;
-    if ((w->s->lost > 0) || (w->s[1].apart && (memcmp(sum, sum + SUM_LIMBS, SUM_LIMBS * sizeof *sum) != 0))) {
+    if ((w->s->lost > 0)
+        || (w->s[1].apart && (memcmp(sum, sum + SUM_LIMBS, SUM_LIMBS * sizeof *sum) != 0))) {
         return UNKNOWN_NUMBER;
     }
     if ((w->fold != FOLD_SUM) || !w->s->left) {
@@ -63,6 +69,7 @@ static rv_number sum_of(const window *w, int64_t by)
     return exact_whole(sum, &whole) ? whole_of(whole) : UNKNOWN_NUMBER;
 }
 
+/* The fold now. */
 static rv_number comes_to(const window *w)
 {
     const stretches *s = w->s;
@@ -89,14 +96,15 @@ static rv_number comes_to(const window *w)
         }
         return number;
     case FOLD_AGO:
-        return (some && (stretch_of(s, 0)->begin <= w->t - w->n->high)) ? member_number(w, 0, false) : number;
+        return (some && (stretch_of(s, 0)->begin <= w->t - w->n->high)) ? member_number(w, 0, false)
+                                                                        : number;
     default: return some ? member_number(w, 0, false) : number;
     }
 }
 
 /* ---- instants */
 
-/* Whether what goes on changes nothing for as long as it does. */
+/* Whether the fold stays while the last entry grows. */
 static bool is_level(const window *w, bool known)
 {
     const stretches *s = w->s;
@@ -111,6 +119,7 @@ static bool is_level(const window *w, bool known)
     }
 }
 
+/* The next instant at which the fold can change though no input does; it may be early, never late. */
 static int64_t moves_at(const window *w, bool known)
 {
     const stretches *s = w->s;
@@ -135,7 +144,7 @@ static int64_t moves_at(const window *w, bool known)
     if (s->growing && !is_level(w, known)) {
         return w->t + w->unit;
     }
-    /* What is not known stays so till all of it has left. */
+    /* An uncertain entry counts until all of it has expired. */
     return alone ? NEVER : gone_from(is_counted(w, 0, false) ? first->begin : first->end, w->n->high);
 }
 

@@ -1,14 +1,17 @@
-/* Which members of a window have the same number: a table of the places of the latest ones in their ring.
+/* Distinct numbers in a window: a hash table from a number to the latest entry that has it.
  *
- * Places of members that have left stay until others need theirs, or the table is made anew; what stands at
- * a place tells whether it is one. */
+ * Open addressing with linear probing; a slot holds a place in the ring s[1], -1: free. Expired entries
+ * are not removed: a slot whose place is not in the ring any more, or is marked MEMBER_OLDER, counts as
+ * deleted and is reused. The table is made anew when it is half full or the ring has moved. Expected
+ * O(1) a member. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
 #include "input/input.h"
 
 #include <string.h>
 
-/* Equal numbers have one: a whole one that is a double has that of the double. */
+/* A hash that is equal for equal numbers, so a whole number that is a double is hashed as that double.
+ * Multiplication by 2^64 over the golden ratio (Knuth, TAOCP 3, 6.4). */
 static uint32_t hash_of(const rv_number *number)
 {
     uint64_t bits = (uint64_t)number->as.whole;
@@ -25,7 +28,8 @@ static uint32_t hash_of(const rv_number *number)
     return (uint32_t)(bits >> 32);
 }
 
-/* Which member stands at a place, if it is the latest with its number; -1: none. */
+/* The entry at a place of the ring, if it is in it and the latest with its number; -1: the slot is
+ * stale. */
 static int32_t latest_at(const window *w, int32_t place)
 {
     const stretches *own = w->s + 1;
@@ -33,6 +37,7 @@ static int32_t latest_at(const window *w, int32_t place)
     return ((i < own->count) && ((own->at[place].begin & MEMBER_OLDER) == 0)) ? i : -1;
 }
 
+/* Insert a place; the number is not in the table. */
 static void put_place(stretches *s, const rv_number *number, int32_t place)
 {
     uint32_t slot = hash_of(number) & (uint32_t)(s->slot_room - 1);
@@ -43,7 +48,8 @@ static void put_place(stretches *s, const rv_number *number, int32_t place)
     s->known_slots++;
 }
 
-/* Make the table of what is in the ring, with as much room again; false: memory is short. */
+/* Fill the table anew from the ring, with at least four slots for each place of the ring. False: memory
+ * is short. */
 static bool make_table(window *w)
 {
     stretches *s = w->s;
@@ -74,14 +80,15 @@ static bool make_table(window *w)
     return true;
 }
 
-/* The place of the latest member with a number; -1: there is none. The window learns where the next one
- * is to be noted. */
+/* The place of the latest entry with a number; -1: none. Leaves in `w->slot` where note_latest() puts
+ * the entry that is appended next. */
 int32_t find_latest(window *w, const rv_number *number)
 {
     stretches *s = w->s;
     uint32_t slot;
     w->slot = -1;
-    if (((s->known_slots < 0) || (s->slot_room == 0) || (s->known_slots > s->slot_room / 2)) && !make_table(w)) {
+    if (((s->known_slots < 0) || (s->slot_room == 0) || (s->known_slots > s->slot_room / 2))
+        && !make_table(w)) {
         return -1;
     }
     slot = hash_of(number) & (uint32_t)(s->slot_room - 1);
@@ -94,9 +101,9 @@ int32_t find_latest(window *w, const rv_number *number)
                 return s->slots[slot];
             }
         } else if (w->slot < 0) {
-            w->slot = (int32_t)slot; /* what stood there has left */
+            w->slot = (int32_t)slot; /* the first stale slot of the probe is reused */
         } else {
-            /* An earlier one serves. */
+            /* A live entry of another number, or a second stale slot. */
         }
         slot = (slot + 1) & (uint32_t)(s->slot_room - 1);
     }
@@ -107,7 +114,7 @@ int32_t find_latest(window *w, const rv_number *number)
     return -1;
 }
 
-/* The last member is the latest with the number that was looked for. */
+/* Enter the last entry of the ring, whose number find_latest() was asked for. */
 void note_latest(window *w)
 {
     stretches *s = w->s;

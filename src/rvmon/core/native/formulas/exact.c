@@ -1,4 +1,9 @@
-/* Sums in fixed point: numbers in two's complement of 32 bits a limb.
+/* Exact sums as long fixed point numbers in two's complement, limbs of 32 bits, the lowest first.
+ *
+ * The lowest bit of a sum is worth 2^-LOWEST, below the smallest double (2^-1074); a sum of squares has
+ * twice as many bits on either side. Products of 64 bits are added limb by limb with carry, so adding
+ * costs a few limbs, comparing with 0 reads the sign, and only variance multiplies sum by sum
+ * (O(SUM_LIMBS^2), zero limbs skipped).
  *
  * Source: Kulisch, Computer Arithmetic and Validity, 2008 (the long accumulator). */
 #include "formulas/exact.h"
@@ -6,10 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-#define LOWEST 1088 /* minus the exponent of the lowest bit of a sum; of squares it is twice that */
+#define LOWEST 1088 /* 34 limbs; of squares twice that */
 #define VARIANCE_LIMBS (SQUARE_LIMBS + 4)
 
-/* A number: its size is a whole one, times 2^bit in units of the lowest bit of a sum. */
+/* A number: +-size * 2^bit, in units of the lowest bit of a sum. */
 typedef struct {
     uint64_t size;
     int32_t bit;
@@ -21,10 +26,11 @@ static fixed_point fixed_of(const rv_number *number)
     fixed_point found;
     if (number->kind == RV_WHOLE) {
         found.negative = number->as.whole < 0;
-        found.size = found.negative ? UINT64_C(0) - (uint64_t)number->as.whole : (uint64_t)number->as.whole;
+        found.size =
+            found.negative ? UINT64_C(0) - (uint64_t)number->as.whole : (uint64_t)number->as.whole;
         found.bit = LOWEST;
     } else {
-        const int32_t smallest = LOWEST - 1074; /* the lowest bit of the smallest doubles */
+        const int32_t smallest = LOWEST - 1074; /* the bit of the smallest subnormal */
         uint64_t bits;
         int32_t exponent;
         (void)memcpy(&bits, &number->as.real, sizeof bits);
@@ -36,7 +42,8 @@ static fixed_point fixed_of(const rv_number *number)
     return found;
 }
 
-/* Add the product of two numbers times 2^bit, or take it off. */
+/* x += a * b * 2^bit, or -=: the product of 128 bits is shifted within limbs and added with carry. The
+ * carry out of the highest limb is dropped, as two's complement has it. */
 static void add_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit, bool off)
 {
     const uint64_t low = (a & UINT32_MAX) * (b & UINT32_MAX);
@@ -45,7 +52,8 @@ static void add_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int3
     const uint64_t high = (a >> 32) * (b >> 32);
     const uint64_t middle = (low >> 32) + (one & UINT32_MAX) + (other & UINT32_MAX);
     const uint64_t upper = (middle >> 32) + (one >> 32) + (other >> 32) + high;
-    const uint32_t word[6] = {0, (uint32_t)low, (uint32_t)middle, (uint32_t)upper, (uint32_t)(upper >> 32), 0};
+    const uint32_t word[6] = {0, (uint32_t)low, (uint32_t)middle, (uint32_t)upper,
+                              (uint32_t)(upper >> 32), 0};
     const int32_t by = bit % 32;
     uint64_t carry = 0;
     int32_t i;
@@ -63,8 +71,9 @@ static void add_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int3
     }
 }
 
-/* The same of a number and the square of another. */
-static void add_square_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit, bool off)
+/* x += a * b^2 * 2^bit, or -=: with b in halves of 32 bits, whose products fit in 64. */
+static void add_square_product(uint32_t *x, int32_t limbs, uint64_t a, uint64_t b, int32_t bit,
+                               bool off)
 {
     const uint64_t low = b & UINT32_MAX;
     const uint64_t high = b >> 32;
@@ -106,7 +115,7 @@ bool exact_is_enough(const uint32_t *sum, bool strict)
     return is_enough(sum, SUM_LIMBS, strict);
 }
 
-/* The three highest limbs, times 2 to the power of the exponent. */
+/* The three highest limbs that are not mere sign, times 2^exponent: relative error below 2^-50. */
 static double roughly(const uint32_t *x, int32_t limbs, int32_t *exponent)
 {
     const uint32_t sign = is_negative(x, limbs) ? UINT32_MAX : 0;
@@ -128,7 +137,7 @@ double exact_roughly(const uint32_t *sum, int32_t *exponent)
     return roughly(sum, SUM_LIMBS, exponent);
 }
 
-/* n times the sum of squares, less the square of the sum. */
+/* rest = count * squares - sum^2, which is count^2 times the variance; in units of 2^-(2 LOWEST). */
 static void scaled_variance(uint32_t *rest, const uint32_t *sum, const uint32_t *squares, int64_t count)
 {
     uint32_t size[SUM_LIMBS];
@@ -156,7 +165,7 @@ static void scaled_variance(uint32_t *rest, const uint32_t *sum, const uint32_t 
     }
 }
 
-/* Less n * n times the limit. */
+/* Decides count^2 * variance - count^2 * limit >= 0. */
 bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, const rv_number *limit,
                   bool strict)
 {
@@ -167,9 +176,9 @@ bool exact_varies(const uint32_t *sum, const uint32_t *squares, int64_t count, c
     return is_enough(rest, VARIANCE_LIMBS, strict);
 }
 
-/* ---- as doubles */
+/* ---- rounding to doubles */
 
-/* A number whose lowest bit is worth 2^-lowest, over a whole one, or over the square of that. */
+/* A long number whose lowest bit is worth 2^-lowest, over `by`, or over its square. */
 typedef struct {
     const uint32_t *limb;
     int32_t limbs;
@@ -178,7 +187,8 @@ typedef struct {
     bool squared;
 } quotient;
 
-/* The sign of what twice a quotient is above two numbers together. */
+/* The sign of 2 q - (a + b): on which side of the middle of a and b the quotient lies; exact, as all is
+ * multiplied by the divisor. */
 static int compare_doubled(const quotient *q, double a, double b)
 {
     const double both[2] = {a, b};
@@ -209,8 +219,8 @@ static bool is_odd(double number)
     return (bits & 1) != 0;
 }
 
-/* The nearest double, of two the even one; infinite beyond all: the one near it that no middle between
- * two lies before. */
+/* The nearest double, halves to even; infinite beyond all. Starts from an estimate and goes to the
+ * neighbour as long as the quotient lies beyond the middle between both. */
 static double nearest(const quotient *q)
 {
     const double by = (double)q->by;
@@ -219,7 +229,7 @@ static double nearest(const quotient *q)
     double found = ldexp(q->squared ? rough / by / by : rough / by, exponent - q->lowest);
     int32_t steps;
     found = fmax(-0x1.fffffffffffffp1023, fmin(found, 0x1.fffffffffffffp1023));
-    for (steps = 0; steps < 64; steps++) { /* few; of what no snapshot of ours has, no more */
+    for (steps = 0; steps < 64; steps++) { /* a few; bounded for sums of a forged snapshot */
         const double above = nextafter(found, HUGE_VAL);
         const double below = nextafter(found, -HUGE_VAL);
         const int up = compare_doubled(q, found, above);

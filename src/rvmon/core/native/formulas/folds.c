@@ -1,5 +1,9 @@
-/* What the members of a window come to beside a limit, and when that may be another though nothing
- * comes. */
+/* The fold of a window compared with its limit, and when that comparison can flip though no input
+ * changes.
+ *
+ * Between changes at most the last entry grows and the oldest one shrinks, each by one member a step:
+ * counts and sums are piecewise linear in time, and the next flip is found by solving for it. The timer
+ * may be early (the node is then evaluated again), never late. `due`: that instant, NEVER: none. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -8,9 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- whole numbers: of members, or of ticks */
+/* ---- COUNT, DURATION, DISTINCT: whole numbers of members, or of ticks */
 
-/* The least whole number that is enough. */
+/* The least whole number that satisfies the limit, within +-LIMIT. */
 static int64_t least_whole(const rv_number *limit, bool strict)
 {
     double up;
@@ -23,8 +27,8 @@ static int64_t least_whole(const rv_number *limit, bool strict)
     return (up >= 0x1p62) ? LIMIT : ((up <= -0x1p62) ? -LIMIT : (int64_t)up);
 }
 
-/* The next instant at which there may be enough, or no longer: a flip, or one before it at which a
- * member begins or ends to leave the window. */
+/* The next instant at which a count can pass `enough`, or an earlier one at which an entry begins or
+ * ends to expire, from where it is worked out anew. */
 static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bool better)
 {
     const stretches *s = w->s;
@@ -57,24 +61,28 @@ static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bo
     return goes ? gone_from(first->end, w->n->high) : least(grown, gone_from(first->end, w->n->high));
 }
 
+/* A counter, which a forged snapshot may have made negative or huge. */
 static int64_t counted(int64_t x)
 {
     return (x < 0) ? 0 : least(x, LIMIT);
 }
 
+/* COUNT, DURATION: TRUE if the certain members are enough, FALSE if the possible ones are not. */
 static uint8_t folded_count(const window *w, int64_t enough, int64_t *due)
 {
     const int64_t sure = counted(w->s->total);
     const int64_t possible = counted(sure + counted(w->s[1].total));
     const int32_t last = w->s->count - 1;
     *due = count_flips_at(w, sure, enough, false);
-    if ((possible > sure) || (w->s->growing && (is_counted(w, last, false) != is_counted(w, last, true)))) {
+    if ((possible > sure)
+        || (w->s->growing && (is_counted(w, last, false) != is_counted(w, last, true)))) {
         *due = least(*due, count_flips_at(w, possible, enough, true));
     }
     return (uint8_t)((sure >= enough ? 1U : 0U) + (possible >= enough ? 1U : 0U));
 }
 
-/* So many have to leave at least until there are too few; what is not known may be anything. */
+/* DISTINCT: at least `spare` entries have to expire before there are too few. An unknown number may be
+ * a further one. */
 static uint8_t folded_distinct(const window *w, int64_t enough, int64_t *due)
 {
     const stretches *s = w->s;
@@ -87,24 +95,24 @@ static uint8_t folded_distinct(const window *w, int64_t enough, int64_t *due)
     return holds ? IS_TRUE : ((s->lost > 0) ? IS_UNKNOWN : IS_FALSE);
 }
 
-/* ---- numbers that are added up */
+/* ---- SUM, INTEGRAL, MEAN, VARIANCE: exact sums */
 
-/* What is compared: a sum with so many times a limit. */
+/* sum + steps * (comes - goes) >= (asked + steps * more) * limit, or > if strict. */
 typedef struct {
     rv_number limit;
-    int64_t asked;             /* times */
-    int64_t more;              /* per step */
-    rv_number comes;           /* at each step; unknown: nothing does */
-    rv_number goes;
+    int64_t asked;             /* times the limit: 1, of MEAN the number of members, of INTEGRAL 10^9 */
+    int64_t more;              /* change of that per step */
+    rv_number comes;           /* what is added at each step; unknown: nothing */
+    rv_number goes;            /* what expires at each step; unknown: nothing */
     bool strict;
 } comparison;
 
-/* A sum, or what is left of it. */
+/* An exact sum. */
 typedef struct {
     uint32_t limb[SUM_LIMBS];
 } exact_rest;
 
-/* What the sum is above that, after so many steps. */
+/* The left side less the right one, after some steps. */
 static exact_rest rest_after(const uint32_t *sum, const comparison *a, int64_t steps)
 {
     exact_rest found;
@@ -125,8 +133,9 @@ static bool is_enough_after(const uint32_t *sum, const comparison *a, int64_t st
     return exact_is_enough(found.limb, a->strict);
 }
 
-/* The first of some steps after which there is enough, or no longer; `most`: after so many it is so.
- * The rest is a line: where it crosses 0 is worked out roughly, then found among what is near. */
+/* The first step after which the comparison is not as it is now (`holds`); after `most` it is not. The
+ * rest is a line: where it crosses 0 is worked out in doubles, which narrows the range that is then
+ * searched by halving, exactly. */
 static int64_t first_step(const uint32_t *sum, const comparison *a, int64_t most, bool holds)
 {
     const exact_rest now = rest_after(sum, a, 0);
@@ -158,8 +167,10 @@ static int64_t first_step(const uint32_t *sum, const comparison *a, int64_t most
     return high;
 }
 
-/* The next instant at which the truth may be another though nothing comes. */
-static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a, bool better, bool holds)
+/* The next instant at which a comparison can flip though no input changes. Completes `a` with what
+ * comes and goes at each step from here on. */
+static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a, bool better,
+                            bool holds)
 {
     const stretches *s = w->s;
     const bool mean = w->fold == FOLD_MEAN;
@@ -169,7 +180,7 @@ static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a,
     int64_t steps;
     bool leaving;
     if ((s->count == 0) || (!holds && !s->growing && !mean && !s[1].right)) {
-        return NEVER; /* without a negative number it only shrinks */
+        return NEVER; /* without negative numbers a sum can only shrink */
     }
     first = stretch_of(s, 0);
     leaves_at = gone_from(first->begin, w->n->high);
@@ -185,7 +196,7 @@ static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a,
     } else if (!leaving) {
         return leaves_at;
     } else {
-        /* It goes. */
+        /* The oldest entry expires from now on. */
     }
     a->more = mean ? ((s->growing ? 1 : 0) - (leaving ? 1 : 0)) : 0;
     if (leaving) {
@@ -200,7 +211,7 @@ static int64_t sum_flips_at(const window *w, const uint32_t *sum, comparison *a,
     return w->t + first_step(sum, a, steps, holds) * w->unit;
 }
 
-/* By both readings. */
+/* SUM, INTEGRAL, MEAN: in both readings if there are two. */
 static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
 {
     const int32_t readings = w->s[1].apart ? 2 : 1;
@@ -210,7 +221,8 @@ static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
         const uint32_t *sum = w->x->limb + i * SUM_LIMBS;
         comparison a = {*limit, 1, 0, UNKNOWN_NUMBER, UNKNOWN_NUMBER, (w->n->b & WINDOW_STRICT) != 0};
         bool holds;
-        a.asked = w->of_ticks ? INT64_C(1000000000) : ((w->fold == FOLD_MEAN) ? counted(w->s->total) : 1);
+        a.asked = w->of_ticks ? INT64_C(1000000000) /* the limit is in seconds, the sum in ticks */
+                              : ((w->fold == FOLD_MEAN) ? counted(w->s->total) : 1);
         holds = is_enough_after(sum, &a, 0);
         *due = least(*due, sum_flips_at(w, sum, &a, i > 0, holds));
         found = (uint8_t)(found + (holds ? 3 - readings : 0));
@@ -218,7 +230,7 @@ static uint8_t folded_sum(const window *w, const rv_number *limit, int64_t *due)
     return found;
 }
 
-/* Between positions it moves along a curve: where it does it is looked at again at each. */
+/* VARIANCE: no line between changes, so while it moves it is evaluated at each position. */
 static uint8_t folded_variance(const window *w, const rv_number *limit, int64_t *due)
 {
     const stretches *s = w->s;
@@ -228,12 +240,13 @@ static uint8_t folded_variance(const window *w, const rv_number *limit, int64_t 
     } else if (s->count > 0) {
         *due = s->growing ? NEVER : gone_from(stretch_of(s, 0)->begin, w->n->high);
     } else {
-        /* There is nothing to leave. */
+        /* An empty window stays empty. */
     }
-    return truth_if(exact_varies(w->x->limb, squares, counted(s->total), limit, (w->n->b & WINDOW_STRICT) != 0));
+    return truth_if(exact_varies(w->x->limb, squares, counted(s->total), limit,
+                                 (w->n->b & WINDOW_STRICT) != 0));
 }
 
-/* The last number less the first one. */
+/* DELTA: the last number less the first one; UNKNOWN where this position has none. */
 static uint8_t folded_delta(const window *w, const rv_number *limit, int64_t *due)
 {
     const stretches *s = w->s;
@@ -257,7 +270,8 @@ static uint8_t folded_delta(const window *w, const rv_number *limit, int64_t *du
     return truth_if(exact_is_enough(found.limb, (w->n->b & WINDOW_STRICT) != 0));
 }
 
-/* The truth of the comparison. */
+/* The truth of the comparison. UNKNOWN: the limit is, a number is (of a sum, until it has expired), or
+ * there is no member to take a mean of. */
 uint8_t folded(window *w, int64_t *due)
 {
     const stretches *s = w->s;
@@ -271,8 +285,10 @@ uint8_t folded(window *w, int64_t *due)
     }
     switch (w->fold) {
     case FOLD_COUNT:
-    case FOLD_DURATION: return folded_count(w, least_whole(&limit, (w->n->b & WINDOW_STRICT) != 0), due);
-    case FOLD_DISTINCT: return folded_distinct(w, least_whole(&limit, (w->n->b & WINDOW_STRICT) != 0), due);
+    case FOLD_DURATION:
+        return folded_count(w, least_whole(&limit, (w->n->b & WINDOW_STRICT) != 0), due);
+    case FOLD_DISTINCT:
+        return folded_distinct(w, least_whole(&limit, (w->n->b & WINDOW_STRICT) != 0), due);
     case FOLD_DELTA: return folded_delta(w, &limit, due);
     default: break;
     }

@@ -1,4 +1,9 @@
-/* Formulas of present and past, worked out at each position. */
+/* Formulas of the present and the past, evaluated at each position.
+ *
+ * A part's formulas are a graph of nodes (plan.md, SEC_NODES), operands before operators, each with its
+ * truth at the current position in `run.truth`. Nodes whose inputs changed are marked dirty and
+ * evaluated; nodes that time alone can change have a timer in `run.wake`. What a node tells goes to
+ * judges as letters and triggers. */
 #ifndef RVMON_FORMULAS_H
 #define RVMON_FORMULAS_H
 
@@ -11,7 +16,7 @@ static inline int64_t timers_next(const timers *h)
 {
     return h->next;
 }
-/* The ids that are due by `t`, into `found`; returns how many. */
+/* The ids that are due by `t`, in no order, into `found`, which has room for all; returns how many. */
 int32_t timers_due(const timers *h, int64_t t, int32_t *found);
 
 /* ---- past.c */
@@ -22,14 +27,14 @@ bool stretches_agree(const stretches *a, const stretches *b);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
-/* ---- window.c; `blank`: there may be no such position */
+/* ---- window.c; `blank`: it is not known whether there is a position, and every input is unknown */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
 void restart_window(run *r, const node_plan *n);
 
 /* ---- graph.c: the nodes of a part */
 void mark_dirty(run *r, int32_t node);
 void mark_all_dirty(run *r);
-/* Those parents of a node that are of a kind. */
+/* Mark the parents of a node that are of one kind (NODE_...). */
 void mark_parents(run *r, const node_plan *n, int32_t op);
 void work_out(run *r, int64_t t);
 bool has_dirty_nodes(const run *r);

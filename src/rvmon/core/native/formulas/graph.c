@@ -1,5 +1,12 @@
-/* The formulas of present and past as a graph: what depends on a change is worked out anew, operands
- * before operators. */
+/* The graph of formulas of the present and the past: re-evaluates what a change reaches.
+ *
+ * Nodes are numbered operands first. Dirty nodes are bits in a set of two levels (`dirty`, and
+ * `dirty_words`: which words of it are not 0), so that taking the lowest bit yields them in evaluation
+ * order, and a node is evaluated at most once per position. A node whose truth changes marks its
+ * parents and updates the letters of its judges. Operators of the past keep their state in the run:
+ * `seen` (one truth), `edges`, `past` (past.c, window.c).
+ *
+ * Truths are ordered FALSE < UNKNOWN < TRUE: Kleene's `and` is the least operand, `or` the greatest. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "notes/notes.h"
@@ -34,6 +41,7 @@ void mark_parents(run *r, const node_plan *n, int32_t op)
     }
 }
 
+/* AND, OR: the first operand that decides is not sought, as there are few. */
 static uint8_t combined(const run *r, const node_plan *n)
 {
     const int32_t *operands = LIST(PLAN(r), n->operands);
@@ -48,6 +56,8 @@ static uint8_t combined(const run *r, const node_plan *n)
     return found;
 }
 
+/* ELAPSED: `low` ticks since the first position. After an outage at the start that lies between
+ * `origin`, the first one that may be there, and `begun`, the first one that surely is. */
 static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
 {
     const int64_t due = sum(r->at.begun, n->low);
@@ -56,7 +66,8 @@ static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
-/* The same of an instant that was captured, or of the first, and of a number of seconds. */
+/* PASSED: the same for a number of seconds (program `left` of the atom) since an instant (program
+ * `low`: ticks since the first position); `known`: the truth of the operand that guards both. */
 static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
 {
     const rv_number after = program_value(r, r->part->atoms[n->a].left, NULL);
@@ -75,6 +86,8 @@ static uint8_t passed(run *r, const node_plan *n, int64_t t, uint8_t known)
     return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
+/* PREVIOUS: the operand at the position before. If the two differ it changes at the next position,
+ * though nothing else does. */
 static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
 {
     const uint8_t value = r->seen[n->slot];
@@ -83,7 +96,7 @@ static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
     return value;
 }
 
-/* Without bounds: what the operands were is in the one value. */
+/* EVER, `left S right` without bounds: (value before and left) or right, so one truth is its state. */
 static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
 {
     uint8_t value = r->seen[n->slot];
@@ -93,14 +106,16 @@ static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
     return value;
 }
 
-/* The left side of a `since` where all is unknown: what has to last for ever asks for no position. */
+/* The left side of a `since` at positions that may not be there: UNKNOWN, but for the constant TRUE of
+ * `once`, which holds at all of them or at none. */
 static uint8_t left_there(const run *r, const node_plan *n)
 {
     const node_plan *left = &r->part->nodes[LIST(PLAN(r), n->operands)[0]];
     return ((left->op == NODE_CONSTANT) && (left->a == IS_TRUE)) ? IS_TRUE : IS_UNKNOWN;
 }
 
-/* Have what remembers know that its operands are unknown from the position `t` on. */
+/* Tell every operator with state that its operands are UNKNOWN from `t` on, a stretch of positions that
+ * may not be there (unknowns.c). */
 void remember_unknown(run *r, int64_t t)
 {
     int32_t i;
@@ -138,16 +153,17 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_PASSED: return passed(r, n, t, r->truth[operands[0]]);
     case NODE_COMPARED:
         reread(r, n->a, false);
-        mark_parents(r, n, NODE_WINDOW); /* of which it is about the limit: that may be another though it is known */
+        mark_parents(r, n, NODE_WINDOW); /* their limit may be another though this truth stays */
         if (r->margins != NULL) {
-            margins_mark_changed(r, names_to_lose(r) + place); /* so may the distance */
+            margins_mark_changed(r, names_to_lose(r) + place); /* and so can the distance */
         }
         return r->atom[n->a];
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }
 
-/* Store the truth of a node, and tell the judges that it is linked with. */
+/* Store the truth of a node and pass it on along its links. A letter is a sum with one term for each
+ * proposition, so it is kept up by differences. */
 static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -182,12 +198,15 @@ static inline void store(run *r, int32_t place, uint8_t value, int64_t t)
     }
 }
 
+/* Whether a node says that a trigger has been TRUE or FALSE once; such a node has that link first. */
 static bool is_determined_node(const run *r, const node_plan *n)
 {
     return (n->links.count > 0) && ((PLAN(r)->links[n->links.first].kind & LINK_DETERMINED) != 0);
 }
 
-/* What a node is where all that formulas read is unknown. */
+/* The truth of a node where every input, and whether there is a position, is unknown. Formulas are
+ * UNKNOWN, constants too; what is about knowledge itself (LAPSED, DOUBT, SURE, and connectives over
+ * these) is evaluated. */
 static uint8_t blank_value(run *r, int32_t place, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -203,8 +222,8 @@ static uint8_t blank_value(run *r, int32_t place, int64_t t)
     }
 }
 
-/* Have every formula be unknown at the position `t`; that a trigger was ever known stays so, and what
- * may be hidden, or was captured, is known all the same. */
+/* Set every formula to its blank value at `t`; a trigger that was known once stays so. All nodes are
+ * visited, operands first: this happens at most twice per outage. */
 void blank_out(run *r, int64_t t)
 {
     int32_t i;
@@ -218,7 +237,7 @@ void blank_out(run *r, int64_t t)
     }
 }
 
-/* Store another truth of a node; what depends on it is to be worked out. */
+/* Store another truth of a node and mark what depends on it. */
 static inline void change(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const list parents = r->part->nodes[place].parents[r->at.phase];
@@ -242,6 +261,8 @@ bool has_dirty_nodes(const run *r)
     return false;
 }
 
+/* Evaluate all dirty nodes at the position at `t`. Parents are numbered higher than operands: those
+ * marked meanwhile come later in the same sweep. */
 void work_out(run *r, int64_t t)
 {
     const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
@@ -263,7 +284,9 @@ void work_out(run *r, int64_t t)
     }
 }
 
-/* Work out anew what depends on captured values; what remembers stands. */
+/* Evaluate anew, at `t`, what reads captured values, which a fork has just taken. Operators of the past
+ * keep their state, but for windows that begin with the attempt. `pending`: the events of this sample
+ * belong to the next position. */
 void reevaluate_varying(run *r, int64_t t, bool pending)
 {
     const part_plan *p = r->part->plan;
@@ -278,18 +301,19 @@ void reevaluate_varying(run *r, int64_t t, bool pending)
         uint8_t value;
         if (n->op == NODE_WINDOW) {
             if ((n->since < 0) || (r->captured[n->since].kind == RV_UNKNOWN)) {
-                continue; /* it goes on */
+                continue; /* a window that does not begin with the attempt keeps its members */
             }
             restart_window(r, n);
         }
         value = evaluated(r, nodes[i], t);
         if (value != r->truth[nodes[i]]) {
-            change(r, nodes[i], value, t); /* what remembers it looks at the next position */
+            change(r, nodes[i], value, t); /* operators with state above it step at the next position */
         }
     }
 }
 
-/* Once all is born and determined, what asks for that is looked at no more. */
+/* Enter the second phase once every signal is born and every trigger has been TRUE or FALSE: lists of
+ * the plan shrink to what still matters, and the timers of the other nodes stop. */
 void settle_phase(run *r)
 {
     if ((r->at.phase == 0) && (r->at.births_left == 0) && (r->at.undetermined_left == 0)) {

@@ -1,7 +1,11 @@
-/* Members of windows: each costs what it adds, and what it takes off when it leaves.
+/* The members of a window, kept as entries of equal ones (members.h), with running counters and sums.
  *
- * A window is of time, or of the last so many members. What counts ticks counts them up to the one before
- * this instant; the others count positions. */
+ * An entry is added to them when its members come and taken off when they expire, so a window of any
+ * length costs amortised O(1) a change. Sums are exact (exact.h), so taking off leaves no error.
+ *
+ * DURATION and INTEGRAL have a member for each tick up to the one before the instant at hand, the other
+ * folds one for each position. A window is bounded by time (`high`), by number (`most`), or not at all:
+ * then only what the fold still needs is kept. */
 #include "formulas/exact.h"
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -10,11 +14,13 @@
 #include <math.h>
 #include <string.h>
 
+/* What the members of entry `i` have in common. */
 static stretch *kept_of(const stretches *s, int32_t i)
 {
     return stretch_of(s + 1, i);
 }
 
+/* The number in an entry. The bits may be those of a forged snapshot: what is not finite is unknown. */
 static rv_number number_of(const stretch *kept)
 {
     rv_number found = UNKNOWN_NUMBER;
@@ -23,7 +29,8 @@ static rv_number number_of(const stretch *kept)
     if (found.kind == RV_REAL) {
         (void)memcpy(&found.as.real, &kept->end, sizeof kept->end);
     }
-    if ((found.kind != RV_WHOLE) && ((found.kind != RV_REAL) || !(fabs(found.as.real) <= 0x1.fffffffffffffp1023))) {
+    if ((found.kind != RV_WHOLE)
+        && ((found.kind != RV_REAL) || !(fabs(found.as.real) <= 0x1.fffffffffffffp1023))) {
         found = UNKNOWN_NUMBER;
     }
     return found;
@@ -34,6 +41,8 @@ static bool is_below_zero(const rv_number *number)
     return (number->kind == RV_WHOLE) ? (number->as.whole < 0) : (number->as.real < 0.0);
 }
 
+/* A number in one reading of a sum: that of a possible member counts where it makes the worse reading
+ * smaller, or the better one greater; else it is 0. */
 static rv_number read_as(const rv_number *number, bool maybe, bool better)
 {
     rv_number found = *number;
@@ -48,7 +57,8 @@ rv_number member_number(const window *w, int32_t i, bool better)
 {
     const stretch *kept = kept_of(w->s, i);
     const rv_number number = number_of(kept);
-    return (number.kind == RV_UNKNOWN) ? number : read_as(&number, (kept->begin & MEMBER_MAYBE) != 0, better);
+    return (number.kind == RV_UNKNOWN) ? number
+                                       : read_as(&number, (kept->begin & MEMBER_MAYBE) != 0, better);
 }
 
 bool is_counted(const window *w, int32_t i, bool better)
@@ -57,7 +67,7 @@ bool is_counted(const window *w, int32_t i, bool better)
     return (kept->end != 0) && (better || ((kept->begin & MEMBER_MAYBE) == 0));
 }
 
-/* From here on two sums are kept. */
+/* Keep a second sum, for the better reading, from the first possible member on. */
 static void split_sums(window *w)
 {
     if (!w->s[1].apart) {
@@ -66,6 +76,7 @@ static void split_sums(window *w)
     }
 }
 
+/* Add `count` members with a number to the sums, or take them off. */
 static void add_number(window *w, const rv_number *number, bool maybe, int64_t count, bool off)
 {
     const rv_number worse = read_as(number, maybe, false);
@@ -81,17 +92,17 @@ static void add_number(window *w, const rv_number *number, bool maybe, int64_t c
         const rv_number better = read_as(number, maybe, true);
         exact_add(w->x->limb + SUM_LIMBS, &better, count, off);
     } else {
-        /* There is one reading. */
+        /* Both readings are the first sum. */
     }
 }
 
-/* Of forged snapshots, sums of counts may leave their bits, which does no harm. */
+/* Wraps around with counters of a forged snapshot, which is harmless: they index nothing. */
 static void add_count(int64_t *x, int64_t more)
 {
     *x = (int64_t)((uint64_t)*x + (uint64_t)more);
 }
 
-/* Some more of a member, or fewer. */
+/* Count `count` members of an entry in, or out (`off`). */
 static void add_members(window *w, const stretch *kept, int64_t count, bool off)
 {
     const bool maybe = (kept->begin & MEMBER_MAYBE) != 0;
@@ -104,7 +115,7 @@ static void add_members(window *w, const stretch *kept, int64_t count, bool off)
     if ((w->fold == FOLD_COUNT) || (w->fold == FOLD_DURATION)) {
         add_count(&s[maybe ? 1 : 0].total, (kept->end != 0) ? more : 0);
     } else if ((w->fold == FOLD_DELTA) || (w->fold >= FOLD_MIN)) {
-        /* The first and the last of them are looked at. */
+        /* DELTA, MIN, MAX, AGO read single entries: nothing is counted. */
     } else {
         const rv_number number = number_of(kept);
         if (number.kind == RV_UNKNOWN) {
@@ -113,12 +124,12 @@ static void add_members(window *w, const stretch *kept, int64_t count, bool off)
             add_number(w, &number, maybe, count, off);
             add_count(&s->total, more);
         } else {
-            /* It is counted where it begins. */
+            /* DISTINCT counts numbers where entries begin and end. */
         }
     }
 }
 
-/* Have the last member go on up to a position. */
+/* Extend the last entry, which still holds, up to `end`. */
 void extend_last_member(window *w, int64_t end)
 {
     stretch *last = stretch_of(w->s, w->s->count - 1);
@@ -128,7 +139,7 @@ void extend_last_member(window *w, int64_t end)
     }
 }
 
-/* Room for a member behind the others; false: memory is short, and the run is spoilt. */
+/* Append an entry, empty so far; false: memory is short, and the run is spoilt. */
 static bool begin_member(window *w, const stretch *kept)
 {
     stretches *s = w->s;
@@ -141,7 +152,7 @@ static bool begin_member(window *w, const stretch *kept)
         return false;
     }
     if (grows) {
-        s->known_slots = -1; /* they are others */
+        s->known_slots = -1; /* the ring moved: places in the table of distinct.c are void */
     }
     last->begin = w->t;
     last->end = w->t - w->unit;
@@ -149,7 +160,11 @@ static bool begin_member(window *w, const stretch *kept)
     return true;
 }
 
-/* Whether a member that is known has to be kept; of values that are told apart, the last one is. */
+/* Prepare for an entry with a number that is not the last one's; returns whether it is to be appended.
+ *
+ * MIN, MAX: a monotonic wedge. DISTINCT: the latest entry of a number stands for it, older ones are
+ * marked; without bounds nothing expires, so that one entry for each number is enough. Else, without
+ * bounds, only the last entry is kept, and of DELTA the first. */
 static bool admit_member(window *w, const rv_number *number)
 {
     stretches *s = w->s;
@@ -168,13 +183,16 @@ static bool admit_member(window *w, const rv_number *number)
         }
         return !ever || ((number->kind != RV_UNKNOWN) && (same < 0));
     }
-    if (ever) { /* nothing of it is taken off */
+    if (ever) { /* nothing expires: older entries stand in the counters */
         s->count = ((w->fold == FOLD_DELTA) && (s->count > 0)) ? 1 : 0;
         s[1].count = s->count;
     }
     return true;
 }
 
+/* Add a member at `w->t`: extend the last entry if it is equal and adjacent, else append one. `maybe`:
+ * it may be none. Sums and counts are read both ways; the other folds (MEAN, MAX, ...) take its number
+ * for unknown. Returns whether there is an entry that may go on. */
 bool add_member(window *w, const rv_number *number, bool maybe)
 {
     stretches *s = w->s;
@@ -188,19 +206,20 @@ bool add_member(window *w, const rv_number *number, bool maybe)
     } else if (number->kind == RV_WHOLE) {
         kept.end = number->as.whole;
     } else {
-        /* It is not known. */
+        /* Unknown: kind and bits are 0. */
     }
     if (maybe && ((w->fold == FOLD_COUNT) || (w->fold == FOLD_DURATION) || (w->fold == FOLD_SUM)
                   || (w->fold == FOLD_INTEGRAL))) {
         kept.begin |= (number->kind == RV_UNKNOWN) ? 0 : MEMBER_MAYBE;
     } else if (maybe) {
-        kept.begin = RV_UNKNOWN; /* that there may be one says nothing of these */
+        kept.begin = RV_UNKNOWN;
         kept.end = 0;
     } else {
-        /* It is one. */
+        /* A certain member. */
     }
     if ((s->count == 0) || (stretch_of(s, s->count - 1)->end != w->t - w->unit)
-        || (kept_of(s, s->count - 1)->begin != kept.begin) || (kept_of(s, s->count - 1)->end != kept.end)) {
+        || (kept_of(s, s->count - 1)->begin != kept.begin)
+        || (kept_of(s, s->count - 1)->end != kept.end)) {
         const rv_number own = number_of(&kept);
         if (!admit_member(w, &own) || !begin_member(w, &kept)) {
             return false;
@@ -209,7 +228,7 @@ bool add_member(window *w, const rv_number *number, bool maybe)
             note_latest(w);
         }
         if ((w->x != NULL) && ((kept.begin & MEMBER_MAYBE) != 0)) {
-            split_sums(w); /* from now on, though the first tick of it is still to come */
+            split_sums(w); /* now, though of an INTEGRAL the first tick is still to come */
         }
     }
     if (!w->of_ticks) {
@@ -218,7 +237,7 @@ bool add_member(window *w, const rv_number *number, bool maybe)
     return true;
 }
 
-/* Take off so much of the first one. */
+/* Let `gone` members of the oldest entry expire. The last entry stays, though empty, while it grows. */
 static void remove_from_oldest(window *w, int64_t gone)
 {
     stretches *s = w->s;
@@ -230,7 +249,8 @@ static void remove_from_oldest(window *w, int64_t gone)
         first->begin += gone * w->unit;
         return;
     }
-    if ((w->fold == FOLD_DISTINCT) && ((kept->begin & MEMBER_OLDER) == 0) && (number_of(kept).kind != RV_UNKNOWN)) {
+    if ((w->fold == FOLD_DISTINCT) && ((kept->begin & MEMBER_OLDER) == 0)
+        && (number_of(kept).kind != RV_UNKNOWN)) {
         s->total--;
     }
     s->head = (s->head + 1) & (s->room - 1);
@@ -239,15 +259,17 @@ static void remove_from_oldest(window *w, int64_t gone)
     s[1].count--;
 }
 
+/* Let members expire that are more than `most`, or lie before the window at `w->t`. */
 void expire_members(window *w)
 {
     stretches *s = w->s;
-    const bool counts = keeps_extremes(w) && (w->n->most > 0); /* instants are the numbers of members */
+    const bool counts = keeps_extremes(w) && (w->n->most > 0); /* `t` is the number of a member */
     const int64_t high = counts ? w->n->most - 1 : w->n->high;
     const int64_t from = (high < NEVER) ? w->t - high : INT64_MIN;
     while ((w->n->most > 0) && (s->count > 0) && (s->members > w->n->most)) {
         const stretch *first = stretch_of(s, 0);
-        remove_from_oldest(w, least(s->members - w->n->most, (first->end - first->begin) / w->unit + 1));
+        remove_from_oldest(w, least(s->members - w->n->most,
+                                    (first->end - first->begin) / w->unit + 1));
     }
     while ((s->count > 0) && (stretch_of(s, 0)->begin < from)) {
         const stretch *first = stretch_of(s, 0);
@@ -261,7 +283,8 @@ void expire_members(window *w)
     }
 }
 
-/* Where there may have been one more, it is not known which the last ones are. */
+/* Drop all members. Of a window of the last N, where one more may have come, the fold is unknown until
+ * N members have come anew. */
 void forget_members(window *w)
 {
     stretches *s = w->s;

@@ -1,13 +1,17 @@
-/* Timers: an indexed heap, so that the next one costs nothing and a change the logarithm of those
- * that are set. */
+/* Timers: a binary heap of ids, least `due` first, with the place of each id in it.
+ *
+ * Ids are fixed (nodes, judges, runs), one timer each; NEVER: not in the heap. The next one is read in
+ * O(1), a change costs O(log n). Nothing is popped: who handles a timer sets it anew. */
 #include "formulas/formulas.h"
 
+/* Store an id at a place of the heap. */
 static void put(timers *h, int32_t place, int32_t id)
 {
     h->ids[place] = id;
     h->place[id] = place;
 }
 
+/* Restore the order for an entry that may be due before its parent; likewise below for its children. */
 static void rise(timers *h, int32_t from)
 {
     const int32_t id = h->ids[from];
@@ -44,6 +48,8 @@ static void sink(timers *h, int32_t from)
     put(h, place, id);
 }
 
+/* Put an id in, take it out, or move it. A hole is filled with the last entry, which may have to go
+ * either way. */
 static void move(timers *h, int32_t id, int64_t due)
 {
     const int64_t was = h->due[id];
@@ -90,7 +96,8 @@ int32_t timers_due(const timers *h, int64_t t, int32_t *found)
 {
     int32_t count = 0;
     int32_t looked = 0;
-    /* Breadth first through the part of the heap that is due: `found` holds places, then ids. */
+    /* Breadth first through the top of the heap, as children are due no sooner than their parent: O(ids
+     * found). `found` is its own queue: places from `looked` on, ids before. */
     if ((h->count > 0) && (h->due[h->ids[0]] <= t)) {
         found[count++] = 0;
     }

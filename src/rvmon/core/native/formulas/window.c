@@ -1,15 +1,21 @@
-/* Windows of the past: what comes to one at a position. */
+/* The node WINDOW at a position: collects its members there, lets old ones expire, folds the rest.
+ *
+ * A position has one member, or one for each occurrence of the event whose field is the number. Blank
+ * positions (it is not known whether they are there) have a member that may be none. The members
+ * themselves are in members.c. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
 #include "input/input.h"
 
+/* An infinite number is unknown to a fold. */
 static rv_number within_range(rv_number number)
 {
     const bool infinite = (number.kind == RV_REAL) && (number.as.real - number.as.real != 0.0);
     return infinite ? UNKNOWN_NUMBER : number;
 }
 
-/* The number that an occurrence adds, if the nodes from `from` on hold of it. */
+/* Add one occurrence of an event, if the comparisons among the operands from `chosen` on hold for its
+ * fields; `operand`: the truth of the first operand. */
 static void collect_occurrence(window *w, int32_t event, int32_t which, uint8_t operand)
 {
     run *r = w->r;
@@ -34,7 +40,7 @@ static void collect_occurrence(window *w, int32_t event, int32_t which, uint8_t 
     }
 }
 
-/* Several occurrences of the event, or some that are chosen by what they say. */
+/* Add the occurrences of an event: several at this position, or those that comparisons select. */
 static void collect_occurrences(window *w, int32_t event, uint8_t operand)
 {
     run *r = w->r;
@@ -43,13 +49,13 @@ static void collect_occurrences(window *w, int32_t event, uint8_t operand)
     int32_t i;
     for (i = w->n->chosen; i < w->n->operands.count; i++) {
         if (r->truth[nodes[i]] == IS_FALSE) {
-            return; /* of none, or of what is not born */
+            return; /* the comparison holds for none of them, or is unborn */
         }
     }
     if ((r->silent[event] == IS_UNKNOWN) || (count == 0)) {
         w->s->growing = add_member(w, &UNKNOWN_NUMBER, true);
     } else if ((w->n->most > 0) && (count > 1)) {
-        forget_members(w); /* which of them is the last one nobody knows */
+        forget_members(w); /* occurrences of one position have no order: the last N are not defined */
     } else {
         for (i = 0; i < count; i++) {
             collect_occurrence(w, event, i, operand);
@@ -57,7 +63,8 @@ static void collect_occurrences(window *w, int32_t event, uint8_t operand)
     }
 }
 
-/* The number that is added; unknown if several occurrences of one of some events have one. */
+/* The number of the member at this position. Over fields of several events it is unknown where one of
+ * them occurs more than once: there is no single combination. */
 static rv_number number_now(const run *r, const atom_plan *a)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -70,14 +77,14 @@ static rv_number number_now(const run *r, const atom_plan *a)
     return within_range(program_value(r, a->left, NULL));
 }
 
-/* Whether a number is the same wherever it is. */
+/* Whether the number of all members is a constant, known at blank positions too. */
 static bool is_constant(const run *r, const atom_plan *a)
 {
     const int32_t *word = &PLAN(r)->code[a->left];
     return ((word[0] & 255) == CODE_NUMBER) && ((word[1] & 255) == CODE_END);
 }
 
-/* What there is at this position, where the first operand is not FALSE. */
+/* Add the members of this position, where the first operand is not FALSE. */
 static void collect_members(window *w, uint8_t operand, bool blank)
 {
     run *r = w->r;
@@ -85,7 +92,7 @@ static void collect_members(window *w, uint8_t operand, bool blank)
     const int32_t *nodes = LIST(PLAN(r), n->operands);
     rv_number number = {RV_WHOLE, {1}};
     if ((n->most > 0) && (operand != IS_TRUE)) {
-        forget_members(w);
+        forget_members(w); /* it may be one of the last N, or not */
     } else if ((n->b & WINDOW_COUNTED) != 0) {
         const uint8_t counted = r->truth[nodes[1]];
         number.as.whole = (counted == IS_FALSE) ? 0 : 1;
@@ -97,7 +104,8 @@ static void collect_members(window *w, uint8_t operand, bool blank)
         const int32_t event = (a->events.count == 1) ? LIST(PLAN(r), a->events)[0] : -1;
         if (blank && !is_constant(r, a)) {
             w->s->growing = add_member(w, &UNKNOWN_NUMBER, true);
-        } else if ((event >= 0) && ((n->chosen < n->operands.count) || (r->payloads[event].count > 1))) {
+        } else if ((event >= 0)
+                   && ((n->chosen < n->operands.count) || (r->payloads[event].count > 1))) {
             collect_occurrences(w, event, operand);
         } else {
             number = number_now(r, a);
@@ -106,22 +114,24 @@ static void collect_members(window *w, uint8_t operand, bool blank)
     }
 }
 
-/* Forget what was before. */
+/* Empty a window that begins with an attempt (`since`). */
 void restart_window(run *r, const node_plan *n)
 {
-    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false, -1};
+    window w = {r, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum], 0, 1, 0, false,
+                -1};
     forget_members(&w);
     w.s->growing = false;
 }
 
-/* Whether it begins behind an instant: that there may be a position makes no matter, then. */
+/* Whether a window begins later than `t`: blank positions before are none of its members. */
 static bool has_not_begun(const run *r, const node_plan *n, int64_t t)
 {
     return (n->since >= 0) && (r->captured[n->since].kind == RV_WHOLE)
            && (t - r->at.begun < r->captured[n->since].as.whole);
 }
 
-/* Leave the number where others read it; they are to be worked out if it is another. */
+/* Publish the fold as the number that CODE_WINDOW reads; comparisons with it are marked if it changed.
+ * Returns the node's truth: whether it is known. */
 static uint8_t publish_number(run *r, const node_plan *n, const rv_number *number, bool blank)
 {
     rv_number *place = &r->amounts[n->low];
@@ -131,11 +141,13 @@ static uint8_t publish_number(run *r, const node_plan *n, const rv_number *numbe
         *place = *number;
         mark_parents(r, n, NODE_COMPARED);
     } else {
-        /* It stays. */
+        /* Equal to the last one: nothing above changes. */
     }
     return (place->kind == RV_UNKNOWN) ? IS_UNKNOWN : IS_TRUE;
 }
 
+/* Evaluate a node WINDOW at `t`. MIN and MAX of the last N members are windows over member numbers in
+ * place of instants: `t` is then the number of the last member, `unit` 1. */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank)
 {
     const int32_t fold = n->b & WINDOW_FOLD;
@@ -146,7 +158,7 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
     int64_t due;
     uint8_t found;
     if (counts) {
-        w.t = w.s->total - 1; /* that of the last one: each is a step behind the one before it */
+        w.t = w.s->total - 1;
         w.unit = 1;
     }
     w.s->apart = true; /* there is a second ring */
@@ -165,8 +177,9 @@ uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool
         found = folded(&w, &due);
     }
     if (n->most > 0) {
-        due = w.s->growing ? t + w.unit : NEVER; /* the next position may have one, too */
+        due = w.s->growing ? t + w.unit : NEVER; /* the next position has a member, too */
     }
-    timers_set(&r->wake, n->timer, ((GAP(r) > 0) && (due > t)) ? due : NEVER); /* each sample is looked at */
+    /* Where only samples are positions the node is evaluated at each of them, without a timer. */
+    timers_set(&r->wake, n->timer, ((GAP(r) > 0) && (due > t)) ? due : NEVER);
     return found;
 }
