@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from struct import Struct, unpack_from
 from typing import Any
 
@@ -59,8 +59,8 @@ class Note:
         letters: by which a network judged; `None` if none did.
     """
 
-    words: Sequence[int]
-    state: Sequence[int]
+    words: tuple[int, ...]
+    state: tuple[int, ...]
     letters: Letters | None
 
     @property
@@ -103,7 +103,7 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
     """
     (head,) = unpack_from("=q", notes, 8 * place)
     words = unpack_from(f"={head >> 40}q", notes, 8 * place)
-    state: Sequence[int] = ()
+    state: tuple[int, ...] = ()
     if words[1] >= 0:
         (count,) = unpack_from("=q", notes, 8 * words[1])
         state = unpack_from(f"={count}q", notes, 8 * words[1])
@@ -114,12 +114,13 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
     return Note(words, state, letters)
 
 
-def _words(data: bytes) -> Sequence[int]:
+def _words(data: bytes) -> tuple[int, ...]:
     return Struct(f"={len(data) // 8}q").unpack(data)
 
 
-def truths(words: Sequence[int], count: int) -> tuple[int, ...]:
-    """The truths that stand in some words, two bits each."""
+@lru_cache(maxsize=1024)
+def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
+    """The truths that stand in some words, two bits each; few differ in a recording."""
     return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
 
 
@@ -148,17 +149,18 @@ class Told:
         return Reasons(self.compiled)
 
     def _then(self, note: Note) -> tuple[int, ...]:
-        return truths(note.words[_HEAD:], len(self._texts))
+        return truths(note.words[_HEAD : _HEAD + self._leaf_words], len(self._texts))
 
     def _truth_values(
         self, note: Note, origin: int
     ) -> tuple[tuple[int, ...], tuple[int, ...], TruthValues]:
         """The leaves, the propositions, and how these were."""
         words, propositions = note.state, self._propositions
-        leaves = truths(words[2:], len(self._texts))
         at = 2 + self._leaf_words
-        values = truths(words[at:], len(propositions))
-        at += words_for(len(propositions))
+        leaves = truths(words[2:at], len(self._texts))
+        end = at + words_for(len(propositions))
+        values = truths(words[at:end], len(propositions))
+        at = end
         since: dict[State, int] = {}
         before: dict[tuple[State, int], int | None] = {}
         for state in propositions:
@@ -173,12 +175,11 @@ class Told:
             TruthValues(*(origin, self._gap, _instant(words[1]), held, since, before), then),
         )
 
-    def _letters(self, values: Sequence[int]) -> tuple[int, int]:
-        """The letters of both readings."""
+    def _letter(self, values: Sequence[int], *, passed: bool) -> int:
+        """The letter of the reading that decided."""
         alphabet = self.compiled.alphabet
-        worse = zip(alphabet.pessimistic, values, strict=True)
-        better = zip(alphabet.optimistic, values, strict=True)
-        return sum(own[value] for own, value in worse), sum(own[value] for own, value in better)
+        weights = alphabet.pessimistic if passed else alphabet.optimistic
+        return sum(own[value] for own, value in zip(weights, values, strict=True))
 
     def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
         """All that is said of an attempt beside its verdict and what it captured."""
@@ -221,7 +222,7 @@ class Told:
                 self.compiled, network, position, passed, note.at, attempt.triggered, flow
             )
             return why, leaves
-        letter = self._letters(values)[not passed]
+        letter = self._letter(values, passed=passed)
         token, _ = _token(note.words, _HEAD + self._leaf_words, note.words[3])
         return explained(
             self._reasons, token, letter, passed, note.at, attempt.triggered, flow
@@ -240,7 +241,7 @@ class Told:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
         leaves: Sequence[int] = ()
         if words[4] != _NEVER:
-            leaves = truths(words[at:], len(self._texts))
+            leaves = truths(words[at : at + self._leaf_words], len(self._texts))
             at += self._leaf_words
         runs = self._networks if flags & _NETWORK else self._machines
         judged, worse, better, at = runs(note, at)

@@ -87,6 +87,7 @@ class Words:
 
     def __init__(self, origins: Mapping[Core, Origin]) -> None:
         self._origins = dict(origins)
+        self._texts: dict[Core, str] = {}
         for node, origin in origins.items():
             opened = node.opened if isinstance(node, Until | Release) else None
             if opened is not None:
@@ -106,8 +107,12 @@ class Words:
 
     def text(self, node: Core) -> str:
         """A node as text of the spec."""
-        formula = self.formula(node)
-        return "the consequent" if formula is None else format_formula(formula)
+        found = self._texts.get(node)
+        if found is None:
+            formula = self.formula(node)
+            found = "the consequent" if formula is None else format_formula(formula)
+            self._texts[node] = found
+        return found
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
         """The window of a node, in ticks after its start; of an opened one as it was before."""

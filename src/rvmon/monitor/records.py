@@ -36,6 +36,9 @@ NUMBER = np.dtype([("kind", np.int32), ("bits", np.int64)], align=True)
 
 _WHOLE, _REAL = 1, 2
 
+_TOGETHER = 4096
+"""Records of which Python's numbers are made at once."""
+
 
 class RecordedAttempts(LazyAttempts):
     """The attempts of a run, made from raw records on access; explanations when they are read.
@@ -82,10 +85,14 @@ class RecordedAttempts(LazyAttempts):
         if isinstance(index, slice):
             chosen = self._records[index], self._numbers[index]
             return RecordedAttempts(self._given, *chosen, self._notes, self._origin)
-        return self._attempt(self._records[index], self._numbers[index])
+        return self._attempt(self._records[index].tolist(), self._numbers[index])
 
     def __iter__(self) -> Iterator[Attempt]:
-        return map(self._attempt, self._records, self._numbers)
+        for first in range(0, len(self._records), _TOGETHER):
+            stop = first + _TOGETHER
+            yield from map(
+                self._attempt, self._records[first:stop].tolist(), self._numbers[first:stop]
+            )
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """See `LazyAttempts`."""
@@ -105,9 +112,9 @@ class RecordedAttempts(LazyAttempts):
         order = np.argsort(kinds, kind="stable")
         return kinds[order], order
 
-    def _attempt(self, record: Any, numbers: NDArray[Any]) -> Attempt:
+    def _attempt(self, record: Sequence[int], numbers: NDArray[Any]) -> Attempt:
         triggered, decided, captured, note, requirement, number, verdict, decision, in_doubt = (
-            record.tolist()
+            record
         )
         values = None if captured < 0 else tuple(map(_number_of, numbers))
         made = Attempt.__new__(Attempt)

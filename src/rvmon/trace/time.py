@@ -182,7 +182,7 @@ def format_ticks(ticks: int) -> str:
     if 0 < abs(ticks) < 1_000:
         return f"{ticks} ns"
     whole, rest = divmod(abs(ticks), TICKS_PER_SECOND)
-    digits = f"{rest:09d}".rstrip("0")
+    digits = f"{rest:09d}".rstrip("0") if rest else ""
     sign = "-" if ticks < 0 else ""
     return f"{sign}{whole}{'.' + digits if digits else ''} s"
 
