@@ -74,9 +74,7 @@ def test_instances_that_come_again_are_judged_as_the_law_has_it(name):
         assert disagreements(case, Maker(form)) == []
 
 
-@pytest.mark.parametrize(
-    "many", [2, 3, 7, *(pytest.param(many, marks=pytest.mark.slow) for many in (64, 70))]
-)
+@pytest.mark.parametrize("many", [2, 7, pytest.param(70, marks=pytest.mark.slow)])
 def test_those_that_become_sure_at_once_are_numbered_by_their_triggers(many):
     """Whatever the order of their instances; it is that of what began in doubt, too."""
     spec = rvmon.loads(

@@ -24,7 +24,7 @@ def told(attempt):
 def test_what_is_kept_is_told_as_if_all_was(time):
     """Verdicts, counts, next instants and what calls return do not change; few records are left."""
     dropped = 0
-    for seed in range(10):
+    for seed in range(4):
         rng = random.Random(f"keep/{time.name}/{seed}")
         spec = random_spec(rng, Profile(time=time, requirements=3))
         case = random_trace(rng, spec, TraceProfile(samples=300, fewest=200, span=900))
@@ -51,4 +51,4 @@ def test_what_is_kept_is_told_as_if_all_was(time):
                 left = [one for one in got.of(name, verdict) if one.decided is not None]
                 assert list(map(told, left)) == list(map(told, own))[len(own) - len(left) :]
         dropped += sum(sum(own.values()) for own in got.dropped.values())
-    assert dropped > 400
+    assert dropped > 150

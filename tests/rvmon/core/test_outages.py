@@ -191,7 +191,7 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
     """Of each requirement the verdict."""
     traces = TraceProfile(unknowns=False, advances=False, fewest=3)
     changed = 0
-    for number in range(90):
+    for number in range(40):
         case = case_of(f"late/{number}", Profile(captures=False), traces)
         rng = random.Random(number)
         if len(case.samples) < 3:
@@ -213,4 +213,4 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
                 expected[name] = without[name]  # what a formula does not depend on is not read
         assert verdicts == expected
         changed += verdicts != without
-    assert changed > 15
+    assert changed > 6

@@ -278,7 +278,7 @@ def test_the_core_takes_what_is_packed(check):
     texts = (EVERYTHING, DIAGRAM, longest)
     assert [check(packed(text).data) for text in texts] == [-1] * 3
     assert [check(packed(text, measured=True).data) for text in texts] == [-1] * 3
-    plans = [plan for seed in range(100, 130) if (plan := drawn(seed)) is not None]
+    plans = [plan for seed in range(100, 112) if (plan := drawn(seed)) is not None]
     assert [check(pack(plan).data) for plan in plans] == [-1] * len(plans)
 
 

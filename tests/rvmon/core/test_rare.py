@@ -1,6 +1,7 @@
 """Cases that random ones seldom meet: each needs a line of the core that little else does."""
 
 import random
+from collections.abc import Callable
 
 import pytest
 from tests.tools.build import actions
@@ -17,10 +18,13 @@ event g(k: int)
 """
 
 
-def case_of(time: str, required: str, told: str, end: int | None = None) -> Case:
-    """A case of one requirement, or of several."""
-    spec = rvmon.loads(f"time {time}\n{NAMES}requirement R\n  {required}\n").checked
-    return Case(spec, actions(told), end)
+Make = Callable[[], Case]
+
+
+def case_of(time: str, required: str, told: str, end: int | None = None) -> Make:
+    """A case of one requirement, or of several, made when it is judged."""
+    text = f"time {time}\n{NAMES}requirement R\n  {required}\n"
+    return lambda: Case(rvmon.loads(text).checked, actions(told), end)
 
 
 CASES = {
@@ -98,8 +102,8 @@ MANY = {
         case_of(time, f"upon start then {required}", f"0 p -q; 3; {until}!", end)
         for time in ("held", "sampled", "sampled every 2 ns")
         for required in ("G[5 ns, inf) p", "F[0 ns, 5 ns] q", "(G[5 ns, inf) p) or F[2 ns, 4 ns] q")
-        for until in (3, 5, 9)
-        for end in (None, 4, 6, 12)
+        for until in (3, 9)
+        for end in (None, 6, 12)
     ],
     "what is captured at the end is what the last tick saw, not what came behind it": [
         case_of(
@@ -114,8 +118,8 @@ MANY = {
             "x >= v for each key in g.k let v = x",
             "once (x == v and g.k == key) for each key in g.k let v = x",
         )
-        for between in ("", "2!; ", "3!; ", "4!; ")
-        for end in (7, 8, 11, 14)
+        for between in ("", "2!; ", "4!; ")
+        for end in (7, 11)
     ],
     "an episode goes on at once while an older one is open: it fails while nothing is said": [
         case_of(
@@ -139,7 +143,7 @@ MANY = {
 }
 
 
-def long_case(time: str, required: str, seed: int, many: int) -> Case:
+def long_case(time: str, required: str, seed: int, many: int) -> Make:
     """A case of many samples in which values change often, and now and then stay for long."""
     rng = random.Random(seed)
     told: list[str] = []
@@ -168,12 +172,13 @@ MANY["what is over of windows within windows is dropped from the rings, which go
 @pytest.mark.parametrize("name", CASES)
 def test_a_rare_case_is_judged_as_the_law_has_it(name: str, form: str) -> None:
     """By each call, and in the report."""
-    assert disagreements(CASES[name], Maker(form), online=True) == []
+    assert disagreements(CASES[name](), Maker(form), online=True) == []
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", MANY)
 def test_many_of_a_kind_are_judged_as_the_law_has_it(name: str) -> None:
     """By each call, and in the report."""
-    make = Maker("c")
-    assert [text for case in MANY[name] for text in disagreements(case, make, online=True)] == []
+    maker = Maker("c")
+    for make in MANY[name]:
+        assert disagreements(make(), maker, online=True) == []

@@ -172,7 +172,7 @@ def test_rows_equal_steps():
     """Blocks of rows are judged as the samples that they hold, one by one."""
     compiler = Compiler()
     judged = 0
-    for seed in range(30):
+    for seed in range(12):
         rng = random.Random(f"rows equal steps {seed}")
         spec = random_spec(rng, Profile(many=8, wide=10))
         planned = planned_for(spec, compiler)
@@ -180,4 +180,4 @@ def test_rows_equal_steps():
             table = random_table(rng, spec, planned.single_payloads, 200)
             assert not rows_differ(planned, spec, table), f"seed {seed}"
             judged += len(table.rows)
-    assert judged > 5_000
+    assert judged > 2_000

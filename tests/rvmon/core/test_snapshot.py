@@ -51,8 +51,8 @@ def case(number: int, time: TimeModel, *, outages: bool) -> Case:
 def test_a_run_taken_up_again_goes_on_alike(time, outages):
     """Put away behind each call, and at the end, it says the same, and is the same bytes again."""
     compile_ = Compiler()
-    cases = (case(number, time, outages=outages) for number in range(50))
-    assert sum(put_away(compile_(one.spec), one) for one in cases) > 350
+    cases = (case(number, time, outages=outages) for number in range(20))
+    assert sum(put_away(compile_(one.spec), one) for one in cases) > 120
 
 
 def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
@@ -68,8 +68,8 @@ def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 4 ns", "sampled every 127 ns"])
-@pytest.mark.parametrize("begin", [1 - (1 << 62), 0, (1 << 62) - 200])
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 127 ns"])
+@pytest.mark.parametrize("begin", [1 - (1 << 62), (1 << 62) - 200])
 def test_what_is_asked_for_may_lie_behind_the_bounds_of_time(time, begin):
     """Two windows of a century lead there; a clock's first position lies before its first stamp."""
     far = "always[900000 h, 1000000 h] (eventually[600000 h, 700000 h] q)"
@@ -95,12 +95,12 @@ def test_why_a_value_is_unknown_is_part_of_it():
 def test_chains_of_windows_taken_up_again_go_on_alike():
     """So do those that are followed by where values change."""
     taken = 0
-    for number in range(40):
+    for number in range(14):
         rng = random.Random(f"chain/{number}")
         spec = random_chain(rng, untils=number % 3 == 0)
         one = random_trace(rng, spec, TraceProfile(outages=100 * (number % 2)))
         taken += put_away(compile_spec(spec), one)
-    assert taken > 250
+    assert taken > 80
 
 
 def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
@@ -123,7 +123,7 @@ def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
+@pytest.mark.parametrize("time", ["held", "sampled every 2 ns"])
 def test_changed_bytes_are_refused(time):
     """Each byte that is another, each end that is missing, and what is behind it, is found."""
     plan = planned(REQUIREMENTS, time)
@@ -139,14 +139,14 @@ def test_changed_bytes_are_refused(time):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
+@pytest.mark.parametrize("time", ["held", "sampled every 2 ns"])
 def test_forged_bytes_do_no_harm(time):
     """Bytes with a hash that fits are refused, or give a run that can be led to its end."""
     plan = planned(REQUIREMENTS, time)
     rng = random.Random(time)
     data = run_of(plan, rng, 12).plain.save()
     outcomes: Counter[bool] = Counter()
-    for _ in range(1500):
+    for _ in range(500):
         made = plan.monitor(frozenset())
         taken = made.load(forged(data, rng))
         outcomes[taken] += 1
@@ -162,7 +162,7 @@ def test_forged_bytes_do_no_harm(time):
             made.open()
             made.finish(None)
             made.counts()
-    assert min(outcomes.values()) > 50, outcomes
+    assert min(outcomes.values()) > 15, outcomes
 
 
 def test_a_refused_snapshot_changes_nothing():

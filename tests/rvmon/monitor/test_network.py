@@ -144,7 +144,7 @@ def test_what_time_alone_decides_is_known_beforehand():
 def test_reasons_are_the_same_later(time):
     """What is said of a decision does not depend on when someone asks."""
     said = 0
-    for seed in range(30):
+    for seed in range(10):
         case = case_of(f"asked {seed}", Profile(time=time), TraceProfile())
         found = []
         for at_once in (True, False):
@@ -155,7 +155,7 @@ def test_reasons_are_the_same_later(time):
             found.append([repr(one) for one in reversed(report.attempts)])
         assert found[0] == found[1]
         said += len(found[0])
-    assert said > 25
+    assert said > 8
 
 
 def test_a_window_without_a_tick_is_over_in_time():

@@ -19,7 +19,7 @@ from rvmon.verdict.attempt import Decision
 
 pytestmark = pytest.mark.law
 
-PAIRS = 50
+PAIRS = 25
 
 
 def measured(case):

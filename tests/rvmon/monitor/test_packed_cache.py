@@ -116,7 +116,7 @@ def damages(path, other):
         yield whole(b"\n".join([key, wrong, data]))
     for wrong in (b"", b"x" * 4096, data + bytes(8), data[:-8]):
         yield whole(b"\n".join([key, names, wrong]))
-    for place in range(0, len(data), 97):
+    for place in range(0, len(data), 499):
         changed = bytearray(data)
         changed[place] ^= 0x40
         yield whole(b"\n".join([key, names, bytes(changed)]))

@@ -54,11 +54,11 @@ def in_columns(rng, case):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_what_a_recording_lost_counts_from_its_first_to_its_last_instant(seed):
     rng = random.Random(f"lossy {seed}")
     columns = 0
-    for _ in range(40):
+    for _ in range(25):
         spec = random_spec(rng, Profile(requirements=2, depth=2))
         case = random_trace(rng, spec, TraceProfile(outages=100, advances=False))
         whole_case, pieces = in_columns(rng, case)
@@ -70,7 +70,7 @@ def test_what_a_recording_lost_counts_from_its_first_to_its_last_instant(seed):
             told = Spec(spec).judge(Source(lost))
             assert not differences(Judgement(own).report, told), show_case(own)
             columns += any(isinstance(piece, Batch) for piece in found)
-    assert columns > 15
+    assert columns > 8
 
 
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
