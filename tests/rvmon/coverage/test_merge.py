@@ -7,7 +7,7 @@ from tests.tools.covered import dump, fill, merged, random_database
 
 from rvmon.coverage.database import Database
 
-ORDERS = 500
+ORDERS = 80
 
 
 @pytest.mark.slow
@@ -15,7 +15,7 @@ def test_merging_is_commutative_associative_and_idempotent():
     """Random orders, random brackets, repetitions: equal dumps."""
     rng = random.Random(5)
     pools = []
-    for pool in range(40):
+    for pool in range(15):
         some = [random_database(10 * pool + one) for one in range(rng.randint(2, 4))]
         pools.append((some, dump(merged(some))))
     for _ in range(ORDERS):

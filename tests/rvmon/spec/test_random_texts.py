@@ -13,12 +13,16 @@ from rvmon.spec.syntax.parse import grammar
 @pytest.mark.slow
 def test_most_texts_can_be_read_and_all_words_occur():
     """What the grammar makes the parser reads, but for what has to be bracketed."""
-    made = [random_text(random.Random(seed)).removeprefix(HEAD) for seed in range(4000)]
-    read = [text for text in made if syntax_of(text) is not None]
-    assert len(read) > 2000
-    kinds = {piece.kind for text in read for piece in pieces_of(text)[0]}
-    ignored = set(grammar().ignore_tokens)
-    assert {terminal.name for terminal in grammar().terminals} - kinds - ignored == set()
+    missing = {terminal.name for terminal in grammar().terminals} - {*grammar().ignore_tokens}
+    made = read = 0
+    while missing or made < 500:
+        text = random_text(random.Random(made)).removeprefix(HEAD)
+        made += 1
+        if syntax_of(text) is not None:
+            read += 1
+            missing -= {piece.kind for piece in pieces_of(text)[0]}
+        assert made < 4_000, missing
+    assert read > made / 2
 
 
 @pytest.mark.slow

@@ -74,7 +74,7 @@ def with_differences(seed):
 def test_what_edges_keep_up_is_the_truth():
     """In each region of random networks each variable has the truth of its difference."""
     seen = 0
-    for seed in range(120):
+    for seed in range(40):
         text = with_differences(seed)
         if "clock x\n" in text or " - " not in text:
             continue
@@ -99,7 +99,7 @@ def test_what_edges_keep_up_is_the_truth():
                     truth = difference < limit if op == "<" else difference <= limit
                     assert region.now.values[place] == truth, (seed, network.variables[place])
                     seen += 1
-    assert seen > 2_000
+    assert seen > 600
 
 
 def test_an_edge_is_taken_apart_without_gap():
