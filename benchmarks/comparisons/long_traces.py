@@ -1,9 +1,9 @@
 """The core against progression, on traces too long for the law: what is kept over time stays right.
 
 Random formulas with windows of up to some hundred ticks, required from the start or upon a signal,
-in held and in sampled time; nothing is unknown. What an attempt owes is taken on by
-`tests.tools.progression`, which has the formula's core form in common with the core, and neither
-automata, queues, networks nor chains of windows. Compared are, of every attempt, trigger, verdict
+in held and in sampled time; nothing is unknown. What an attempt owes is taken on by `progression`,
+which has the formula's core form in common with the core, and neither automata, queues, networks
+nor chains of windows. Compared are, of every attempt, trigger, verdict
 and instant of what the prefix decides, stepped and by rows.
 """
 
@@ -16,11 +16,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from benchmarks.comparisons.comparison import Found
+from benchmarks.comparisons.progression import Progression, TooManyObligationsError
 from tests.tools.build import scaled
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
-from tests.tools.progression import Progression, TooManyObligationsError
 from tests.tools.stepped import settle
 
 from rvmon.logic.automaton import PASSED, Token

@@ -11,7 +11,7 @@ from pathlib import Path
 from random import Random
 
 from benchmarks.comparisons.comparison import Comparison, Found
-from tests.tools.timed_ctl import decide, holds_at_start, random_formulas
+from tests.tools.timed_ctl import holds_at_start, random_formulas
 from tests.tools.timed_damage import damaged, survives
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
@@ -63,7 +63,7 @@ def judge_queries(seed: int, numbers: range) -> Found:
                 if not shows(network, outcome):
                     texts.append(f"network {number}: the run does not show that {query.text}")
             try:
-                expected = decide(network, query, MOST_REGIONS, steps)
+                expected = holds_at_start(network, query, MOST_REGIONS, steps)
             except TooManyRegionsError:
                 counts["left out: too many regions"] += 1
                 continue

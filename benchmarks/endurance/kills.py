@@ -33,7 +33,8 @@ from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
-from tests.tools import killed_doors, killed_watch
+from benchmarks.endurance import killed_doors
+from tests.tools import killed_watch
 from tests.tools.forked import Forked
 
 import handover.cli

@@ -92,42 +92,6 @@ def test_online_monitor_reports_what_each_step_decides():
     assert monitor.finish().verdicts == {"D1": "P", "D2": "F"}
 
 
-@pytest.mark.parametrize("form", ["pairs", "lists", "arrays", "csv", "jsonl", "ticks"])
-def test_every_form_of_a_trace_is_judged_alike(tmp_path, form):
-    """A path, columns or pairs: the same data has the same report."""
-    import numpy as np
-
-    rows = [(0.0, True, 0.0, True), (1.5, False, 0.3, False), (1.75, False, 0.95, False)]
-    columns = dict(zip(("t", "closed", "gap", "knock"), zip(*rows, strict=True), strict=True))
-    time = "t"
-    match form:
-        case "pairs":
-            trace = [(t, {"closed": c, "gap": g, "knock": k}) for t, c, g, k in rows]
-        case "lists":
-            trace = columns
-        case "arrays":
-            trace = {name: np.array(column) for name, column in columns.items()}
-        case "ticks":
-            trace, time = dict(columns), "t_ns"
-            trace["t_ns"] = np.array([round(t * 1e9) for t in trace.pop("t")], dtype=np.int64)
-        case "csv":
-            trace = tmp_path / "a.csv"
-            lines = [",".join(map(str, row)) for row in rows]
-            trace.write_text("t,closed,gap,knock\n" + "\n".join(lines) + "\n")
-        case "jsonl":
-            trace = tmp_path / "a.jsonl"
-            trace.write_text(
-                '{"t": 0.0, "closed": true, "gap": 0.0, "events": ["knock"]}\n'
-                '{"t": 1.5, "closed": false, "gap": 0.3}\n{"t": 1.75, "gap": 0.95}\n'
-            )
-    report = rvmon.loads(DOOR).evaluate(trace, time=time)
-    assert report.verdicts == {"D1": "P", "D2": "F"}
-    assert [(a.requirement, a.triggered, a.decided) for a in report.attempts] == [
-        ("D1", 0, 1_500_000_000),
-        ("D2", 0, 1_750_000_000),
-    ]
-
-
 def test_only_judges_what_was_asked_for():
     """`only` leaves the other requirements out; a name that does not exist is an error."""
     spec = rvmon.loads(DOOR)

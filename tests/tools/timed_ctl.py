@@ -8,7 +8,7 @@ Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, secti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from random import Random
 
 import networkx as nx
@@ -20,14 +20,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import (
-    has_paths,
-    is_plain,
-    normal_form,
-    parts_of,
-    speaks_of_deadlock,
-    with_deadlock,
-)
+from rvmon.timed.model.guards import is_plain, parts_of
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
@@ -66,8 +59,10 @@ class _Truth:
         self._plain = _Steps(self._regions, self._regions.reachable([self.start]))
         if known:
             timed = RegionGraph(network, [formula], max(known), 4 * limit, steps)
-            starts = map(timed.restarted, self._plain.nodes)
-            self._timed = _Steps(timed, timed.reachable(starts))
+            # A bound of the outermost operator alone counts from the start alone.
+            is_outermost = isinstance(formula, PathFormula) and formula.bound and len(known) == 1
+            starts = [self.start] if is_outermost else self._plain.nodes
+            self._timed = _Steps(timed, timed.reachable(map(timed.restarted, starts)))
             self._restart = timed.restarted
 
     def where(self, formula: Expression) -> Regions:
@@ -155,77 +150,6 @@ class _Steps:
             if node in self._delays:
                 found |= nx.ancestors(self._delays, node)
         return frozenset(found)
-
-
-MakeRegions = Callable[..., RegionGraph]
-"""Makes the regions of a network, for formulas and a bound."""
-
-
-def decide(network: Network, query: Query, limit: int = 5_000, steps: Steps | None = None) -> bool:
-    """Whether a query holds, by walking through all regions; flat ones in the quickest way.
-
-    Raises:
-        TooManyRegionsError: there are more than `limit`.
-    """
-
-    def regions(formulas: Iterable[Expression], bound: int | None = None) -> RegionGraph:
-        return RegionGraph(network, formulas, bound, limit, steps)
-
-    match query.formula:
-        case LeadsToFormula(left, right, bound):
-            return _responds(regions, left, right, bound)
-        case PathFormula(_, body) if has_paths(body):
-            return holds_at_start(network, query, limit, steps)
-        case PathFormula(PathOp.POSSIBLY, body, bound):
-            return _reaches(regions, normal_form(body), bound)
-        case PathFormula(PathOp.INVARIANTLY, body, bound):
-            return not _reaches(regions, normal_form(body, positive=False), bound)
-        case PathFormula(PathOp.EVENTUALLY, body, bound):
-            return not _avoids(regions, normal_form(body, positive=False), bound)
-        case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, bound):
-            return _avoids(regions, normal_form(body), bound)
-        case _:
-            raise AssertionError(f"{query.text} has no path operator")
-
-
-def _reaches(regions: MakeRegions, formula: Expression, bound: int | None) -> bool:
-    graph = regions([formula], bound)
-    found = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
-    if not speaks_of_deadlock(formula):
-        holds = truth_of(formula)
-        return any(holds(region.now) for region in found)
-    by_death = {dead: truth_of(with_deadlock(formula, dead)) for dead in (True, False)}
-    return any(by_death[graph.is_dead(r)](r.now) for r in found)
-
-
-def _avoids(regions: MakeRegions, formula: Expression, bound: int | None) -> bool:
-    """Whether some run stays inside a formula for ever, or until the bound is over."""
-    graph = regions([formula], bound)
-    starts = [graph.start()]
-    if bound is not None and _is_late(graph, starts, formula, bound):
-        return True
-    holds = truth_of(formula)
-    inside = graph.reachable(starts, lambda region: holds(region.now))
-    return bool(graph.staying(inside) & set(starts))
-
-
-def _responds(regions: MakeRegions, left: Expression, right: Expression, bound: int | None) -> bool:
-    graph = regions([left, right], bound)
-    missing = normal_form(right, positive=False)
-    everywhere = graph.reachable([graph.start()])
-    first, holds = truth_of(left), truth_of(missing)
-    starts = [graph.restarted(r) for r in everywhere if first(r.now)]
-    if bound is not None and _is_late(graph, starts, missing, bound):
-        return False
-    inside = graph.reachable(starts, lambda region: holds(region.now))
-    return not graph.staying(inside) & set(starts)
-
-
-def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:
-    """Whether the timer can pass the bound with the formula true until then."""
-    holds = truth_of(inside)
-    waiting = graph.reachable(starts, lambda region: region.timer <= bound and holds(region.now))
-    return any(later is not None and later.timer > bound for later in map(graph.later, waiting))
 
 
 def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:

@@ -16,8 +16,6 @@ from math import floor
 from operator import ge, gt, le, lt
 from typing import Any
 
-import networkx as nx
-
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
     BinaryOperation,
@@ -210,28 +208,6 @@ class RegionGraph:
                 return True
             region = later
 
-    def staying(self, inside: set[Region]) -> set[Region]:
-        """The regions from which some maximal run never leaves a set."""
-        graph = nx.DiGraph()
-        graph.add_nodes_from(inside)
-        taken: list[tuple[Region, Region]] = []
-        good: set[Region] = set()
-        for region in inside:
-            actions, later = list(self.actions(region)), self.later(region)
-            if later == region or (later is None and not actions):
-                good.add(region)
-            taken += [(region, after) for after in actions if after in inside]
-            if later in inside:
-                graph.add_edge(region, later)
-        graph.add_edges_from(taken)
-        component_of = {
-            region: number
-            for number, component in enumerate(nx.strongly_connected_components(graph))
-            for region in component
-        }
-        good |= {a for a, b in taken if component_of[a] == component_of[b]}
-        return leading_to(graph, good)
-
     def _canonical(self, now: Configuration, timer: Fraction) -> Region:
         """The representative of a configuration's region."""
         clocks = [*now.clocks, *([timer] if self._timed else [])]
@@ -251,12 +227,3 @@ class RegionGraph:
             self._steps[key] = Region(found, timer)
         region: Region = self._steps[key]
         return region
-
-
-def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:
-    """The nodes from which some target can be reached."""
-    found = set(targets)
-    for target in targets:
-        if target in graph:
-            found |= nx.ancestors(graph, target)
-    return found

@@ -1,13 +1,9 @@
 """Campaigns: what they count, and that it follows from the seed alone."""
 
 import json
-import multiprocessing
-import os
-import signal
 
 import pytest
 
-from handover.campaign import system
 from handover.campaign.campaign import handover_campaign
 from handover.campaign.table1 import FITTED, paper_table, table_document
 from handover.checker import spec_path
@@ -17,7 +13,6 @@ from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json
-from rvmon.coverage import Ending
 from rvmon.session import load
 from rvmon.verdict import Verdict
 
@@ -108,60 +103,6 @@ def test_directed_tests_end_as_they_should(directed_results):
     planted = [one for one in correct.known if one.test.mutation is not None]
     assert planted
     assert correct.strategies["directed"].tests == len(correct.known) - len(planted)
-
-
-def test_a_crash_of_the_robot_is_a_result(directed_results):
-    """The test is judged, and its exception is kept."""
-    crashed = [one for one in directed_results.played if one.outcome.error is not None]
-    assert [one.job.test.name for one in crashed] == ["mutant-crashes"]
-    outcome = crashed[0].outcome
-    assert outcome.ending is Ending.CRASHED
-    assert "ZeroDivisionError" in outcome.error
-    assert set(outcome.verdicts) == set(SPECS["correct"].requirements)
-
-
-def test_an_interrupt_keeps_the_finished_tests(results):
-    """The table is made of what was played, and says that it is partial."""
-
-    def press_ctrl_c(count):
-        if count == 8:
-            signal.raise_signal(signal.SIGINT)
-
-    played = execute(small(), jobs=1, progress=press_ctrl_c)
-    assert played.cut_short == "interrupted"
-    assert played.played == results.played[:8]
-    content = table_document(summarise(played, SPECS))
-    assert content["partial"] == {"why": "interrupted", "planned": 24, "finished": 8}
-    counted = sum(
-        strategy["tests"]
-        for robot in content["robots"].values()
-        for strategy in robot["strategies"].values()
-    )
-    assert counted == 8
-
-
-@pytest.mark.skipif(
-    multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
-)
-def test_a_test_that_kills_its_process_is_a_result(monkeypatch, results):
-    """The others are played all the same."""
-    last = small().jobs()[4]
-
-    def run_test(test, **options):
-        if (test.name, options["robot"]) == (last.test.name, last.robot):
-            os.kill(os.getpid(), signal.SIGKILL)
-        return real(test, **options)
-
-    real = system.run_test
-    monkeypatch.setattr(system, "run_test", run_test)
-    played = execute(small(), jobs=2)
-    lost = played.played[4].outcome
-    assert (lost.ending, lost.error) == (Ending.LOST, "its process was ended by signal SIGKILL")
-    assert lost.verdicts == dict.fromkeys(REQUIREMENTS, Verdict.INCONCLUSIVE)
-    assert not played.cut_short
-    assert [one for one in played.played if one.outcome is not lost] == [
-        one for one in results.played if one.job != last
-    ]
 
 
 def test_without_monitors_nothing_is_judged():

@@ -263,8 +263,6 @@ def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
     ("content", "told"),
     [
         ("{", "not JSON"),
-        ('{"name": "x"}', "not an abstract test"),
-        (f'{{"name":"","strategy":"directed","seed":1,"actions":{ACTIONS}}}', "`$.name`"),
         (
             f'{{"name":"x","strategy":"directed","seed":1,"actions":{ACTIONS},"mutation":"no"}}',
             "no",
@@ -302,8 +300,7 @@ def test_a_name_cannot_leave_the_folder(tmp_path, capsys):
     assert not list(tmp_path.glob("evil*"))
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
+def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys):
     """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
 
     def interrupted(chosen, **options):
@@ -314,7 +311,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
         return execute(chosen, **{**options, "progress": press_ctrl_c})
 
     monkeypatch.setattr(campaign_run, "execute", interrupted)
-    assert main(["run", "--tests", "20", "--jobs", jobs, "--out", str(tmp_path)]) == 130
+    assert main(["run", "--tests", "20", "--jobs", "2", "--out", str(tmp_path)]) == 130
     content = json.loads((tmp_path / "table.json").read_text())
     partial = content["partial"]
     assert partial["why"] == "interrupted"

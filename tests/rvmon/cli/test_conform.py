@@ -117,12 +117,3 @@ def test_until_may_cut_a_recording(folder, capsys):
     shown = capsys.readouterr()
     assert "conforms; 1 action explained" in shown.out
     assert "1 later action is not looked at" in shown.err
-
-
-def test_stamps_have_a_name_and_a_unit(folder, capsys):
-    """`--time` says where stamps are, as for `rvmon run`."""
-    (folder / "ms.csv").write_text("stamp,pressed,dark\n10000,0,0\n12000,1,\n16000,,1\n")
-    files = [str(folder / name) for name in ("lamp.ta", "ms.csv")]
-    assert main(["conform", *files, "--time", "stamp:ms"]) == 0
-    assert main(["conform", *files]) == 2
-    assert "name it with --time" in capsys.readouterr().err

@@ -314,7 +314,7 @@ def test_a_conflict_leaves_what_is_there(door, tmp_path, capsys):
 def test_names_steer_no_terminal(tmp_path, capsys):
     """Whatever groups, items and tests are called."""
     path = str(tmp_path / "a.cov")
-    names = list(hostile_names(80))
+    names = list(hostile_names(40))
     axes = {names[0]: names, names[1]: names[:2]}
     crossed = [combination([one, two]) for one in names for two in names[:2]]
     groups = [

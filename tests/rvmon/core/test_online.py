@@ -288,12 +288,6 @@ def test_no_sample_at_all(spec):
     assert list(report.attempts) == []
 
 
-def test_settled_by_the_next_stamp(spec):
-    """With `settle="next"` equal stamps are one sample."""
-    rows = [(0, FIRST), (S, {"p": True}), (S, {"q": True}), (S, {"stop": True}), (9 * S, {})]
-    assert both(spec, rows, settle="next") == [("R1", 1, S, S, "P")]
-
-
 def test_attempts_are_attempts(spec):
     """Records are whole: equal, shown, copied, changed as others are."""
     monitor = spec.monitor()
@@ -371,10 +365,3 @@ def test_captured_values_are_told():
     assert [(one.name, one.captured["i"]) for one in passed] == [("R1#1", 2), ("R1#2", 1)]
     assert passed[0].captured == {"i": 2, "v": 3, "m": None, "h": 1.5}
     assert isinstance(passed[0].captured["v"], int)
-
-
-def test_nothing_to_judge(spec):
-    """No requirement is asked for: there is nothing to judge."""
-    monitor = spec.monitor(only=[])
-    monitor.step(0.0, FIRST)
-    assert monitor.finish().verdicts == {}

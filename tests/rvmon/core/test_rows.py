@@ -32,25 +32,6 @@ def by_the_law(spec: rvmon.Spec, columns: dict[str, np.ndarray], ticks: np.ndarr
     return judge(Case(spec.checked, tuple(samples), None, frozenset(names)))
 
 
-@pytest.mark.parametrize("form", ["columns", "csv", "parquet"])
-def test_without_a_declared_column_all_is_unknown(form, tmp_path):
-    """A name that has no column is unknown throughout, also if no name has one."""
-    spec = spec_of("event e", "upon start then for 2 s not e")
-    trace = {"t": np.array([0.0, 5.0]), "other": np.array([1.0, 2.0])}
-    if form == "csv":
-        trace = tmp_path / "a.csv"
-        trace.write_text("t\n0\n1\n5\n")
-    elif form == "parquet":
-        arrow = pytest.importorskip("pyarrow")
-        parquet = pytest.importorskip("pyarrow.parquet")
-        table, trace = arrow.table(trace), tmp_path / "a.parquet"
-        parquet.write_table(table, trace)
-    with pytest.raises(rvmon.errors.MissingNameError, match="`e`, read by R1"):
-        spec.evaluate(trace)
-    report = spec.evaluate(trace, allow_missing=True)
-    assert report.verdicts == {"R1": "I"}
-
-
 def test_what_was_met_is_carried_on_over_many_rows():
     """Rows are looked at 64 at once: what an operator of the past knows goes on from there."""
     spec = spec_of("signal p, q, r : bool", "whenever r then immediately q since p")
@@ -108,23 +89,6 @@ def test_values_of_another_type_are_refused(name, value, form):
         trace = [(0.0, {}), (1.0, {name: value})]
     with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}"):
         spec.evaluate(trace, allow_missing=True)
-
-
-def test_an_undeclared_name_in_a_sample_is_refused():
-    """A name that the specification does not know is an error that names it."""
-    spec = spec_of("signal x : real", "always x < 5")
-    with pytest.raises(rvmon.TraceError, match="sample at 1 s: no signal or event named `y`"):
-        spec.evaluate([(0.0, {"x": 1.0}), (1.0, {"y": 1.0})])
-
-
-def test_strings_in_a_parquet_file_are_refused(tmp_path):
-    """A column of another type is refused in a file as in memory."""
-    arrow = pytest.importorskip("pyarrow")
-    parquet = pytest.importorskip("pyarrow.parquet")
-    path = tmp_path / "a.parquet"
-    parquet.write_table(arrow.table({"t": [0.0, 1.0], "x": ["1", "9"]}), path)
-    with pytest.raises(rvmon.TraceError, match="`x`"):
-        spec_of("signal x : real", "always x < 5").evaluate(path)
 
 
 def test_lengths_of_vectors_are_those_of_python():

@@ -166,15 +166,6 @@ def test_what_time_has_ruled_out_is_owed_no_more():
     assert left.required == "`within 9 ns q` by 9 ns"
 
 
-def test_captured_values_are_recorded():
-    """`let` shows in the record."""
-    _, [attempt] = run(
-        "upon go\nthen within 3 s distance > d\nlet d = distance",
-        [(0, {"go": True, "distance": 0.5}), (1, {"distance": 0.7})],
-    )
-    assert (attempt.captured, attempt.verdict.value) == ({"d": 0.5}, "P")
-
-
 def test_what_is_owed_is_told_once():
     """What is required at each position, and required now, stands once, with its deadline."""
     text = "spec s\nsignal p, q : bool\nrequirement R1\n  whenever p\n  then within 5 s q\n"

@@ -86,21 +86,6 @@ def test_it_is_no_finding_on_the_inputs(spec):
     assert HealthKind.STALE in kinds
 
 
-@pytest.mark.law
-def test_columns_are_judged_as_samples(spec):
-    """In arrays of any length each row holds a value, or NaN."""
-    for times in (1, 400):
-        rows = [(t + 2 * k, row) for k in range(times) for t, row in ROWS]
-        table = {
-            "t": np.array([t for t, _ in rows]),
-            "range": np.array([row["range"] for _, row in rows]),
-            "free": np.array([row.get("free", NAN) for _, row in rows]),
-            "look": np.array(["look" in row for _, row in rows]),
-        }
-        looks = [(t, {"look": False, **row}) for t, row in rows]
-        assert records(spec.evaluate(table)) == records(spec.evaluate(looks))
-
-
 def test_files_are_judged_as_samples(spec, tmp_path):
     """Also where NaN has the stamp of a value: that is no conflict, and the value stays."""
     lines = ["t,range,free,look"]
@@ -123,15 +108,6 @@ def test_samples_that_are_merged_keep_the_value(spec):
     report = monitor.finish()
     assert records(report) == records(spec.evaluate(ROWS))
     assert HealthKind.CONFLICT not in {one.kind for one in report.health}
-
-
-def test_a_run_that_is_put_away_goes_on_alike(spec):
-    """A snapshot remembers the good values."""
-    monitor = spec.monitor()
-    for t, row in ROWS:
-        monitor.step(t, row)
-        monitor = spec.restore(monitor.snapshot())
-    assert records(monitor.finish()) == records(spec.evaluate(ROWS))
 
 
 def test_what_is_wrong_is_still_refused(spec):

@@ -102,20 +102,6 @@ def figures_of(margins):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
-def test_columns_are_measured_as_their_samples_are(time):
-    """Arrays give each attempt and each row the figures that a monitor gives."""
-    for number in range(PAIRS):
-        rng = random.Random(f"whole {time} {number}")
-        spec, times, columns = random_case(rng, time)
-        until = rng.choice((None, (times[-1] + 4) * 1e-9))
-        found = Spec(spec).robustness(arrays_of(times, columns), until=until)
-        expected = Spec(spec).robustness(rows_of(times, columns), until=until)
-        case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
-        assert figures_of(found) == figures_of(expected), case
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
 @pytest.mark.parametrize("unknown", [0.0, 0.01])
 def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time, unknown):
     """What is laid out by column gives the figures that it gives row by row."""

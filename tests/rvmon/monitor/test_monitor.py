@@ -5,7 +5,7 @@ import math
 import pytest
 
 import rvmon
-from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
+from rvmon.errors import TraceError, UnknownNameError
 from rvmon.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -46,17 +46,6 @@ def brief(attempts):
 @pytest.fixture(name="monitor")
 def _monitor():
     return rvmon.loads(SPEC).monitor()
-
-
-def test_a_decision_is_returned_by_the_call_that_brings_it(monitor):
-    """A sample or the passing of time returns exactly what it decided."""
-    assert monitor.step(0, {"ready": True}) == ()
-    assert monitor.step(1, {"sensed": True}) == ()
-    assert brief(monitor.step(2.5, {"released": True})) == [("R1", 1, "P", 2_500_000_000)]
-    monitor.step(3, {"sensed": True})
-    assert monitor.advance(6) == ()
-    assert brief(monitor.advance_ns(6_000_000_001)) == [("R1", 2, "F", 6_000_000_001)]
-    assert monitor.advance_ns(6_000_000_001) == ()
 
 
 def test_what_each_tick_starts_again_is_not_due():
@@ -105,19 +94,6 @@ def test_an_impossible_time_is_an_error(monitor, t):
             call()
 
 
-def test_time_never_goes_back(monitor):
-    """Equal and earlier samples, and those before an advance, raise and change nothing."""
-    monitor.step(1, {"ready": True})
-    for t in (1, 0.5):
-        with pytest.raises(TimeOrderError):
-            monitor.step(t, {"sensed": True})
-    monitor.advance(3)
-    with pytest.raises(TimeOrderError):
-        monitor.step(2, {"sensed": True})
-    monitor.step(3, {"sensed": True})
-    assert brief(monitor.finish().attempts) == [("R1", 1, "I", None)]
-
-
 def test_a_name_without_source_is_unknown_and_must_not_arrive():
     """What cannot arrive is unknown throughout, and is an error if it does."""
     monitor = rvmon.loads(SPEC).monitor(sources=["sensed", "ready"])
@@ -132,14 +108,6 @@ def test_an_unknown_option_is_named_with_those_there_are(options):
     """A choice that does not exist is refused when the monitor is built."""
     with pytest.raises(UnknownNameError, match=r"there (are|is)"):
         rvmon.loads(SPEC).monitor(**options)
-
-
-def test_what_has_no_automaton_is_judged():
-    """A formula whose automaton does not close is judged by a network."""
-    monitor = rvmon.loads(SPAWNING).monitor()
-    monitor.step_ns(0, {"a": True})
-    monitor.step_ns(1, {"a": True})
-    assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
 
 
 MANY = """

@@ -37,41 +37,6 @@ def test_csv_gives_each_updated_cell_as_its_declared_kind(tmp_path):
     assert samples[2] == (1_000_000_000, {"ok": False, "go": False})
 
 
-def test_both_formats_agree(tmp_path):
-    """The same data as CSV and as JSON lines gives the same samples."""
-    _, from_csv = read(tmp_path, "a.csv", "t_ns,ok,hand.distance,go,pick.id\n5,1,0.5,,\n6,,,1,7\n")
-    _, from_json = read(
-        tmp_path,
-        "a.jsonl",
-        '{"t_ns": 5, "ok": true, "hand": {"distance": 0.5}}\n'
-        '{"t_ns": 6, "events": ["go"], "pick": {"id": 7}}\n',
-    )
-    assert (
-        from_csv
-        == from_json
-        == [
-            (5, {"ok": True, "hand.distance": 0.5}),
-            (6, {"go": True, "pick": {"id": 7}}),
-        ]
-    )
-
-
-def test_equal_stamps_become_one_sample(tmp_path):
-    """Events are or-ed, the last of two values wins and is reported."""
-    recording, samples = read(tmp_path, "a.csv", "t,n,go\n1,3,1\n1,4,0\n2,5,\n")
-    assert samples == [(10**9, {"n": 4, "go": True}), (2 * 10**9, {"n": 5})]
-    (conflict,) = [h for h in recording.health() if h.kind is HealthKind.CONFLICT]
-    assert (conflict.name, conflict.count, conflict.first) == ("n", 1, 10**9)
-
-
-def test_two_payloads_at_one_stamp_are_both_kept(tmp_path):
-    """Coalescing never drops a payload."""
-    _, samples = read(
-        tmp_path, "a.jsonl", '{"t": 1, "pick": {"id": 1}}\n{"t": 1, "pick": {"id": 2}}\n'
-    )
-    assert samples == [(10**9, {"pick": ({"id": 1}, {"id": 2})})]
-
-
 def test_undeclared_columns_are_ignored_and_counted(tmp_path):
     """A column that the spec does not name is no error, and is not silent either."""
     recording, samples = read(tmp_path, "a.csv", "t,ok,battery\n0,1,7\n")

@@ -14,9 +14,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rvmon.cli import main
 from tests.tools.forked import Forked
 from tests.tools.servers import LOOPBACK, SYSTEM, Broker, master_of_ros1
+
+from rvmon.cli import main
 
 _SPEC = """
 spec heard
@@ -34,8 +35,8 @@ _EACH = 0.004
 @contextmanager
 def _published(door: str, where: str) -> Iterator[None]:
     """Numbers from 0 on, by a process of its own, as long as the context lasts."""
-    words = [sys.executable, "-m", "tests.tools.killed_doors", door, where]
-    with subprocess.Popen(words, stderr=subprocess.DEVNULL) as process:  # noqa: S603
+    words = [sys.executable, "-m", "benchmarks.endurance.killed_doors", door, where]
+    with subprocess.Popen(words, stderr=subprocess.DEVNULL) as process:
         try:
             yield
         finally:
