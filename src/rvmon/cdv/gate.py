@@ -103,7 +103,7 @@ def judge_campaign(
             one,
             expected,
             [name for robot, name in decisions if robot == one.job.robot],
-            gate=_gate_of(campaign, one) if strict else None,
+            gate=campaign.gates.get(_gate_name(campaign, one), Gate()) if strict else None,
         )
         for one in results.played
     )
@@ -219,10 +219,6 @@ def _gate_name(campaign: Campaign, one: Played) -> str:
     """The strategy whose gate a test is compared with; empty: that of all which have none."""
     strategy = one.job.test.strategy
     return strategy if strategy in campaign.gates else ""
-
-
-def _gate_of(campaign: Campaign, one: Played) -> Gate:
-    return campaign.gates.get(_gate_name(campaign, one), Gate())
 
 
 def _gated(

@@ -149,7 +149,7 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     except TestError:
         raise
     except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are
-        return Run(observer.last_ns, error=_error_text(error))
+        return Run(observer.last_ns, error=f"{type(error).__name__}: {error}")
     if not isinstance(run, Run):
         return Run(observer.last_ns, error=f"`play` returned {run!r}, which is no Run")
     if run.end_ns < observer.last_ns:
@@ -178,10 +178,6 @@ def _reasons(report: Report) -> dict[str, str]:
     failed = (name for name, verdict in report.verdicts.items() if verdict is Verdict.FAIL)
     first = {name: next(report.of(name, Verdict.FAIL), None) for name in failed}
     return {name: shown_line(str(attempt)) for name, attempt in first.items() if attempt}
-
-
-def _error_text(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
 
 
 INTERRUPTED = "interrupted"

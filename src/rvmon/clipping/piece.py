@@ -206,14 +206,9 @@ def _csv_start(piece: Piece, layout: Layout) -> str:
 def _json_start(piece: Piece) -> str:
     if not piece.held:
         return ""
-    stamps = _stamps(piece.schema)
+    stamps = piece.schema.stamps or stamps_of("t_ns")
     is_text = stamps.unit == "iso"
     stamp = stamp_text(piece.start, stamps) if is_text else stamp_number(piece.start, stamps)
     columns = piece.schema.columns
     values = {columns.get(name, name): value for name, value in piece.held.items()}
     return json.dumps({stamps.column: stamp, **values}, ensure_ascii=False) + "\n"
-
-
-def _stamps(schema: Schema) -> Stamps:
-    """How a line of its own says when: each may choose where it is not given."""
-    return schema.stamps or stamps_of("t_ns")

@@ -55,7 +55,7 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
     place = 0
     for token in tokens:
         gap = text[place : token.start_pos]
-        above = _comments(gap)
+        above = [comment.rstrip() for comment in _COMMENT.findall(gap)]
         if pieces and above and "\n" not in gap[: gap.index("#")]:
             pieces[-1] = replace(pieces[-1], behind=above.pop(0))
         pieces.append(Piece(token.type, _canonical(token.type, str(token)), tuple(above)))
@@ -66,10 +66,6 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
         pieces[-1] = replace(pieces[-1], behind=comment[1].rstrip())
         rest = rest[comment.end() :]
     return _with_colon(_with_windows(_with_depth(pieces))), rest
-
-
-def _comments(gap: str) -> list[str]:
-    return [comment.rstrip() for comment in _COMMENT.findall(gap)]
 
 
 def _canonical(kind: str, text: str) -> str:

@@ -97,10 +97,6 @@ def _unary_of(tense: Tense) -> tuple[tuple[int, UnaryOp], ...]:
     return tuple((_LIKELY.get(op, 2), op) for op in found)
 
 
-def _binary_of(tense: Tense) -> tuple[tuple[int, BinaryOp], ...]:
-    return tuple((_LIKELY.get(op, 2), op) for op in BinaryOp if op.entry.tense is tense)
-
-
 def consequent(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random formula that mostly speaks of the future at its top."""
     if shape.future and chance(rng, 50):
@@ -168,7 +164,7 @@ def _future_binary(rng: Rng, shape: Shape, depth: int) -> Formula:
 
 
 def _binary(rng: Rng, shape: Shape, depth: int, tense: Tense) -> Formula:
-    ops = _binary_of(tense)
+    ops = tuple((_LIKELY.get(op, 2), op) for op in BinaryOp if op.entry.tense is tense)
     op = weighted(rng, ops) if len(ops) > 1 else ops[0][1]
     window = None
     if op.entry.window is not Window.NONE:
