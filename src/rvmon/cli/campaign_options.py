@@ -10,22 +10,17 @@ from rvmon.cli.parser import duration, number_or_folder, positive, shard
 
 def add_run_options(parser: ArgumentParser) -> None:
     """Declare how many tests are played, and where their results go."""
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
-    )
-    parser.add_argument(
-        "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
-    )
-    parser.add_argument(
-        "--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)")
+    add("--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'")
+    add("--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive")
+    add(
         "--shard",
         metavar="I/N",
         type=shard,
         help="with --out, play this share, as 2/4; the same without it joins what shards left",
     )
-    parser.add_argument(
+    add(
         "--strict",
         action="store_true",
         help="exit with 1 as well if something is inconclusive, is never triggered though its "
@@ -38,15 +33,14 @@ def _add_playing_options(parser: ArgumentParser) -> None:
     _add_seed_and_jobs(parser)
     add_dask(parser)
     _add_timeout(parser)
-    parser.add_argument(
-        "--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML")
+    add(
         "--out",
         metavar="DIR",
         help="write tables, tests and pages there; a campaign that was ended there goes on",
     )
-    parser.add_argument(
+    add(
         "--pages",
         choices=("examples", "all"),
         default="examples",
@@ -56,13 +50,10 @@ def _add_playing_options(parser: ArgumentParser) -> None:
 
 def add_closing_options(parser: ArgumentParser) -> None:
     """Declare when closing gives up, and where the suite goes."""
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
-    )
-    parser.add_argument(
-        "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--tests", metavar="N", type=positive, default=400, help="play at most so many (400)")
+    add("--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)")
+    add(
         "--margin",
         metavar="N",
         type=positive,
@@ -70,7 +61,7 @@ def add_closing_options(parser: ArgumentParser) -> None:
         help="keep so many tests that show each goal, where so many were found (2): one covers it, "
         "more see more faults",
     )
-    parser.add_argument(
+    add(
         "--mutants",
         metavar="N",
         type=positive,
@@ -82,13 +73,10 @@ def add_closing_options(parser: ArgumentParser) -> None:
 
 def add_replay_options(parser: ArgumentParser) -> None:
     """Declare where the run of a test goes."""
-    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
-    parser.add_argument(
-        "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
-    )
-    parser.add_argument(
-        "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
-    )
+    add = parser.add_argument
+    add("--out", metavar="DIR", help="write the recording and a page there")
+    add("--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove")
+    add("--expected", action="store_true", help="exit with 0 if all came out as the test expects")
 
 
 def add_shrink_options(parser: ArgumentParser) -> None:
@@ -104,7 +92,8 @@ def add_shrink_options(parser: ArgumentParser) -> None:
 
 def add_mutate_options(parser: ArgumentParser) -> None:
     """Declare which mutants are played by which tests, and where results go."""
-    parser.add_argument(
+    add = parser.add_argument
+    add(
         "--tests",
         metavar="N|DIR",
         type=number_or_folder,
@@ -113,26 +102,18 @@ def add_mutate_options(parser: ArgumentParser) -> None:
     )
     _add_seed_and_jobs(parser)
     _add_timeout(parser)
-    parser.add_argument(
+    add(
         "--of",
         choices=("code", "spec", "both"),
         default="both",
         help="mutants of the code, of its requirements, or %(default)s (default)",
     )
-    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
-    parser.add_argument(
-        "--all", action="store_true", help="play all tests, also after a requirement failed"
-    )
-    parser.add_argument(
-        "--held-out", action="store_true", help="show also single mutants that are held out"
-    )
-    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
-    parser.add_argument(
-        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
-    )
+    add("--only", metavar="TEXT", default="", help="mutants whose name has this")
+    add("--all", action="store_true", help="play all tests, also after a requirement failed")
+    add("--held-out", action="store_true", help="show also single mutants that are held out")
+    add("--list", action="store_true", help="list the mutants, and play nothing")
+    add("--strict", action="store_true", help="exit with 1 unless all mutants are killed")
+    add("--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there")
 
 
 def _add_seed_and_jobs(parser: ArgumentParser) -> None:

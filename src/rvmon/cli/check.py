@@ -26,26 +26,25 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Find what is wrong in specifications: all errors and warnings of each file.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )
-    parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
+    add = parser.add_argument
+    add("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     add_const(parser)
     add_binding(parser)
-    parser.add_argument(
+    add(
         "--format",
         choices=("text", "concise", "json"),
         default="text",
         help="how to print findings: in full, one line each, or as JSON, which has a line for each "
         "as well (default: text)",
     )
-    parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
-    parser.add_argument(
+    add("--strict", action="store_true", help="exit with 1 if there are warnings")
+    add(
         "--analyse",
         action="store_true",
         help="look for requirements that can never trigger, fail or pass, that conflict, or that "
         "others imply",
     )
-    parser.add_argument(
-        "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
-    )
+    add("--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file")
     add_max_memory(parser)
 
 
@@ -145,12 +144,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:
-    from rvmon.diagnostics import (
-        coloured,
-        render_concise,
-        render_json,
-        wants_colour,
-    )
+    from rvmon.diagnostics import coloured, render_concise, render_json, wants_colour
 
     match form:
         case "json":

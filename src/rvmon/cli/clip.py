@@ -45,29 +45,28 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon clip examples/base.rv examples/base.csv B2#2 --before 1s -o "
         "piece.csv",
     )
-    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    parser.add_argument("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
-    parser.add_argument(
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file")
+    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    add("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
+    add(
         "--before",
         metavar="TIME",
         type=span,
         default=10 * TICKS_PER_SECOND,
         help="so long before its trigger, or of an episode before what failed (default: 10s)",
     )
-    parser.add_argument(
+    add(
         "--after",
         metavar="TIME",
         type=span,
         default=5 * TICKS_PER_SECOND,
         help="so long after its decision, and at least to what comes next (default: 5s)",
     )
-    parser.add_argument("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
-    parser.add_argument("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2"
-    )
-    parser.add_argument(
+    add("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
+    add("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
+    add("-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2")
+    add(
         "--reproducer",
         metavar="FILE",
         help="one file (.rvcase) with the piece and its specification: `rvmon why FILE` explains "

@@ -29,9 +29,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
         "compare old.csv old.csv",
     )
-    parser.add_argument("before", metavar="OLD", help="the earlier verdicts")
-    parser.add_argument("after", metavar="NEW", help="the later ones")
-    parser.add_argument("--all", action="store_true", help="list everything, however many")
+    add = parser.add_argument
+    add("before", metavar="OLD", help="the earlier verdicts")
+    add("after", metavar="NEW", help="the later ones")
+    add("--all", action="store_true", help="list everything, however many")
     add_format(parser)
 
 

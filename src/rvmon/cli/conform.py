@@ -29,22 +29,23 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "2: a recording cannot be read, or shows nothing of the model.",
         epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
     )
-    parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
-    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")
+    add = parser.add_argument
+    add("model", metavar="MODEL", help="a .ta or .xml file")
+    add("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")
     add_time(parser)
-    parser.add_argument(
+    add(
         "--observe",
         metavar="LABELS",
         help="labels that a recording would show (default: those with a column, or that occur)",
     )
-    parser.add_argument(
+    add(
         "--tolerance",
         metavar="S",
         type=duration,
         default=0.0,
         help="seconds either way (default: 0)",
     )
-    parser.add_argument(
+    add(
         "--until",
         metavar="T",
         type=duration,

@@ -28,42 +28,41 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "
         "rvmon cover base.cov --holes",
     )
-    parser.add_argument("databases", metavar="DB", nargs="+", help="written by run --coverage")
-    parser.add_argument("--campaign", metavar="NAME", help="show the tests of this one only")
-    parser.add_argument(
+    add = parser.add_argument
+    add("databases", metavar="DB", nargs="+", help="written by run --coverage")
+    add("--campaign", metavar="NAME", help="show the tests of this one only")
+    add(
         "--holes", action="store_true", help="list what is missing, and what cannot be hit, and why"
     )
-    parser.add_argument(
+    add(
         "--bins",
         metavar="[=GROUP]",
         help="list the items of a group (default: of all), with hits and who was first; "
         "a cross is a grid",
     )
-    parser.add_argument(
+    add(
         "--tests",
         action="store_true",
         help="list the tests with what each added, and a short order that covers as much",
     )
-    parser.add_argument(
+    add(
         "--compare",
         metavar="OLD",
         help="show what is new, lost or has another verdict since an earlier database, or an "
         "earlier campaign of this one",
     )
     add_format(parser)
-    parser.add_argument("--report", metavar="FILE", help="write a page to look at")
-    parser.add_argument("--ucis", metavar="FILE", help="write it as UCIS XML, for other tools")
-    parser.add_argument(
-        "--merge", metavar="OUT", help="write all that the databases hold into this one"
-    )
-    parser.add_argument(
+    add("--report", metavar="FILE", help="write a page to look at")
+    add("--ucis", metavar="FILE", help="write it as UCIS XML, for other tools")
+    add("--merge", metavar="OUT", help="write all that the databases hold into this one")
+    add(
         "--require",
         metavar="PERCENT",
         type=percentage,
         help="exit with 1 if less is covered, or something was hit that is illegal, or called "
         "unreachable",
     )
-    parser.add_argument(
+    add(
         "--strict",
         action="store_true",
         help="exit with 1 if something was hit that is illegal, or called unreachable, a test "

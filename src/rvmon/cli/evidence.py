@@ -53,16 +53,17 @@ def add_parser(
         "does not, 2 something could not be checked.",
         epilog="example: %(prog)s base.zip --sample all",
     )
-    parser.add_argument("file", metavar="FILE", help="the evidence")
-    parser.add_argument(
+    add = parser.add_argument
+    add("file", metavar="FILE", help="the evidence")
+    add(
         "--sample",
         metavar="N",
         type=lambda text: None if text == "all" else positive(text),
         default=10,
         help="evaluate so many recordings or tests again, or all (%(default)s)",
     )
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
+    add("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
+    add("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
     parser.set_defaults(run=run, made=campaign)
 
 

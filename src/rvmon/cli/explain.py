@@ -29,12 +29,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "A diagnostic's code such as RV012: its page; `codes`: all codes.",
         epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
     )
-    parser.add_argument("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
-    parser.add_argument(
-        "ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)"
-    )
+    add = parser.add_argument
+    add("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
+    add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
     add_const(parser)
-    parser.add_argument(
+    add(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
     add_max_memory(parser)

@@ -33,11 +33,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
         "examples/models/fischer.ta --to uppaal -o fischer.xml",
     )
-    parser.add_argument("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
-    parser.add_argument("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
-    parser.add_argument(
-        "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
-    )
+    add = parser.add_argument
+    add("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
+    add("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
+    add("-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)")
     add_only(parser)
     add_const(parser)
 

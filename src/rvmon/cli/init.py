@@ -33,21 +33,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "rvmon init monday.bag --for base.rv > base.toml && rvmon run base.rv monday.bag --binding "
         "base.toml",
     )
-    parser.add_argument(
-        "data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it"
-    )
-    parser.add_argument("--for", metavar="SPEC", dest="spec", help="print a binding for this")
+    add = parser.add_argument
+    add("data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it")
+    add("--for", metavar="SPEC", dest="spec", help="print a binding for this")
     add_const(parser)
-    parser.add_argument(
+    add(
         "--campaign",
         metavar="DIR",
         help="write a campaign there: code under test, its surroundings, requirements, strategies",
     )
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)"
-    )
+    add("-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)")
     add_time(parser)
-    parser.add_argument("--force", action="store_true", help="overwrite what is there")
+    add("--force", action="store_true", help="overwrite what is there")
 
 
 def run(arguments: argparse.Namespace) -> int:

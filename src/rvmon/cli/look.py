@@ -24,9 +24,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="examples: rvmon look examples/base.csv; "
         "rvmon look examples/base.csv examples/base.rv -o look.html",
     )
-    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    parser.add_argument("spec", metavar="SPEC", nargs="?", help="a .rv file")
-    parser.add_argument("-o", "--output", metavar="FILE", help="write a page instead")
+    add = parser.add_argument
+    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    add("spec", metavar="SPEC", nargs="?", help="a .rv file")
+    add("-o", "--output", metavar="FILE", help="write a page instead")
     add_const(parser)
     add_reading(parser)
 

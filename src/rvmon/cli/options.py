@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 
 def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
     """Declare `--only`, `--severity` and `--tag`."""
-    parser.add_argument("--only", metavar="IDS", help=f"{what}: R1,R3")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--only", metavar="IDS", help=f"{what}: R1,R3")
+    add(
         "--severity", metavar="LEVELS", help="of these, those of one of the severities: high,medium"
     )
-    parser.add_argument(
+    add(
         "--tag",
         metavar="TAGS",
         action="append",
@@ -88,9 +89,10 @@ def add_dask(parser: argparse.ArgumentParser) -> None:
 
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
-    parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
-    parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--max-states", metavar="N", type=positive, help="give up after N states")
+    add("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
+    add(
         "--max-memory",
         metavar="MB",
         type=positive,

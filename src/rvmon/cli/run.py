@@ -8,14 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import (
-    add_dask,
-    add_format,
-    add_max_memory,
-    add_only,
-    ids_of,
-    refuse_over,
-)
+from rvmon.cli.options import add_dask, add_format, add_max_memory, add_only, ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.parser import positive, shard
 from rvmon.cli.reading import add_evaluated, reading_words
@@ -46,79 +39,72 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "examples/base.rv examples/base.csv --only B2 --report pages --junit "
         "verdicts.xml",
     )
-    parser.add_argument(
-        "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest")
+    add(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
     add_only(parser, "evaluate these requirements")
     add_evaluated(parser)
-    parser.add_argument(
+    add(
         "--join",
         action="store_true",
         help="the files, or those of the folder, are one recording, joined by time: a name is a "
         "column's, or FILE.COLUMN",
     )
-    parser.add_argument(
-        "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
-    )
+    add("--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)")
     add_dask(parser)
-    parser.add_argument(
+    add(
         "--robustness",
         action="store_true",
         help="add by how much each attempt passed or failed (SI units; negative: failed)",
     )
     add_format(parser)
-    parser.add_argument(
-        "--quiet", action="store_true", help="as text, only how many recordings got which verdicts"
-    )
-    parser.add_argument(
+    add("--quiet", action="store_true", help="as text, only how many recordings got which verdicts")
+    add(
         "--coverage",
         metavar="DB",
         help="add what the recordings hit of the coverage model to a database "
         "(made if there is none); `rvmon cover DB` shows it",
     )
-    parser.add_argument(
+    add(
         "--out",
         metavar="FILE",
         help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
     )
-    parser.add_argument(
+    add(
         "--resume",
         action="store_true",
         help="with --out: go on from where the same command was ended, or join its shards",
     )
-    parser.add_argument(
+    add(
         "--shard",
         metavar="I/N",
         type=shard,
         help="with --out: evaluate this share of the recordings, as 2/4, into FILE named so as "
         "well; the same command with --resume in its place joins all",
     )
-    parser.add_argument(
+    add(
         "--known",
         metavar="FILE",
         help="failures that are accepted, each with a reason and a last day, in TOML",
     )
-    parser.add_argument(
+    add(
         "--mcap",
         metavar="FILE",
         help="of one recording: write states, attempts and values over time as MCAP, and "
         "FILE.layout.json, by which Foxglove shows them",
     )
-    parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
-    parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
-    parser.add_argument(
+    add("--report", metavar="DIR", help="write a page per recording to look at")
+    add("--junit", metavar="FILE", help="write JUnit XML for CI")
+    add(
         "--evidence",
         metavar="FILE",
         help="keep recordings, specification and verdicts in one archive; "
         "`rvmon evidence FILE` sees whether it holds",
     )
-    parser.add_argument(
-        "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"
-    )
-    parser.add_argument(
+    add("--strict", action="store_true", help="exit with 1 also if a requirement is I or NT")
+    add(
         "--require-triggered",
         metavar="[=IDS]",
         help="exit with 1 if one of these (default: any) was triggered in no recording",

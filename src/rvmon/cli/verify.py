@@ -33,15 +33,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon verify examples/models/train_gate.ta --query 'A[] not "
         "deadlock' --trace fastest",
     )
-    parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
-    parser.add_argument(
-        "--query", metavar="Q", action="append", help="a query or the id of one (default: all)"
-    )
+    add = parser.add_argument
+    add("model", metavar="MODEL", help="a .ta or .xml file")
+    add("--query", metavar="Q", action="append", help="a query or the id of one (default: all)")
     instead = parser.add_mutually_exclusive_group()
     instead.add_argument(
         "--spec", metavar="SPEC", help="check a specification's requirements on all runs instead"
     )
-    parser.add_argument(
+    add(
         "--bind",
         metavar="NAME=EXPR",
         action="append",
@@ -53,14 +52,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         choices=("locations", "edges", "edge-pairs"),
         help="instead show few runs that go through all of these",
     )
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of simulated runs")
-    parser.add_argument(
+    add("--seed", metavar="S", type=int, default=1, help="of simulated runs")
+    add(
         "--trace",
         choices=("shortest", "fastest", "likely"),
         default="shortest",
         help="which run to show if several do (default: shortest)",
     )
-    parser.add_argument(
+    add(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
     add_format(parser)

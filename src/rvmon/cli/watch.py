@@ -47,8 +47,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )
-    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument(
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file")
+    add(
         "source",
         metavar="SOURCE",
         nargs="?",
@@ -63,17 +64,17 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_time(parser)
     add_map(parser)
     add_binding(parser)
-    parser.add_argument(
+    add(
         "--robot",
         metavar="FIELD",
         help="the field of lines that names the robot: each has monitors of its own",
     )
-    parser.add_argument(
+    add(
         "--publish",
         metavar="TOPIC",
         help="publish each verdict, as JSON: over MQTT under TOPIC/REQUIREMENT, by ROS on TOPIC",
     )
-    parser.add_argument(
+    add(
         "--realtime",
         metavar="LAG",
         nargs="?",
@@ -82,29 +83,27 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="the stamps of the lines are the time of day since 1970, and lines arrive at most LAG "
         "later (default: 500ms): deadlines pass while no line comes, too",
     )
-    parser.add_argument(
+    add(
         "--sim-time",
         action="store_true",
         help="the time is that of the topic /clock (`use_sim_time`); with ros1: this is the "
         "default where the parameter of that name is true",
     )
-    parser.add_argument(
+    add(
         "--room",
         metavar="N",
         type=positive,
         default=10_000,
         help="so many lines may wait (default: 10000); what finds no room is lost, and counted",
     )
-    parser.add_argument(
+    add(
         "--state",
         metavar="FILE",
         help="keep the run in a file: killed, it goes on where it was, and reports each verdict "
         "under its number, the latest perhaps twice",
     )
-    parser.add_argument(
-        "--failures", action="store_true", help="report what fails, not what passes"
-    )
-    parser.add_argument(
+    add("--failures", action="store_true", help="report what fails, not what passes")
+    add(
         "--format",
         choices=("view", "text", "json"),
         help="a view that stays (default on a terminal), a line for each verdict, or JSON lines",
@@ -293,10 +292,7 @@ def _own_clock() -> Clock:
 
 
 def _live(
-    arguments: argparse.Namespace,
-    spec: Spec,
-    clock: Clock,
-    judged: Callable[[Judgement], object],
+    arguments: argparse.Namespace, spec: Spec, clock: Clock, judged: Callable[[Judgement], object]
 ) -> Live:
     from rvmon.live import Live
 

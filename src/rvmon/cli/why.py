@@ -37,15 +37,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Take one attempt apart: when each part of its requirement was true.",
         epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )
-    parser.add_argument(
-        "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
-    )
-    parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
-    parser.add_argument(
-        "attempt",
-        metavar="ID#N",
-        help=ATTEMPT_HELP,
-    )
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest")
+    add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
+    add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
     add_evaluated(parser)
     add_format(parser)
 

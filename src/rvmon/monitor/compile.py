@@ -223,27 +223,15 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
     factory, shapes = Factory(), Shapes()
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
+        lowered = partial(lower, requirement, factory, checked.period, sampled=checked.gap is None)
         try:
-            obligation = lower(
-                requirement,
-                factory,
-                checked.period,
-                sampled=checked.gap is None,
-            )
+            obligation = lowered()
         except UnmonitorableError as error:
             span = requirement.span
             place = "" if span is None else f"{span.source.name}:{span.line}: "
             raise RvmonError(
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        measured = partial(
-            lower,
-            requirement,
-            factory,
-            checked.period,
-            measured=True,
-            sampled=checked.gap is None,
-        )
         given = (rank, checked, requirement, obligation, factory, shapes)
-        made[name] = CompiledRequirement(*given, measured=measured)
+        made[name] = CompiledRequirement(*given, measured=partial(lowered, measured=True))
     return made

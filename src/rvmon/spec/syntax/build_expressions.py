@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from lark import Token
 from lark.tree import Meta
@@ -26,11 +26,13 @@ _LARGEST = 400
 """Numbers with more digits before the point, or more zeros behind it, are out of range."""
 
 Children = list[Any]
+Maker = Callable[[Any, Children, Span], Any]
+"""Makes what a rule reads, of the builder, the rule's parts and its place."""
 
 
 @v_args(meta=True)
 class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
-    """Makes the syntax tree of expressions; each method is named for a rule of `rv.lark`.
+    """Makes the syntax tree of expressions; a maker or a method for each rule of `rv.lark`.
 
     Args:
         source: the file.
@@ -40,11 +42,23 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         findings: what is wrong with the way the item is written.
     """
 
+    makers: ClassVar[Mapping[str, Maker]] = {
+        "literal": lambda b, parts, span: b.number(span, parts),
+        "name": lambda _, parts, span: expressions.Name(unquoted(parts[0]), span),
+        "truth": lambda _, parts, span: expressions.Truth(parts[0] == "true", span),
+        "edge": lambda _, parts, span: expressions.Edge(Bound(parts[0]), span),
+        "group": lambda _, parts, span: expressions.Group(parts[0], span),
+        "minus": lambda _, parts, span: expressions.Operation(NumericOp.NEG, (parts[1],), span),
+    }
+
     def __init__(self, source: Source, offset: int) -> None:
         super().__init__()
         self.findings: list[Diagnostic] = []
         self._source = source
         self._offset = offset
+
+    def __default__(self, data: str, children: Children, meta: Meta) -> Any:
+        return self.makers[data](self, children, self.span(meta))
 
     def span(self, place: Meta | Token) -> Span:
         """The place of a token or rule in the file."""
@@ -63,32 +77,18 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         span = self.span(token)
         return expressions.Ident(token[:-1], Span(span.source, span.start, span.end - 1))
 
-    def literal(self, meta: Meta, children: Children) -> expressions.Number:
+    def number(self, span: Span, children: Children) -> expressions.Number:
+        """A number with its unit."""
         text = str(children[0])
         digits = text[: _NUMBER.match(text).end()]  # type: ignore[union-attr]  # terminal NUMBER
         decimal = Decimal(digits)
         small = abs(decimal.adjusted()) <= _LARGEST and len(digits) <= 2 * _LARGEST
         value = Fraction(decimal) if small or not decimal else None
-        return expressions.Number(value, text[len(digits) :].strip(), self.span(meta))
-
-    def name(self, meta: Meta, children: Children) -> expressions.Name:
-        return expressions.Name(unquoted(children[0]), self.span(meta))
-
-    def truth(self, meta: Meta, children: Children) -> expressions.Truth:
-        return expressions.Truth(children[0] == "true", self.span(meta))
-
-    def edge(self, meta: Meta, children: Children) -> expressions.Edge:
-        return expressions.Edge(Bound(children[0]), self.span(meta))
+        return expressions.Number(value, text[len(digits) :].strip(), span)
 
     def call(self, meta: Meta, children: Children) -> expressions.Call:
         token, *args = children
         return expressions.Call(self.called(token), tuple(args), self.span(meta))
-
-    def group(self, meta: Meta, children: Children) -> expressions.Group:
-        return expressions.Group(children[0], self.span(meta))
-
-    def minus(self, meta: Meta, children: Children) -> expressions.Operation:
-        return expressions.Operation(NumericOp.NEG, (children[1],), self.span(meta))
 
     def arithmetic(self, meta: Meta, children: Children) -> expressions.Operation:
         left, op, right = children
