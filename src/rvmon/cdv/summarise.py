@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from rvmon.cdv.campaign import unreachable_items
 from rvmon.cdv.code_coverage import (
     branches_name,
     measured_groups,
@@ -22,9 +23,10 @@ from rvmon.cdv.summary import (
     StrategySummary,
     missed,
 )
-from rvmon.coverage import STATES, TRANSITIONS, Ending, Group
+from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
 from rvmon.report.table import Counts
 from rvmon.session import Spec
+from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import RunShare
 from rvmon.verdict import Verdict
 
@@ -37,10 +39,11 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         specs: by robot, what judged it; one that is missing was not judged.
     """
     campaign = results.plan.campaign
-    groups = {group.name: group for group in measured_groups(campaign)}
+    measured = model_of(measured_groups(campaign))
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]
     robots = {}
     for name, robot in campaign.robots.items():
+        groups = without(measured, unreachable_items(campaign, name, measured)).groups
         texts = _texts(specs.get(name))
         shares = _shares(specs.get(name))
         played = [one for one in results.played if one.job.robot == name]
@@ -170,14 +173,20 @@ def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
 
 
 def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """How many tests hit each item: the declared ones, then what else was seen."""
-    return {**dict.fromkeys(group.items, 0), **_tests_that_hit(group.name, outcomes)}
+    """How many tests hit each item: what is to be hit, then what else was seen."""
+    return {**dict.fromkeys(_sought(group), 0), **_tests_that_hit(group.name, outcomes)}
 
 
 def _coverage(group: Group, outcomes: Sequence[Outcome]) -> BlockCoverage:
     hit = _tests_that_hit(group.name, outcomes)
-    missing = tuple(item for item in group.items if item not in hit)
-    return BlockCoverage(len(group.items), len(group.items) - len(missing), missing)
+    sought = _sought(group)
+    missing = tuple(item for item in sought if item not in hit)
+    return BlockCoverage(len(sought), len(sought) - len(missing), missing)
+
+
+def _sought(group: Group) -> list[str]:
+    """What tests are to hit: not what cannot be."""
+    return [name for name, item in group.items.items() if item.kind is BinKind.GOAL]
 
 
 def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:

@@ -89,6 +89,9 @@ def test_it_closes(tmp_path, seed):
     assert "100 % covered: 65 of 65 goals met" in done.stdout
     closing = json.loads((tmp_path / "out" / "closing.json").read_text())
     assert (len(closing["argued"]), closing["open"], closing["wrong"]) == (10, [], [])
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert '<th scope="row">wait → slow</th>' in page
+    assert "drive → wait" not in page  # it cannot be, and is no hole of the suite
 
 
 def test_it_is_small():
