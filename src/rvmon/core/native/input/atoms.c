@@ -1,16 +1,20 @@
-/* Atoms: what a formula reads off the input at a position. Each is read when its input changes, and
- * shown by the leaves that speak of it. */
+/* Atoms: the truths that formulas read off the input (SEC_ATOMS in plan.md).
+ *
+ * An atom is read again when its input changes, so its truth is always current; if it changed, its
+ * leaves are marked dirty. A *momentary* atom (an event, `updated`, `changed`) speaks of one position
+ * only. While it is not FALSE it is listed: as *fresh* when it is read between positions, as it speaks
+ * of the one to come, and from there on as *fading*, to be read again at the position after. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 
-/* For how a value stands to a constant a comparison is true. */
+/* For each comparison the set of orders (IS_LESS ...) for which it is true. */
 enum { LESS = 1 << IS_LESS, EQUAL = 1 << IS_EQUAL, GREATER = 1 << IS_GREATER };
 static const uint8_t HOLDS_FOR[CMPS] = {
     [CMP_LT] = LESS, [CMP_LE] = LESS | EQUAL, [CMP_EQ] = EQUAL, [CMP_NE] = LESS | GREATER,
     [CMP_GE] = GREATER | EQUAL, [CMP_GT] = GREATER,
 };
 
-/* Without a branch for what nobody can foretell. */
+/* Without a branch on the order, which noisy values make unpredictable. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
     const int32_t stands = order_of(value->as.real, constant);
@@ -20,11 +24,11 @@ static uint8_t compare_real(int32_t how, const rv_number *value, double constant
     return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> stands) & 1));
 }
 
-/* More comparisons than so many are left alone where a value stays between two of their constants. */
+/* Up to so many comparisons doing them all is faster than testing a span; beyond, the span pays. */
 #define QUICK_MOST 4
 
-/* The kind of number of a signal of which comparisons with constants are all that reads it in the second
- * phase, or its being true is; RV_UNKNOWN: of no other. */
+/* The kind of values of a signal that take_quickly() can take: one that in the second phase nothing
+ * reads but a few comparisons with constants, or leaves of its own truth. RV_UNKNOWN: it cannot. */
 static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
 {
     const signal_plan *s = &p->signals[local];
@@ -45,7 +49,7 @@ static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
     return (op == ATOM_REAL) ? RV_REAL : RV_WHOLE;
 }
 
-/* Find the signals of a part that can be taken quickly; false: memory is short. */
+/* Find these signals of a part, and prepare their comparisons; false: memory is short. */
 bool find_quick(arena *a, const plan *all, part *p)
 {
     const int32_t signals = p->plan->signals.count;
@@ -84,6 +88,7 @@ bool find_quick(arena *a, const plan *all, part *p)
     return p->quick != NULL;
 }
 
+/* Compare the two programs of an atom; `at` says per event which occurrence they read. */
 static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
 {
     const rv_number left = program_value(r, a->left, at);
@@ -91,7 +96,8 @@ static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
     return (uint8_t)compare_numbers(a->compare, &left, &right);
 }
 
-/* Over fields of events: all combinations of their occurrences are looked at. */
+/* ATOM_PAYLOAD: TRUE if the comparison holds for some combination of occurrences, one of each event;
+ * Kleene's `or` over all. FALSE where one of the events does not occur. `at` counts through them. */
 static uint8_t over_occurrences(const run *r, const atom_plan *a)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -135,6 +141,7 @@ static uint8_t over_occurrences(const run *r, const atom_plan *a)
     return found;
 }
 
+/* The truth of an atom by what has been taken of this position. */
 static uint8_t atom_now(const run *r, const atom_plan *a)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -163,13 +170,13 @@ static uint8_t atom_now(const run *r, const atom_plan *a)
     }
 }
 
-/* Whether an atom as it is now speaks of this position only. */
+/* Whether an atom has to be read again at the next position though nothing comes. */
 static bool is_momentary(const run *r, int32_t atom)
 {
     return (r->atom[atom] != IS_FALSE) && (r->momentary[atom] != 0U);
 }
 
-/* List an atom as one that speaks of the next position only. */
+/* List a momentary atom that speaks of the position to come. */
 static void list_fresh(run *r, int32_t atom)
 {
     if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
@@ -182,10 +189,11 @@ static void list_fresh(run *r, int32_t atom)
 bool recheck(run *r, int32_t atom)
 {
     const atom_plan *a = &r->part->atoms[atom];
-    const uint8_t now = (a->op == ATOM_REAL) ? compare_real(a->compare, &r->value[a->input], a->constant)
-                                             : atom_now(r, a);
+    const uint8_t now = (a->op == ATOM_REAL)
+        ? compare_real(a->compare, &r->value[a->input], a->constant) : atom_now(r, a);
     const bool changed = now != r->atom[atom];
-    /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
+    /* An UNKNOWN comparison of fields may be so for another reason now, which decides whether a leaf of
+     * it is unborn. */
     if (changed || (a->tells != 0) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
         const int32_t *node = LIST(PLAN(r), nodes);
@@ -212,7 +220,7 @@ bool recheck_list(run *r, list l)
     return changed;
 }
 
-/* Have an atom be read again at the next position, if it speaks of this one only. */
+/* List a momentary atom to be read again at the next position. */
 static void fade(run *r, int32_t atom)
 {
     if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
@@ -222,7 +230,8 @@ static void fade(run *r, int32_t atom)
     }
 }
 
-/* Read atoms again while what occurred at the last position is still there. */
+/* Read atoms again between two positions. If occurrences of the last one are still held (`over`: runs
+ * of captured values keep them until the next), momentary atoms belong to it. */
 void recheck_amid(run *r, list l)
 {
     const int32_t *atoms = LIST(PLAN(r), l);
@@ -233,7 +242,8 @@ void recheck_amid(run *r, list l)
     }
 }
 
-/* Read again what spoke of the last position only; what was read since speaks of this one. */
+/* At the beginning of a position: momentary atoms of the last one are read again; fresh ones speak of
+ * this one, and fade behind it. */
 void recheck_fading(run *r)
 {
     const int32_t count = r->at.fading_count;
@@ -253,8 +263,8 @@ void recheck_fading(run *r)
     r->at.fresh_count = 0;
 }
 
-/* Read an atom anew at a position at which its nodes are worked out anyway. If what occurred is still
- * `pending`, it speaks of the next position. */
+/* Read an atom whose nodes are evaluated anyway. `pending`: what has occurred belongs to the next
+ * position. */
 void reread(run *r, int32_t atom, bool pending)
 {
     r->atom[atom] = atom_now(r, &r->part->atoms[atom]);
@@ -268,6 +278,8 @@ void reread(run *r, int32_t atom, bool pending)
     }
 }
 
+/* Whether a signal of a list (twice its number, plus 1: up to the update after the first value) is not
+ * born. */
 static bool is_unborn(const run *r, list births)
 {
     const int32_t *one = LIST(PLAN(r), births);
@@ -280,8 +292,8 @@ static bool is_unborn(const run *r, list births)
     return false;
 }
 
-/* Whether all that is said of the events of an atom is known: an occurrence that is unknown leaves it
- * unknown, born or not. */
+/* Whether no occurrence of an atom's events is unknown: what was lost is not excused by what is not
+ * born yet. */
 static bool all_occurrences_known(const run *r, const atom_plan *a)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -301,6 +313,7 @@ static bool all_occurrences_known(const run *r, const atom_plan *a)
     return true;
 }
 
+/* The truth of a leaf: its atom, or `b` where that is UNKNOWN because a signal is not born yet. */
 uint8_t leaf_truth(const run *r, const node_plan *n)
 {
     if (n->op == NODE_UNBORN) {

@@ -1,6 +1,7 @@
-/* Functions of numbers: what the C library works out, what picks a number, and bits.
+/* Functions of expressions (CODE_...) apart from arithmetic: rounding, bits, the C library's functions.
  *
- * A result that is no finite number is unknown. Source: the law, section 5. */
+ * Whole arguments give exact whole results; a result that is not finite, or leaves 64 bits, is unknown.
+ * Source: docs/reference/semantics.md, section 5. */
 #include "input/input.h"
 
 #include <math.h>
@@ -33,13 +34,14 @@ int32_t arguments_of(int32_t op)
     }
 }
 
+/* The remainder with the sign of the divisor, as in Python. */
 static int64_t whole_modulo(int64_t a, int64_t b)
 {
     const int64_t rest = a % b;
     return ((rest != 0) && ((rest < 0) != (b < 0))) ? rest + b : rest;
 }
 
-/* Down, not towards 0, as bits are of two's complement. */
+/* An arithmetic shift (rounding down), which C leaves to the compiler for negative numbers. */
 static int64_t shifted_right(int64_t a, int64_t by)
 {
     return (a < 0) ? -1 - ((-1 - a) >> by) : a >> by;
@@ -80,13 +82,15 @@ static double modulo(double a, double b)
     return ((rest != 0.0) && ((rest < 0.0) != (b < 0.0))) ? rest + b : rest;
 }
 
+/* The difference of two directions in (-turn / 2, turn / 2]. */
 static double angle_between(double a, double b, double whole_turn)
 {
     const double between = remainder(b - a, whole_turn);
     return (2.0 * between == -whole_turn) ? -between : between;
 }
 
-/* On a sphere. Source: Sinnott, Virtues of the Haversine, 1984. */
+/* The distance in m of two points on a sphere: x = latitude, longitude, latitude, longitude in rad.
+ * Source: Sinnott, Virtues of the Haversine, 1984. */
 static double distance_on_earth(const double *x)
 {
     const double across = sin((x[2] - x[0]) / 2.0);
@@ -109,13 +113,13 @@ double function_of_reals(int32_t op, const double *x)
     case CODE_TAN: return tan(x[0]);
     case CODE_ASIN: return asin(x[0]);
     case CODE_ACOS: return acos(x[0]);
-    case CODE_ATAN2: return atan2(x[0] + 0.0, x[1] + 0.0); /* a 0 has no sign */
+    case CODE_ATAN2: return atan2(x[0] + 0.0, x[1] + 0.0); /* -0 + 0 is 0: zeros have no sign here */
     case CODE_EXP: return exp(x[0]);
     case CODE_LOG: return log(x[0]);
     case CODE_LOG10: return log10(x[0]);
     case CODE_POW: return pow(x[0], x[1]);
     case CODE_ANGLE_BETWEEN: return angle_between(x[0], x[1], x[2]);
     case CODE_DISTANCE_ON_EARTH: return distance_on_earth(x);
-    default: return HUGE_VAL; /* bits of what is not whole */
+    default: return HUGE_VAL; /* bit operations on a real: unknown */
     }
 }

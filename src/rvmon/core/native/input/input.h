@@ -1,4 +1,12 @@
-/* What a sample says: numbers, held values, atoms, and names that may have said anything. */
+/* Input: what a sample says, up to the truths of atoms.
+ *
+ * An update changes a held value, or an occurrence of an event, of a run; the *atoms* that read it (one
+ * comparison, event or predicate each) are read again, and the leaves of those that changed are marked
+ * dirty for formulas/. A name can be *absent* (no source), *stale*, or *lost* in an outage: then it is
+ * unknown.
+ *
+ * `local`: a signal or event by its number in the part. Where both are meant, `name` counts signals
+ * first, then events, also of the part. */
 #ifndef RVMON_INPUT_H
 #define RVMON_INPUT_H
 
@@ -6,7 +14,7 @@
 #include "margins/margins.h"
 
 /* ---- numbers.c */
-int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* a truth */
+int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* CMP_...; a truth */
 bool same_number(const rv_number *a, const rv_number *b);
 rv_number difference(const rv_number *a, const rv_number *b);
 int64_t seconds_in_ticks(const rv_number *seconds);
@@ -15,9 +23,9 @@ rv_number number_of_double(double x);
 
 /* ---- functions.c */
 #define MOST_ARGUMENTS 4
-int32_t arguments_of(int32_t op); /* how many an operation has; 0: it is none */
+int32_t arguments_of(int32_t op); /* of CODE_...; 0: it is no operation */
 rv_number function_of_wholes(int32_t op, int64_t a, int64_t b);
-double function_of_reals(int32_t op, const double *x); /* not finite: unknown */
+double function_of_reals(int32_t op, const double *x); /* a result that is not finite is unknown */
 
 /* ---- values.c: samples, held values, what occurred */
 void mark(run *r, int32_t name);
@@ -26,11 +34,12 @@ void come_to_birth(run *r, int32_t local, bool known);
 void be_born(run *r, int32_t local);
 void set_stale(run *r, int32_t local, int64_t t);
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
-/* What an update says of a signal; of one that is not known, why. */
+/* The value in an update of a signal; if unknown, `as.whole` says why (RV_IS_NONE, RV_IS_NAN). */
 rv_number number_said(const rv_update *u);
 void apply_update(run *r, int64_t t, const incoming *in);
 
-/* Whether a signal can take a value and nothing else is to be done. */
+/* Whether no comparison of a signal comes out otherwise by a value, so that only the held value has to
+ * be replaced. Most samples of most signals end here. */
 static inline bool stays_in_span(const run *r, int32_t local, const rv_number *value)
 {
     const span *s = &r->spans[local];
@@ -42,14 +51,14 @@ void margins_mark_changed(run *r, int32_t what);
 
 /* ---- atoms.c */
 bool find_quick(arena *a, const plan *all, part *p);
-bool recheck(run *r, int32_t atom);     /* whether it is another truth */
-bool recheck_list(run *r, list l);      /* whether one of them is */
+bool recheck(run *r, int32_t atom);     /* whether its truth changed */
+bool recheck_list(run *r, list l);      /* whether one of them did */
 void recheck_amid(run *r, list l);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
 uint8_t leaf_truth(const run *r, const node_plan *n);
 
-/* How a value stands to a constant: the place of a bit. */
+/* How a value compares with a constant: the index of a bit, or of `quick_compare.truths`. */
 enum { IS_EQUAL, IS_LESS, IS_GREATER };
 
 static inline int32_t order_of(double x, double constant)
@@ -57,14 +66,17 @@ static inline int32_t order_of(double x, double constant)
     return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
 }
 
-/* The signals of a run that can be taken quickly now; NULL: none of them. */
+/* The signals of a run that take_quickly() may take now; NULL: none, as it is not in the second phase,
+ * or more than truths hangs on values. */
 static inline const quick_signal *quick_now(const run *r)
 {
-    return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick : NULL;
+    return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick
+                                                                                    : NULL;
 }
 
-/* Take a value of a signal that few comparisons with constants read, without a branch for what nobody can
- * foretell; false: it is none of these. */
+/* Take an update of a signal that only a few comparisons with constants read; false: it is no such
+ * signal, or not a known value of its kind. Branches on noisy values would be mispredicted half the
+ * time, so the comparisons have none: a change is a mask. */
 static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
 {
     const int32_t kind = quick[local].kind;
@@ -80,7 +92,7 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
         return false;
     }
     if (u->value.as.whole == value->as.whole) {
-        return true; /* bit for bit */
+        return true; /* the same bits: the union's integer stands for both kinds */
     }
     x = (kind == RV_REAL) ? u->value.as.real : (double)u->value.as.whole;
     value->as = u->value.as;
@@ -113,7 +125,7 @@ void go_stale(run *r, int64_t t, int32_t perishable);
 void mark_absent(run *r, bool event, int32_t local);
 void declare_no_source(run *r, bool event, int32_t local);
 
-/* ---- outages.c: names that may have said anything */
+/* ---- outages.c: stretches of time over which names are lost */
 void clear_losses(run *r);
 bool take_while_lost(run *r, int64_t t, const incoming *in);
 void end_outages(run *r, int64_t t);
@@ -123,13 +135,13 @@ bool is_lost_at(const run *r, int32_t name, int64_t t);
 void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count);
 int32_t names_to_lose(const run *r);
 
-/* ---- unknowns.c: positions that may not be there */
+/* ---- unknowns.c: positions of which it is not known whether they are there */
 void await_blank_start(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);
 void resume_episodes(run *r, int64_t t);
 
-/* ---- unknowns.c: what was not known of signals */
+/* ---- unknowns.c: when and why signals were unknown, for notes */
 bool begin_unknowns(home *h);
 void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value);
 int64_t unknowns_count(const run *r, int64_t doubt);

@@ -1,6 +1,12 @@
-/* Numbers: binary64 and int64, compared exactly with each other; what is no number is unknown.
+/* Numbers, binary64 and int64, and the interpreter of expressions.
  *
- * Source: the law, section 5. */
+ * Whole numbers stay whole, and exact, through +, -, *, min, max and the like; a result that leaves 64
+ * bits or is not finite is unknown, and so is all that reads an unknown number. A whole and a real
+ * number are compared exactly. Each operation is rounded once, in the same way on every machine: no
+ * contraction, no excess precision (-ffp-contract=off, no x87), and beside functions.c only operations
+ * whose results IEEE 754 fixes.
+ *
+ * Source: docs/reference/semantics.md, section 5. */
 #include "input/input.h"
 
 #include <math.h>
@@ -17,7 +23,7 @@ static rv_number whole(int64_t value)
     return made;
 }
 
-/* A result; one that is no finite number is unknown. */
+/* A result, unknown if not finite (inf - inf is NaN). */
 static rv_number real(double value)
 {
     rv_number made = UNKNOWN_NUMBER;
@@ -32,7 +38,7 @@ rv_number number_of_double(double x)
 {
     rv_number made = UNKNOWN_NUMBER;
     made.as.whole = RV_IS_NAN;
-    if (x == x) { /* what is read may be infinite */
+    if (x == x) { /* not NaN; input may be infinite */
         made.kind = RV_REAL;
         made.as.real = x;
     }
@@ -44,7 +50,7 @@ static double as_double(const rv_number *x)
     return (x->kind == RV_WHOLE) ? (double)x->as.whole : x->as.real;
 }
 
-/* The sign of a whole number less a real one, exactly. */
+/* The sign of a - b, exactly: b is split into an integer and a fraction, as (double)a could round. */
 static int sign_beside(int64_t a, double b)
 {
     int64_t floor_of_b;
@@ -55,7 +61,7 @@ static int sign_beside(int64_t a, double b)
     if (b < -0x1p63) {
         return 1;
     }
-    floor_of_b = (int64_t)b; /* towards 0: the rest has the sign of b */
+    floor_of_b = (int64_t)b; /* truncated, so that the rest has the sign of b */
     rest = b - (double)floor_of_b;
     if (a != floor_of_b) {
         return (a < floor_of_b) ? -1 : 1;
@@ -63,7 +69,7 @@ static int sign_beside(int64_t a, double b)
     return (rest > 0.0) ? -1 : ((rest < 0.0) ? 1 : 0);
 }
 
-/* The sign of a difference. */
+/* The sign of a - b. */
 static int order(const rv_number *a, const rv_number *b)
 {
     if (a->kind == RV_REAL) {
@@ -97,6 +103,7 @@ int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b)
     return holds ? IS_TRUE : IS_FALSE;
 }
 
+/* Whether two numbers have the same kind and value; two unknown ones do. */
 bool same_number(const rv_number *a, const rv_number *b)
 {
     if (a->kind != b->kind) {
@@ -130,6 +137,7 @@ static rv_number subtracted(const rv_number *a, const rv_number *b)
     return real(as_double(a) - as_double(b));
 }
 
+/* |x|, of INT64_MIN too. */
 static uint64_t size_of(int64_t x)
 {
     return (x < 0) ? UINT64_C(0) - (uint64_t)x : (uint64_t)x;
@@ -171,14 +179,14 @@ static rv_number magnitude(const rv_number *a)
     return real(fabs(a->as.real));
 }
 
-/* An operand that is infinite is no finite result. */
+/* An operand as a result: unknown if infinite. */
 static rv_number picked(const rv_number *a)
 {
     return (a->kind == RV_REAL) ? real(a->as.real) : *a;
 }
 
-/* What the square of a number below 2^500 lost when it was rounded: by halves of 26 bits, whose
- * products are exact. C libraries of microcontrollers have an `fma` that rounds twice. */
+/* The rounding error of x * x, exactly, for |x| < 2^500: Dekker's product (1971) by halves of 26 bits.
+ * Not fma(): some C libraries of microcontrollers round it twice. */
 static double lost_of_square(double x, double square)
 {
     const double split = x * 134217729.0; /* 2^27 + 1 */
@@ -187,8 +195,9 @@ static double lost_of_square(double x, double square)
     return ((high * high - square) + 2.0 * high * low) + low * low;
 }
 
-/* The length of a vector, rounded once: a root, and what its square is off by in twice the digits.
- * Large and small vectors are scaled by a power of two. */
+/* sqrt(a^2 + b^2), the same on every machine, unlike hypot(): the root, corrected by the error of its
+ * square, which is known to twice the digits. Scaled by a power of two where squares would leave the
+ * range. */
 static double length(double a, double b)
 {
     const double x0 = fabs(a);
@@ -236,15 +245,15 @@ static rv_number of_reals(int32_t op, const rv_number *x)
     }
 }
 
-/* Of reals alone, whatever comes in. */
+/* Whether an operation takes whole numbers as reals. */
 static bool is_of_reals(int32_t op)
 {
     return (op == CODE_DIV) || (op == CODE_SQRT) || (op == CODE_HYPOT)
            || is_within(op, CODE_SIN, CODE_DISTANCE_ON_EARTH + 1);
 }
 
-/* The result of an operation on `count` numbers, in their place. Where one is real all are, rounded
- * first: only comparisons are exact between the two. */
+/* The result of an operation on `count` numbers. Where one is real the others are rounded to reals
+ * first; min, max and clamp, which only compare, use the exact order. */
 static rv_number calculated(int32_t op, const rv_number *args, int32_t count)
 {
     rv_number x[MOST_ARGUMENTS] = {UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER};
@@ -278,7 +287,7 @@ rv_number difference(const rv_number *a, const rv_number *b)
     return calculated(CODE_SUB, both, 2);
 }
 
-/* What is asked of the last two updates of a signal; `now` is its value. */
+/* PREV, DELTA, RATE (per second) of the last two updates of a signal, whose value is `now`. */
 static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
 {
     rv_number found = UNKNOWN_NUMBER;
@@ -296,7 +305,7 @@ static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
     return found;
 }
 
-/* A field of an occurrence; `at` says per event which one is looked at, NULL: the last one. */
+/* A field of an occurrence; `at`: by event, which one, NULL: the last. */
 static rv_number field_value(const run *r, int32_t event, int32_t field, const int32_t *at)
 {
     const occurrences *o = &r->payloads[event];
@@ -307,14 +316,14 @@ static rv_number field_value(const run *r, int32_t event, int32_t field, const i
     return o->fields[one * r->part->events[event].fields + field];
 }
 
-/* The time since the first position; unknown if that may have been another, or if this may be none. */
+/* Ticks since the first position; unknown if that may have been another one, or this may be none. */
 static rv_number time_now(const run *r)
 {
     const bool known = (r->at.begun == r->at.origin) && !r->at.dense && (r->at.presence == ARE_THERE);
     return known ? whole(r->at.position - r->at.begun) : UNKNOWN_NUMBER;
 }
 
-/* A number of seconds in ticks, halves to even ones; within the bounds of time. */
+/* Seconds in ticks, rounded to nearest, halves to even; clamped to +-LIMIT. */
 int64_t seconds_in_ticks(const rv_number *seconds)
 {
     const double ticks = as_double(seconds) * 1e9;
@@ -326,6 +335,8 @@ int64_t seconds_in_ticks(const rv_number *seconds)
     return (ticks >= 0x1p62) ? LIMIT : ((ticks <= -0x1p62) ? -LIMIT : (int64_t)rint(ticks));
 }
 
+/* Run the program (postfix, SEC_CODE) at `place`. `at`: by event, the occurrence that FIELD reads. The
+ * plan's check has bounded the depth of the stack and every argument. O(operations). */
 rv_number program_value(const run *r, int32_t place, const int32_t *at)
 {
     rv_number stack[PROGRAM_DEPTH];

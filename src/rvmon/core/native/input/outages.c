@@ -1,12 +1,14 @@
-/* Stretches of time over which a source may have said anything: a line that was down, or that could not
- * be read. Whose names are lost is a state of them, entered and left by `rv_lose` and `rv_found`; it is
- * no value, which a step could pass over.
+/* Outages: stretches of time over which a source may have said anything (a connection that was down, a
+ * line that could not be read). rv_lose() and rv_found() say where one begins and ends, by names.
  *
- * While a name is lost it is as one without a source: unknown at every position, so nothing has to be
- * looked at there. What comes of it meanwhile is left out, but for what bears the last instant: that
- * came last, and counts behind it.
+ * A lost name is in a state, not at a value: it is unknown at *every* position of the outage, like a
+ * name without a source, so nothing has to be evaluated there. Per name:
+ *   NOT_LOST -> LOST_ON (since `until`) -> LOST_UNTIL (up to `until`, which time may not have passed)
+ *   -> NOT_LOST (event), or LOST_SINCE (signal, unknown until its next update) -> NOT_LOST
+ * Updates within the outage are ignored, as a lost one may have followed, except at its last instant:
+ * that one came last, is kept, and counts behind it. Costs O(atoms that read the name) at either end.
  *
- * Source: the law, section 1 (Outage). */
+ * Source: docs/reference/semantics.md, section 1 (Outage). */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "results/results.h"
@@ -19,6 +21,7 @@ int32_t names_to_lose(const run *r)
     return r->part->plan->signals.count + r->part->plan->events.count;
 }
 
+/* No name is lost: the beginning of a run. */
 void clear_losses(run *r)
 {
     const int32_t names = names_to_lose(r);
@@ -29,12 +32,14 @@ void clear_losses(run *r)
     }
 }
 
-/* Whether the last instant of what was lost of a name is a position, which that hides. */
+/* Whether the last instant of a name's outage is a position: it is unknown there, whatever came. */
 static bool ends_at_position(const run *r, int32_t name)
 {
     return tick_from(step_of(r), r->until[name]) == r->until[name];
 }
 
+/* Whether the outage of a name covers `t`. At its last instant an update may count (`keeps`), unless
+ * there is a position. */
 bool is_lost_at(const run *r, int32_t name, int64_t t)
 {
     if ((r->at.lost_count == 0) || (r->lost[name] != LOST_UNTIL)) {
@@ -44,12 +49,13 @@ bool is_lost_at(const run *r, int32_t name, int64_t t)
            || ((t == r->until[name]) && ((r->keeps[name] == 0U) || ends_at_position(r, name)));
 }
 
+/* Whether a name is absent for good, and not because it is lost. */
 bool has_no_source(const run *r, int32_t name)
 {
     return (r->absent[name] != 0U) && ((r->at.lost_count == 0) || (r->lost[name] == NOT_LOST));
 }
 
-/* Have atoms that speak of one position only if a name has a source do so, or not. */
+/* Count a name in or out among the sources that make its atoms momentary. */
 static void set_momentary(run *r, int32_t name, bool momentary)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -62,7 +68,7 @@ static void set_momentary(run *r, int32_t name, bool momentary)
     }
 }
 
-/* Read anew what reads a name. */
+/* Read again all atoms of a name. */
 static void recheck_name(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -80,7 +86,8 @@ static uint8_t at_least_unknown(uint8_t truth)
     return (truth > IS_UNKNOWN) ? truth : IS_UNKNOWN;
 }
 
-/* What was lost of a signal may have been its first values; it is as an update to what is unknown. */
+/* A signal is lost at `t`: as an update to an unknown value. It counts as born, as its first values may
+ * be what was lost. */
 static void lose_signal(run *r, int32_t local, int64_t t)
 {
     const signal_plan *s = &r->part->signals[local];
@@ -104,9 +111,9 @@ static void lose_name(run *r, int32_t name, int64_t t)
         return;
     }
     r->lost[name] = LOST_ON;
-    r->until[name] = t; /* its first instant, till the last one is known */
+    r->until[name] = t; /* the first instant, until the last one is known */
     r->has_kept[name] = 0;
-    if (was == LOST_UNTIL) {
+    if (was == LOST_UNTIL) { /* an outage that had not ended for the positions goes on */
         return;
     }
     r->at.lost_count += (was == NOT_LOST) ? 1 : 0;
@@ -121,14 +128,15 @@ static void lose_name(run *r, int32_t name, int64_t t)
     recheck_name(r, name);
 }
 
-/* An update ends what is lost of a signal. */
+/* A name is known again. */
 static void end_loss(run *r, int32_t name)
 {
     r->lost[name] = NOT_LOST;
     r->at.lost_count--;
 }
 
-/* Have what was lost up to `until` be behind. */
+/* The outage of a name is over: an event is known again, a signal waits for its next update. It can go
+ * stale from `until` on, as an update may have come there. */
 static void end_outage(run *r, int32_t name, int64_t until)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -146,7 +154,8 @@ static void end_outage(run *r, int32_t name, int64_t until)
     }
 }
 
-/* The same with nothing of it at the position that follows. */
+/* An outage that ended before the last position: the one that follows hears nothing of it. An update
+ * that was kept becomes the value. */
 static void end_outage_before(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -170,7 +179,8 @@ static void end_outage_before(run *r, int32_t name)
     recheck_name(r, name);
 }
 
-/* The same between two ticks of a clock: what was lost counts at the next one, beside what came. */
+/* An outage that ended between the last tick of a clock and the one to come: what was lost since counts
+ * at that tick, where its names may be updated, changed, or occur. */
 static void end_outage_at_tick(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -189,6 +199,7 @@ static void end_outage_at_tick(run *r, int32_t name)
     recheck_name(r, name);
 }
 
+/* End the outage of a name, at a position or update at `t` behind it. */
 static void end_outage_of(run *r, int32_t name, int64_t t)
 {
     if (tick_from(step_of(r), r->until[name]) < tick_from(step_of(r), t)) {
@@ -198,7 +209,7 @@ static void end_outage_of(run *r, int32_t name, int64_t t)
     }
 }
 
-/* The first position that may find a name known again. */
+/* The first position at which a name can be known again. */
 static int64_t position_behind(const run *r, int32_t name)
 {
     return ends_at_position(r, name) ? r->until[name] + step_of(r)
@@ -209,14 +220,14 @@ static void find_name(run *r, int32_t name, int64_t at)
 {
     if (r->lost[name] == LOST_ON) {
         r->lost[name] = LOST_UNTIL;
-        /* Of one instant nobody can say that what came there came last. */
+        /* In an outage of one instant the update there may have come before what was lost. */
         r->keeps[name] = (r->until[name] < at) ? 1 : 0;
         r->until[name] = at;
         r->at.ends_at = least(r->at.ends_at, position_behind(r, name));
     }
 }
 
-/* Come to the position at `t`: what was lost up to the one before is behind. */
+/* On the way to the position at `t`: end the outages that ended before it. */
 void end_outages(run *r, int64_t t)
 {
     const int32_t names = names_to_lose(r);
@@ -233,7 +244,8 @@ void end_outages(run *r, int64_t t)
     }
 }
 
-/* See to an update while something is lost; tells whether it does not count, or not yet. */
+/* Take an update at `t` while some name is lost; returns whether it is dropped, or kept for later. It
+ * ends the outage of a signal that waited for it. */
 bool take_while_lost(run *r, int64_t t, const incoming *in)
 {
     const int32_t name = in->event ? r->part->plan->signals.count + in->local : in->local;
@@ -257,12 +269,12 @@ bool take_while_lost(run *r, int64_t t, const incoming *in)
     }
     if (r->lost[name] == LOST_SINCE) {
         end_loss(r, name);
-        recheck_name(r, name); /* that its value is not known, too, is known by then */
+        recheck_name(r, name); /* `known` is known again, even if the new value is not */
     }
     return false;
 }
 
-/* A signal that was lost, and not updated since, has become stale. */
+/* A signal that waits for an update behind an outage went stale: now it is unknown for certain. */
 void end_loss_when_stale(run *r, int32_t local)
 {
     if (r->lost[local] == LOST_SINCE) {
@@ -271,8 +283,8 @@ void end_loss_when_stale(run *r, int32_t local)
     }
 }
 
-/* Tell a run what is lost, or found, at `t`, to which it has come; the position there is still to be
- * looked at. */
+/* Apply SAYS_LOST and SAYS_FOUND to a run at `t`: positions before `t` are judged first, one at `t` is
+ * judged afterwards. */
 void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -282,7 +294,7 @@ void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
         approach(r, t);
     }
     if ((gap > 0) && (r->part->plan->captured > 0) && (r->at.position < tick_from(gap, t) - gap)) {
-        forget_last(r); /* else what occurred there is still looked at by what begins at `t` */
+        forget_last(r); /* occurrences of the last position are over, though no position came since */
     }
     for (i = 0; i < count; i++) {
         const int32_t name = in[i].event ? signals + in[i].local : in[i].local;
@@ -298,6 +310,7 @@ void run_take_loss(run *r, int64_t t, const incoming *in, int32_t count)
     }
 }
 
+/* Count the names that are lost now; the one behind the last stands for "something, of no name". */
 static void set_losing(rv_monitor *m, int32_t name, bool lost)
 {
     if ((m->losing[name] != 0U) != lost) {
@@ -306,7 +319,8 @@ static void set_losing(rv_monitor *m, int32_t name, bool lost)
     }
 }
 
-/* Where only samples are positions, each tick may be one while anything is lost, be it nothing. */
+/* Where only samples are positions a lost sample may have been at any tick: while anything is lost each
+ * tick may be a position (dense.c), even if no name of the plan is. False: memory is short. */
 static bool update_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {
     const bool lost = says == SAYS_LOST;
@@ -326,7 +340,8 @@ static bool update_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_
     return true;
 }
 
-/* Have some names be lost, or found, at `t`. */
+/* rv_lose() and rv_found(). An outage before the first sample means that the trace may begin there
+ * (home_begin_blank). */
 static int apply_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
 {
     const size_t size = (size_t)(count + 1) * sizeof(rv_update);
@@ -341,7 +356,7 @@ static int apply_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t co
         return code;
     }
     if ((says == SAYS_FOUND) && (m->heard == RV_NO_TIME)) {
-        return RV_OK; /* nothing was lost so far */
+        return RV_OK; /* found, but nothing was ever lost */
     }
     if ((m->plan.header->gap == 0) && !update_losing(m, t, names, count, says)) {
         return RV_NO_MEMORY;

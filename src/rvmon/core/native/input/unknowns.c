@@ -1,5 +1,9 @@
-/* What was not known of signals, when, and why: for notes of attempts that hang on it. The runs of a part
- * hear the same of signals, so the first one keeps it for all. */
+/* Two subjects around what is not known: when and why signals were unknown, which notes of undecided
+ * attempts tell; and positions of which it is not known whether they are there.
+ *
+ * The first is a list of stretches, one for each time that a signal was unknown, kept by the root run
+ * of a part for all its runs. When it is full, stretches that ended before the first doubt of an open
+ * attempt are dropped. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -9,9 +13,9 @@
 
 #include <string.h>
 
-#define SPARE_UNKNOWNS 64
+#define SPARE_UNKNOWNS 64 /* room at first, beside one stretch for each signal */
 
-/* Nothing is known of any signal; false: memory is short. */
+/* The beginning of a run: every signal is unknown, as never known yet. False: memory is short. */
 bool begin_unknowns(home *h)
 {
     rv_monitor *m = h->monitor;
@@ -36,7 +40,7 @@ bool begin_unknowns(home *h)
     return true;
 }
 
-/* The first instant at which something was unknown that open attempts hang on. */
+/* The earliest doubt that is noted for a judge with open attempts. */
 static int64_t first_doubt(home *h)
 {
     int64_t found = NEVER;
@@ -55,7 +59,7 @@ static int64_t first_doubt(home *h)
     return found;
 }
 
-/* Drop what is over before anything that open attempts hang on. */
+/* Drop the stretches that ended before that. */
 static void drop_unknowns(home *h)
 {
     const int64_t first = first_doubt(h);
@@ -75,7 +79,7 @@ static void drop_unknowns(home *h)
     h->unknown_count = kept;
 }
 
-/* Take it that a signal has a value that is known, or another one. */
+/* Note that a signal became known or unknown at `t`. */
 void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     home *h = r->home;
@@ -92,7 +96,8 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     }
     if (h->unknown_count == h->unknown_room) {
         drop_unknowns(h);
-        if (2 * (int64_t)h->unknown_count >= h->unknown_room) { /* else it would be full again soon */
+        if (2 * (int64_t)h->unknown_count >= h->unknown_room) { /* little was dropped: grow, so that the
+                                                                 * cost stays amortised O(1) */
             made = enlarged(h->monitor, h->unknowns, &h->unknown_room, (int64_t)h->unknown_room + 1,
                          sizeof *made);
             if (made == NULL) {
@@ -110,7 +115,7 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     h->unknown_count++;
 }
 
-/* Whether one matters that was not known now, or at a doubt. */
+/* Whether a stretch lasts still, or covers a doubt. */
 static bool matters_at(const unknown_stretch *one, int64_t doubt)
 {
     return (one->until == NEVER)
@@ -133,8 +138,9 @@ int64_t unknowns_count(const run *r, int64_t doubt)
     return found;
 }
 
-/* Tell what was not known now, and at a doubt: how many; of each the name, from bit 32 on why; since when;
- * until when, or NEVER. */
+/* Write the stretches that last still or cover `doubt` (RV_NO_TIME: none), and names without a source:
+ * their number; then for each the name with the cause from bit 32 on, since when, until when (NEVER: it
+ * lasts). */
 void put_unknowns(const run *r, int64_t doubt, int64_t *to)
 {
     const home *h = r->home;
@@ -163,23 +169,25 @@ void put_unknowns(const run *r, int64_t doubt, int64_t *to)
     to[0] = (own - to - 1) / 3;
 }
 
-/* Positions that may not be there: of a trace that may have begun in an outage, those before its first
- * sample. Every formula is unknown there, constants too.
+/* ---- blank positions
  *
- * What looks back is told so once, and remembers it. Attempts that begin there are in doubt: what they
- * owe there will never be known, so that they stay open for good; an episode can still fail by what it
- * owes later.
+ * If something was lost before the first sample the trace may have begun there: the positions from the
+ * outage to the first sample may be there or not. Every formula is unknown at them, constants too.
  *
- * Source: the law, section 1 (Outage). */
+ * Operators of the past take one step with unknown operands for the whole stretch. Attempts that begin
+ * there are in doubt, and what they owe there will never be known: they stay open for good, but for an
+ * episode, which can still fail by what it owes later (resume_episode).
+ *
+ * Source: docs/reference/semantics.md, section 1 (Outage). */
 
-/* Before the first sample something was lost from `t` on: the trace may begin there. */
+/* Something was lost from `t` on, before the first sample: the trace may begin there. */
 void await_blank_start(run *r, int64_t t)
 {
     r->at.presence = MAY_BE_THERE;
     r->at.awaited = tick_from(GAP(r), t);
 }
 
-/* Come to the first position that may be there. */
+/* The first blank position, which stands for all of them: attempts that may begin there are started. */
 void begin_blank(run *r, int64_t t)
 {
     int32_t i;
@@ -190,7 +198,7 @@ void begin_blank(run *r, int64_t t)
     r->at.awaited = NEVER;
     r->opening = false;
     if (r == r->home->root) {
-        r->opens_at = -LIMIT; /* whatever occurs is unknown */
+        r->opens_at = -LIMIT; /* an occurrence may be lost: attempts of unknown key */
     }
     margins_miss(r, t);
     remember_unknown(r, t);
@@ -213,7 +221,7 @@ void begin_blank(run *r, int64_t t)
     }
 }
 
-/* Come to the first position that is surely there. */
+/* The first position that is surely there, and may be the first of all: `start` is UNKNOWN. */
 void end_blank(run *r, int64_t t)
 {
     r->at.starting = IS_FALSE;
@@ -224,7 +232,8 @@ void end_blank(run *r, int64_t t)
     look_at_all(r);
 }
 
-/* Have the episode that runs be judged from here on. */
+/* Judge the running episode from `t` on: it was parked among the undecidable attempts, as what it owes
+ * at blank positions is unknown, but it fails if it does so from here on. */
 static void resume_episode(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -246,6 +255,7 @@ static void resume_episode(run *r, int32_t index, int64_t t)
     enter(r, index, at, t);
 }
 
+/* The same for all episodes of a run. Where only samples are positions, outages are up to dense.c. */
 void resume_episodes(run *r, int64_t t)
 {
     int32_t i;

@@ -1,4 +1,11 @@
-/* What a sample says: held values, births, updates, occurrences. */
+/* Takes the updates of a sample: held values, births, staleness, occurrences of events.
+ *
+ * A signal holds its value until the next update; what an update says beside it (`updated`, `changed`,
+ * occurrences and their payloads) is true at one position only: such names are marked, and forgotten
+ * once the position is over. The common update, one that moves no comparison, is recognised by the
+ * signal's span and costs two comparisons of doubles (`take_update` in input.h).
+ *
+ * Source: docs/reference/semantics.md, section 1. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "runs/runs.h"
@@ -6,10 +13,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Whole numbers up to there are exact as doubles, and their neighbours are others. */
+/* Below that a whole number and both its neighbours are distinct doubles: a span of one integer. */
 #define EXACT (INT64_C(1) << 52)
 
-/* Remember to forget what is said of a name once its position is over. Signals come first. */
+/* List a name as one of which something is to be forgotten once this position is over. */
 void mark(run *r, int32_t name)
 {
     if (r->marked[name] == 0U) {
@@ -20,6 +27,7 @@ void mark(run *r, int32_t name)
     r->at.gathered = true;
 }
 
+/* The position is over: nothing is updated, changed, or occurs any more. */
 void forget(run *r)
 {
     const int32_t signals = r->part->plan->signals.count;
@@ -38,7 +46,7 @@ void forget(run *r)
     r->at.marks_count = 0;
 }
 
-/* Take an update; tells whether it brought another value. */
+/* Push an update into the history of the last two; returns the truth of `changed`. */
 uint8_t remember(history *h, int64_t t, const rv_number *value)
 {
     const bool first = h->updates == 0;
@@ -56,8 +64,9 @@ uint8_t remember(history *h, int64_t t, const rv_number *value)
     return truth_if(!same_number(value, &h->before));
 }
 
-/* Learn between which numbers a signal can move and change nothing: those next to its value that it is
- * compared with. There are none if more hangs on it than comparisons with constants. */
+/* Set the span of a signal: the open interval around its value, between the nearest constants that it
+ * is compared with, in which no comparison changes. Empty if anything else hangs on the value (another
+ * kind of atom, staleness, history, births still to come). */
 static void learn_span(run *r, int32_t local)
 {
     const signal_plan *s = &r->part->signals[local];
@@ -68,7 +77,7 @@ static void learn_span(run *r, int32_t local)
     const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
     int32_t i;
     *found = NO_SPAN;
-    /* What is taken quickly, now or later, learns of no span that its values leave. */
+    /* A signal of take_quickly() has no span: that way replaces the value and would not update it. */
     if (may_be_quick || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
         return;
     }
@@ -92,11 +101,11 @@ static void learn_span(run *r, int32_t local)
             }
         }
     } else {
-        /* What is unknown is seldom told twice. */
+        /* Unknown: no interval of numbers. */
     }
 }
 
-/* Hold a value; what reads it is looked at again if it is another one. */
+/* Hold a value from `t` on; if it is another one, the atoms that read it are read again. */
 static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
@@ -106,13 +115,16 @@ static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
         }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
-            r->spans[local] = NO_SPAN; /* mostly the next value means something else again */
+            r->spans[local] = NO_SPAN; /* a signal that just changed a truth often does so again: do not
+                                        * spend time on a span */
             return;
         }
     }
     learn_span(r, local);
 }
 
+/* Count an update towards a signal's birth: its first known value, then (if `births` is 2) the update
+ * after it. Nodes that list it among their births are evaluated again. */
 void come_to_birth(run *r, int32_t local, bool known)
 {
     const signal_plan *s = &r->part->signals[local];
@@ -129,7 +141,8 @@ void come_to_birth(run *r, int32_t local, bool known)
     }
 }
 
-/* What was lost of a signal, or never comes, is no value to come: it has been there. */
+/* Take a signal as born: it has no source, or its first values may have been lost in an outage. Only
+ * what is still to come is unborn. */
 void be_born(run *r, int32_t local)
 {
     while (r->births[local] < r->part->signals[local].births) {
@@ -137,13 +150,13 @@ void be_born(run *r, int32_t local)
     }
 }
 
-/* Have a signal become stale so long after an update at `t`. */
+/* Start the timer by which a signal goes stale after an update at `t`. */
 void set_stale(run *r, int32_t local, int64_t t)
 {
     const signal_plan *s = &r->part->signals[local];
     const int64_t stale_at = sum(t, s->stale_after + 1);
     timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
-    /* The update may change no value: then nothing else has the timer seen to. */
+    /* An update that changes no value sets no other alarm. */
     r->at.alarm = least(r->at.alarm, stale_at);
 }
 
@@ -178,7 +191,7 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
     }
 }
 
-/* Keep the payload of an occurrence. */
+/* Append an occurrence of an event with its payload; `known` false: it may not have occurred. */
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
 {
     occurrences *o = &r->payloads[local];
@@ -193,7 +206,8 @@ void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
             return;
         }
         o->known = flags;
-        values = enlarged(m, o->fields, &same, room, sizeof *values * (size_t)((width > 0) ? width : 1));
+        values = enlarged(m, o->fields, &same, room,
+                          sizeof *values * (size_t)((width > 0) ? width : 1));
         if (values == NULL) {
             return;
         }
@@ -211,6 +225,7 @@ void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
     o->count++;
 }
 
+/* Take a report of an event: that it occurs, may occur, or does not (which only `updated` sees). */
 static void take_event(run *r, int32_t local, int32_t says, const rv_number *fields)
 {
     const event_plan *e = &r->part->events[local];
@@ -241,6 +256,7 @@ rv_number number_said(const rv_update *u)
     return (given && (u->says == RV_SAYS_YES)) ? u->value : unknown;
 }
 
+/* Take one update at `t` in full. An event with a key concerns a run by the key's value. */
 void apply_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -260,7 +276,8 @@ void apply_update(run *r, int64_t t, const incoming *in)
     }
 }
 
-/* Count that a signal went stale at `t`, once for all that read it. */
+/* Count for rv_stale() that a signal went stale at `t`: in the root run of the first part that reads
+ * it, as every run notices. */
 static void count_stale(const run *r, int64_t t, int32_t name)
 {
     const rv_monitor *m = r->home->monitor;
@@ -272,6 +289,7 @@ static void count_stale(const run *r, int64_t t, int32_t name)
     }
 }
 
+/* A signal becomes unknown at `t`, as its timer rang. */
 void go_stale(run *r, int64_t t, int32_t perishable)
 {
     const int32_t local = r->part->perishable[perishable];
@@ -285,6 +303,8 @@ void go_stale(run *r, int64_t t, int32_t perishable)
     hold(r, t, local, &stale);
 }
 
+/* A name is unknown at every position. Atoms that speak of one position only because it has a source
+ * (`needs`) have one reason less to be read again at the next. */
 void mark_absent(run *r, bool event, int32_t local)
 {
     const part *p = r->part;
@@ -305,7 +325,7 @@ void mark_absent(run *r, bool event, int32_t local)
     }
 }
 
-/* Take it, before the first position, that a name has no source. */
+/* Declare, before the first position, that a name has no source. */
 void declare_no_source(run *r, bool event, int32_t local)
 {
     mark_absent(r, event, local);
