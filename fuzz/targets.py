@@ -15,8 +15,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from fuzz.timed_damage import survives
 from tests.tools.bags import SHOP
-from tests.tools.timed_damage import survives
 
 import rvmon
 from rvmon.diagnostics import render_full

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.lossy.doors import DOORS, SERVERS
+from benchmarks.lossy.trial import outcomes
 from tests.tools.differential import cases_of
 from tests.tools.doors import Content, content_of, doors, in_pieces, whole
-from tests.tools.lossy.doors import DOORS, SERVERS
-from tests.tools.lossy.trial import outcomes
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec

@@ -11,10 +11,10 @@ from pathlib import Path
 from random import Random
 
 from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
+from fuzz.timed_damage import damaged, survives
 from tests.tools.timed_ctl import holds_at_start, random_formulas
-from tests.tools.timed_damage import damaged, survives
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
 from tests.tools.timed_regions import Steps, TooManyRegionsError
 from tests.tools.timed_runs import shows
 

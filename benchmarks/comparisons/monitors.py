@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.coverage import judge as judge_coverage
 from benchmarks.comparisons.long_traces import Long, judge_long
 from tests.tools.compare import Key
-from tests.tools.coverage import judge as judge_coverage
 from tests.tools.differential import campaign, case_of, cases_of
 from tests.tools.doors import content_of, whole
 from tests.tools.drive import Found as Gained

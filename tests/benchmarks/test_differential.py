@@ -16,15 +16,15 @@ FEW = {
         24,
     ),
     "robustness": (2, [], "measured by arrays", 16),
-    "coverage": (3, [], "pairs", 30),
+    "coverage": (12, [], "pairs", 120),
     "long": (40, ["samples=1000"], "samples", 30_000),
-    "forecasts": (5, ["words=5"], "formulas", 5),
+    "forecasts": (15, ["words=5"], "formulas", 12),
     "fillings": (20, ["stretches=true", "fillings=3"], "verdict P", 1),
-    "doors": (2, [], "CSV", 8),
+    "doors": (1, [], "CSV", 4),
     "lost": (8, ["doors=csv,stdin"], "csv: runs", 8),
     "networks": (2, [], "runs checked as concrete runs", 10),
-    "logics": (2, [], "CTL: true", 2),
-    "damage": (20, [], "refused", 5),
+    "logics": (5, [], "CTL: true", 5),
+    "damage": (60, [], "refused", 20),
     "snapshots": (3, [], "taken up again", 20),
 }
 """How many, settings, and a count with what it is at least."""
@@ -53,6 +53,11 @@ def test_a_few_of_each(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert found[what] >= least
     if name == "verdicts":
         assert {found[f"judged by {form}"] for form in given[-1][6:].split(",")} == {24}
+    if name == "forecasts":
+        assert main([name, "--count", "15", "--set", *given, "timed=true"]) == 0
+        found = counts(capsys.readouterr().out)
+        assert found["disagreements"] == 0
+        assert found["forecast P"] + found["forecast F"] > 100 * found.get("missed", 0)
     if name == "long":
         assert min(found[f"attempts {verdict}"] for verdict in "PF") > 50
         assert found["judged by an automaton"]

@@ -1,31 +1,15 @@
-"""Coverpoints and crosses on random traces: what a monitor finds against the definition."""
+"""Random specifications with coverpoints and crosses."""
 
 from __future__ import annotations
 
-import random
-from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
 
-from rvmon.coverage import combination
-from rvmon.coverage.monitor import SpecCoverage
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
-from rvmon.testing.law.attempts import is_pulse
-from rvmon.testing.law.sample_words import word_of
-from rvmon.testing.law.truths import Truths
-from rvmon.testing.law.word import Truth, Word, conjunction
-from rvmon.trace.sample import Sample
-
-Counted = dict[str, dict[str, tuple[int, int | None]]]
-Found = dict[tuple[str, ...], tuple[int, int]]
-"""By combination of bins, how often it was hit and when first."""
 
 
 def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
@@ -66,106 +50,3 @@ def _bins(rng: Rng, shape: Shape) -> tuple[Bin, ...]:
 
 def _upon(rng: Rng, shape: Shape) -> Formula | None:
     return formula(rng, shape, rng.randint(0, 2)) if chance(rng, 40) else None
-
-
-def hits_on(spec: CheckedSpec, word: Word) -> dict[str, Found]:
-    """What a word hits, by the name of the coverpoint or cross; what hits nothing is left out.
-
-    Args:
-        spec: has the coverpoints and crosses.
-        word: the trace, position by position.
-    """
-    found = {
-        point.name: _hits(word, [point.bins], point.upon) for point in spec.coverpoints.values()
-    }
-    for cross in spec.crosses.values():
-        axes = [spec.coverpoints[name].bins for name in cross.points]
-        found[cross.name] = _hits(word, axes, cross.upon)
-    return {name: own for name, own in found.items() if own}
-
-
-def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Found:
-    found: Found = {}
-    for bins in product(*axes):
-        truths = [
-            conjunction([_truth(word, bin_.formula, k) for bin_ in bins])
-            for k in range(len(word.letters))
-        ]
-        if upon is not None:
-            instants = [k for k in _starts(word, upon) if truths[k] is Truth.TRUE]
-        elif any(is_pulse(bin_.formula) for bin_ in bins):
-            instants = [k for k, truth in enumerate(truths) if truth is Truth.TRUE]
-        else:
-            instants = [*_stretches(truths)]
-        if instants:
-            name = tuple(bin_.name for bin_ in bins)
-            found[name] = (len(instants), word.letters[instants[0]].instant)
-    return found
-
-
-def _truth(word: Word, formula: Formula, k: int) -> Truth:
-    """As of a trigger: what is not born is false."""
-    found = Truths(word, {}).state(formula, k)
-    return Truth.FALSE if found is Truth.UNBORN else found
-
-
-def _starts(word: Word, upon: Formula) -> list[int]:
-    """Where an attempt `upon` it would surely start."""
-    truths = [_truth(word, upon, k) for k in range(len(word.letters))]
-    return [
-        k
-        for k, truth in enumerate(truths)
-        if truth is Truth.TRUE and (is_pulse(upon) or k == 0 or truths[k - 1] is Truth.FALSE)
-    ]
-
-
-def _stretches(truths: Sequence[Truth]) -> list[int]:
-    """Where it is true, and was false since it last was, or was never true."""
-    found = []
-    for k, truth in enumerate(truths):
-        if truth is not Truth.TRUE:
-            continue
-        earlier = [j for j in range(k) if truths[j] is Truth.TRUE]
-        if not earlier or any(truths[j] is Truth.FALSE for j in range(earlier[-1], k)):
-            found.append(k)
-    return found
-
-
-def by_law(case: Case) -> Counted:
-    """What the definition says, as `by_monitor` tells it."""
-    word = word_of(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
-    return {
-        name: {combination(bins): found for bins, found in own.items()}
-        for name, own in hits_on(case.spec, word).items()
-    }
-
-
-def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
-    """What a monitor finds: how often, and when first."""
-    monitor = coverage.monitor(sources=case.names, requirements=False)
-    for one in case.actions:
-        if isinstance(one, Sample):
-            monitor.step_ns(one.t, one.values)
-        else:
-            monitor.advance_ns(one)
-    hits = monitor.finish_ns(case.end)
-    return {
-        name: {item: (hit.count, hit.first) for item, hit in own.items()}
-        for name, own in hits.items()
-    }
-
-
-def judge(seed: str, each: int, tally: Counter[str]) -> list[str]:
-    """Compare on the traces of one specification; returns what differs."""
-    rng = random.Random(seed)
-    spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
-    coverage = SpecCoverage(spec)
-    wrong = []
-    for place in range(each):
-        case = random_trace(rng, spec, TraceProfile(long=10))
-        law, found = by_law(case), by_monitor(case, coverage)
-        tally["pairs"] += 1
-        tally["hits"] += sum(count for own in law.values() for count, _ in own.values())
-        if law != found:
-            wrong.append(f"{seed}, trace {place}: law {law}, monitor {found}")
-    return wrong

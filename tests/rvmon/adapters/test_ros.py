@@ -11,8 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from benchmarks.lossy.wires import until
 from tests.rvmon.adapters.talkers import SIMULATOR
-from tests.tools.lossy.wires import until
 from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
 from rvmon import RvmonError, Verdict, loads

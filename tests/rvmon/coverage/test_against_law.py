@@ -2,23 +2,13 @@
 
 import json
 import random
-from collections import Counter
 
 import pytest
-from tests.tools.coverage import judge, with_random_coverage
+from tests.tools.coverage import with_random_coverage
 
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-
-
-@pytest.mark.law
-def test_random_bins():
-    """In all time models, with dropouts and names without a source."""
-    for seed in range(40):
-        tally = Counter()
-        assert judge(seed, 4, tally) == []
-        assert tally["pairs"] == 4
 
 
 @pytest.mark.law

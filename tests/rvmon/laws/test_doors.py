@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from tests.tools.lossy.doors import DOORS, SERVERS
-from tests.tools.lossy.trial import outcomes, trials
+from benchmarks.lossy.doors import DOORS, SERVERS
+from benchmarks.lossy.trial import outcomes, trials
 from tests.tools.servers import missing
 
 pytestmark = pytest.mark.law

@@ -1,17 +1,10 @@
 """Forecasts of open attempts: what no continuation, or every one, can bring."""
 
-import random
-
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
-from tests.tools.build import requirement, spec_of, start
-from tests.tools.generate_ltl import random_ltl, random_mtl
-from tests.tools.ltl3 import Tableau, unrolled
 
 from rvmon import loads
 from rvmon.session import Spec
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import cases
@@ -115,55 +108,6 @@ def test_more_than_is_looked_at_is_not_forecast():
     """Each nanosecond of a second asks for something of its own: nothing is said of all of them."""
     formula = "(for 1 s within 3 s p) and eventually[3 s, 5 s] p"
     assert forecast_of(formula, {"p": False, "q": False}, {}) is None
-
-
-@settings(max_examples=30, deadline=None)
-@given(data=st.data())
-def test_untimed_forecasts_are_those_of_the_tableau(data):
-    """Verdict or forecast is what the infinite continuations leave, at every position."""
-
-    class Drawn:
-        def randint(self, a, b, /):
-            return data.draw(st.integers(a, b))
-
-    formula = random_ltl(Drawn(), data.draw(st.integers(1, 3)))
-    tableau = Tableau(formula)
-    word = data.draw(st.lists(st.frozensets(st.sampled_from("pqr")), min_size=1, max_size=5))
-    spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.SAMPLED))
-    monitor = spec.monitor()
-    verdict = None
-    for t, letter in enumerate(word):
-        for attempt in monitor.step_ns(t, {name: name in letter for name in "pqr"}):
-            verdict = attempt.verdict
-        said = verdict or monitor.open[0].forecast
-        possible = tableau.possible(word[: t + 1])
-        wanted = None if len(possible) == 2 else Verdict("P" if True in possible else "F")
-        assert said == wanted
-
-
-def test_forecasts_with_windows_are_those_of_the_tableau():
-    """Where every tick is a position, windows are nests of `X`; hardly a forecast is missed."""
-    given = missed = 0
-    for seed in range(30):
-        rng = random.Random(f"windows/{seed}")
-        formula = random_mtl(rng, rng.randint(1, 3))
-        tableau = Tableau.of(unrolled(formula), 7)
-        spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.HELD))
-        if tableau is None:
-            continue
-        for _ in range(6):
-            word = [frozenset(n for n in "pqr" if rng.random() < 0.5) for _ in range(6)]
-            monitor = spec.monitor()
-            for t, letter in enumerate(word):
-                if monitor.step_ns(t, {name: name in letter for name in "pqr"}):
-                    break
-                said = monitor.open[0].forecast
-                possible = tableau.possible(word[: t + 1])
-                wanted = None if len(possible) == 2 else Verdict("P" if True in possible else "F")
-                assert said in (wanted, None), (formula, word[: t + 1])
-                given += said is not None
-                missed += said is not wanted
-    assert given > 100 * missed
 
 
 @settings(max_examples=40, deadline=None)

@@ -1,19 +1,9 @@
 """Formulas of LTL over all runs, under premises, with a run that shows where they fail."""
 
-from random import Random
-
 import pytest
-from tests.tools.timed_generate import random_model
-from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
-from tests.tools.timed_regions import TooManyRegionsError
 
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import UnaryOperation
-from rvmon.timed.model.guards import compares_of, is_linear
-from rvmon.timed.model.operators import UnaryOp
-from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.verify import verify
 
@@ -97,32 +87,3 @@ def test_g_and_f_are_names_elsewhere():
     network = loads_network(text)
     assert verify(network, "A[] (G < F and U == G)").holds
     assert verify(network, "G (G == 0 and F == 1)").holds
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("first", range(0, 10, 5))
-def test_answers_agree_with_an_explicit_tableau(first):
-    """On random networks, with clocks in the formulas; also whether time passes on."""
-    compared = 0
-    for seed in range(first, first + 5):
-        network, random = loads_network(random_model(seed)), Random(seed)
-        states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
-        for _ in range(6):
-            query = query_on(network, random_linear(random, states, 3))
-            if not is_linear(query.formula):
-                continue
-            denied = UnaryOperation(UnaryOp.NOT, query.formula)
-            outcome = verify(network, query)
-            try:
-                expected = not LinearTruth(network, denied, False, 3_000).some_run()
-                assert outcome.holds == expected, (seed, query.text)
-                if outcome.run is not None:
-                    Rules(network).replay(outcome.run)
-                    if not list(compares_of(denied)):
-                        assert satisfied_by(network, outcome.run, denied), (seed, query.text)
-                    passes = outcome.run.ending not in (Ending.ZENO_LOOP, Ending.TIME_LOCK)
-                    assert passes == LinearTruth(network, denied, True, 6_000).some_run()
-            except TooManyRegionsError:
-                continue
-            compared += 1
-    assert compared > 10

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from rvmon.testing.generate.trace import TraceProfile
-from tests.tools.lossy import dds, files, live, ros1, wires
-from tests.tools.lossy.trial import Door
+from benchmarks.lossy import dds, files, live, ros1, wires
+from benchmarks.lossy.trial import Door
 from tests.tools.servers import mosquitto, rosmaster
+
+from rvmon.testing.generate.trace import TraceProfile
 
 TOPICS = TraceProfile(advances=False, unknowns=False)
 """Fields of messages have a value."""

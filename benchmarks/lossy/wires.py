@@ -7,13 +7,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from benchmarks.lossy.live import closed, damaged, object_of
+from benchmarks.lossy.trial import Trial, Verdicts, batches
+from tests.tools.servers import Broker, until
+
 from rvmon.adapters.json_objects import JsonObjects
 from rvmon.adapters.mqtt import MqttSource, address_of
 from rvmon.live import Driver, SimulatedClock
 from rvmon.trace.sample import Sample
-from tests.tools.lossy.live import closed, damaged, object_of
-from tests.tools.lossy.trial import Trial, Verdicts, batches
-from tests.tools.servers import Broker, until
 
 
 def until_told(driver: Driver, least: int = 1) -> None:

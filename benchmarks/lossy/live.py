@@ -11,11 +11,12 @@ from threading import Thread
 from time import sleep
 from typing import Any
 
+from benchmarks.lossy.trial import Trial, Verdicts
+
 from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines
 from rvmon.errors import TraceError
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
 from rvmon.trace.sample import Sample
-from tests.tools.lossy.trial import Trial, Verdicts
 
 
 def one_by_one(

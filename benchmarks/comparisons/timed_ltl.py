@@ -14,6 +14,7 @@ from itertools import product
 from random import Random
 
 import networkx as nx
+from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
 from rvmon.timed.model.expressions import BinaryOperation, Expression, PathFormula, UnaryOperation
 from rvmon.timed.model.guards import is_linear, parts_of
@@ -21,7 +22,6 @@ from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import PathOp, UnaryOp
 from rvmon.timed.runs.concrete import Rules, initial_configuration
 from rvmon.timed.runs.run import Run
-from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
 _Node = tuple[Region, frozenset[PathFormula]]
 

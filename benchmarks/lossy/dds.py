@@ -11,15 +11,16 @@ from contextlib import ExitStack, closing
 from threading import Event
 from typing import Any
 
+from benchmarks.lossy.live import closed
+from benchmarks.lossy.trial import Trial, Verdicts, batches
+from benchmarks.lossy.wires import until_told
+from tests.tools.servers import LOOPBACK, until
+
 from rvmon.adapters import dds
 from rvmon.adapters.messages import MessageFeed
 from rvmon.live import Driver, SimulatedClock
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
-from tests.tools.lossy.live import closed
-from tests.tools.lossy.trial import Trial, Verdicts, batches
-from tests.tools.lossy.wires import until_told
-from tests.tools.servers import LOOPBACK, until
 
 _TYPES = {
     Kind.BOOL: "std_msgs/msg/Bool",
@@ -128,8 +129,8 @@ class _Mouth:
     """A process that publishes: what is said there goes over the wire."""
 
     def __init__(self) -> None:
-        self._process = subprocess.Popen(  # noqa: S603
-            [sys.executable, "-m", "tests.tools.lossy.dds", str(domain())],
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "benchmarks.lossy.dds", str(domain())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

@@ -12,14 +12,15 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+from benchmarks.lossy.live import closed
+from benchmarks.lossy.trial import Trial, Verdicts, batches
+from benchmarks.lossy.wires import until_told
+from tests.tools.servers import SYSTEM, master_of_ros1, until
+
 from rvmon.live import Driver, SimulatedClock
 from rvmon.session import Spec
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.schema import Kind
-from tests.tools.lossy.live import closed
-from tests.tools.lossy.trial import Trial, Verdicts, batches
-from tests.tools.lossy.wires import until_told
-from tests.tools.servers import SYSTEM, master_of_ros1, until
 
 _TOGETHER = 25
 
@@ -41,7 +42,7 @@ class _Begun:
 
     def __init__(self, master: str) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tests.tools.lossy.ros1"],
+            [sys.executable, "-m", "benchmarks.lossy.ros1"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -9,17 +9,18 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+from benchmarks.lossy.live import damaged, one_by_one
+from benchmarks.lossy.trial import Door, Trial, Verdicts
+from tests.tools.doors import Content, content_of
+from tests.tools.doors import _arrow as arrow_of
+from tests.tools.doors import _csv as written_csv
+from tests.tools.doors import _json_lines as written_json
+
 from rvmon.errors import TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.schema import Kind
-from tests.tools.doors import Content, content_of
-from tests.tools.doors import _arrow as arrow_of
-from tests.tools.doors import _csv as written_csv
-from tests.tools.doors import _json_lines as written_json
-from tests.tools.lossy.live import damaged, one_by_one
-from tests.tools.lossy.trial import Door, Trial, Verdicts
 
 _TRACES = TraceProfile(advances=False, unknowns=False)
 
