@@ -1,4 +1,9 @@
-/* What an embedding program calls: see core.h. */
+/* The life of a monitor: made, fed samples, advanced, finished, reset. core.h documents the
+ * functions.
+ *
+ * A sample goes to every part that reads one of its names or has something due. There, time first
+ * passes up to the tick before (approach), so that what it decides comes first; then updates are taken
+ * (take_update), and the position is judged (arrive). */
 #include "input/input.h"
 #include "notes/notes.h"
 #include "results/results.h"
@@ -6,7 +11,6 @@
 
 #include <string.h>
 
-/* Tables of a part that are worked out once: which node a timer belongs to, and which signal. */
 static bool prepare_part(rv_monitor *m, part *p)
 {
     int32_t i;
@@ -46,6 +50,7 @@ static bool prepare_part(rv_monitor *m, part *p)
     return true;
 }
 
+/* Allocate what lives as long as the monitor. Sizes have one to spare: the plan may declare none. */
 static bool prepare(rv_monitor *m)
 {
     const plan *p = &m->plan;
@@ -83,7 +88,8 @@ static bool prepare(rv_monitor *m)
     return margins_prepare(m);
 }
 
-/* Begin a run: nothing has come, nothing was recorded. */
+/* Reset everything that belongs to a run. Absent names are declared again, as home_begin forgot
+ * them. */
 static bool begin_run(rv_monitor *m)
 {
     const plan *p = &m->plan;
@@ -155,7 +161,7 @@ rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
 void rv_free(rv_monitor *m)
 {
     if (m != NULL) {
-        arena a = m->memory; /* the monitor itself is in it */
+        arena a = m->memory; /* the arena is part of the memory that it frees */
         arena_release(&a);
     }
 }
@@ -180,7 +186,6 @@ int rv_reset(rv_monitor *m)
     return begin_run(m) ? RV_OK : RV_NO_MEMORY;
 }
 
-/* The homes that read a name, one after the other. */
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
 {
     const int32_t first = m->plan.subscription_first[name];
@@ -207,7 +212,7 @@ static bool is_in_range(int64_t t)
     return (t > -LIMIT) && (t < LIMIT);
 }
 
-/* Put the updates of a sample into the inboxes of those that read them. */
+/* Append updates to the inboxes of the parts that read them; false: memory is short. */
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
 {
     int32_t i;
@@ -235,7 +240,7 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
     return true;
 }
 
-/* Judge a sample where all requirements stand in one run. */
+/* A sample where there is one part without captured values, the common case: no inbox is filled. */
 static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     run *r = m->homes[0].root;
@@ -264,7 +269,8 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
     arrive(r, t);
 }
 
-/* Judge a sample, each part by itself; one that does not read it, and has nothing due, sleeps on. */
+/* A sample with several parts. A part that reads none of its names and has nothing due is skipped,
+ * unless every sample matters to it. */
 static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     int32_t i;
@@ -283,7 +289,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
     return true;
 }
 
-/* Tell by how much what is owed holds, as far as that is settled now that time has come to `t`. */
+/* Report the margins settled by `t`; where rows are judged in bulk, at the end of the block only. */
 void settle_margins(rv_monitor *m, int64_t t)
 {
     int32_t i;
@@ -292,7 +298,7 @@ void settle_margins(rv_monitor *m, int64_t t)
     }
 }
 
-/* Why a run takes nothing at `t`; RV_OK: it does. */
+/* The code with which a call at `t` is refused; RV_OK: it is not. */
 static inline int refusal(const rv_monitor *m, int64_t t)
 {
     if (m->finished) {

@@ -1,5 +1,5 @@
-// The monitor core for C++11: a monitor that gives its memory back, and updates in few words. Nothing
-// here throws, or takes memory but by `malloc` where no block is given.
+// A thin C++11 wrapper of core.h: a movable Monitor that owns an rv_monitor and frees it, and functions
+// that build updates. Nothing here throws; memory comes from malloc, or from a block of the caller's.
 #ifndef RVMON_CORE_HPP
 #define RVMON_CORE_HPP
 
@@ -13,7 +13,7 @@
 
 namespace rvmon {
 
-// What a sample says of a name. A value that is not a number is unknown.
+// Updates for Monitor::step. A NaN is an unknown value.
 inline rv_update whole(std::int32_t signal, std::int64_t value)
 {
     rv_update made = {signal, RV_SAYS_YES, {RV_WHOLE, {0}}, nullptr};
@@ -44,13 +44,13 @@ inline rv_update occurs(std::int32_t event, const rv_number *fields = nullptr)
 
 class Monitor {
 public:
-    // With a heap.
+    // Memory from the heap. The plan is not copied: it has to outlive the monitor.
     Monitor(const void *plan, std::size_t size)
         : monitor_(rv_new(plan, size, rv_memory{std::malloc, std::realloc, std::free, nullptr, 0}))
     {
     }
 
-    // In a block, which has to stay.
+    // Memory from a block of `room` bytes, which has to outlive the monitor.
     Monitor(const void *plan, std::size_t size, void *block, std::size_t room)
         : monitor_(rv_new(plan, size, rv_memory{nullptr, nullptr, nullptr, block, room}))
     {
@@ -66,7 +66,7 @@ public:
     Monitor &operator=(const Monitor &) = delete;
     ~Monitor() { rv_free(monitor_); }
 
-    // False: the plan is wrong, or memory is short; then nothing else may be called.
+    // False: the plan is invalid, or memory was short; then nothing else may be called.
     explicit operator bool() const { return monitor_ != nullptr; }
 
     int step(std::int64_t t, std::initializer_list<rv_update> updates)
@@ -88,7 +88,7 @@ public:
     int finish(std::int64_t t = RV_NO_TIME) { return rv_finish(monitor_, t); }
     int reset() { return rv_reset(monitor_); }
 
-    // Hand each attempt that was decided since the last call to `take(const rv_record &)`.
+    // Call `take(const rv_record &)` for each attempt decided since the last call.
     template <typename Take> void records(Take take)
     {
         const rv_record *records = nullptr;
@@ -101,7 +101,7 @@ public:
 
     int verdict(std::int32_t requirement) const { return rv_verdict(monitor_, requirement); }
 
-    // For all else that `core.h` has.
+    // For everything else that core.h offers; the Monitor keeps owning it.
     rv_monitor *get() const { return monitor_; }
 
 private:

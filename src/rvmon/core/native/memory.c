@@ -1,7 +1,11 @@
-/* Memory of a monitor: blocks of a few sizes out of chunks, all given back at once.
+/* The allocator of a monitor: an arena of chunks from which blocks of a few sizes are cut. A block
+ * that is given back goes to a list of its size class and is reused for the next of that class;
+ * chunks are returned only when the monitor ends. So a monitor cannot leak, and works the same way
+ * on a heap and in one block of a microcontroller.
  *
- * So nothing can leak, a monitor in one block of a microcontroller works as one with a heap does, and
- * blocks that were given back serve again. */
+ * Sizes are rounded up to four classes per power of two, which wastes at most a fifth. On a heap a
+ * block larger than a chunk gets a chunk of its own, so that growing it is a realloc. Giving and
+ * taking cost O(1). */
 #include "basics.h"
 
 #include <string.h>
@@ -10,8 +14,9 @@
 #define CHUNK_SIZE ((size_t)16384)
 #define CHUNK_HEAD ((sizeof(chunk) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT)
 
-/* The class of a size, of which there are four from one power of two to the next; `size` becomes
- * that of the class. */
+/* The class of a size, and, in `size`, the size of that class. In units of 16 bytes: 1 to 7 are
+ * classes of their own; above, the three highest bits name the class (4 to 7 times a power of two)
+ * and the rest is rounded up. */
 static size_t class_of(size_t *size)
 {
     size_t units = (*size + ALIGNMENT - 1) / ALIGNMENT;
@@ -33,7 +38,7 @@ static size_t class_of(size_t *size)
     return octave * 4 + (units >> octave);
 }
 
-/* What points to a chunk, and the next one, learn where it is. */
+/* Set the links to a chunk, and from the next one back to it; after realloc they have to follow it. */
 static void hook(chunk *one)
 {
     *one->link = one;
@@ -42,7 +47,8 @@ static void hook(chunk *one)
     }
 }
 
-/* A chunk with so much room; NULL: there is none. */
+/* A new chunk with `room` bytes behind its head, of which the address is returned; NULL: memory is
+ * short. */
 static char *add_chunk(arena *a, size_t room)
 {
     chunk *made = (a->from.allocate != NULL) ? a->from.allocate(CHUNK_HEAD + room) : NULL;
@@ -55,13 +61,13 @@ static char *add_chunk(arena *a, size_t room)
     return (char *)made + CHUNK_HEAD;
 }
 
-/* Whether a block of a size has a chunk of its own, which can be made larger. */
+/* Whether a block of this size is a chunk of its own, which can be resized. */
 static bool has_own_chunk(const arena *a, size_t room)
 {
     return (room > CHUNK_SIZE) && (a->from.allocate != NULL);
 }
 
-/* A block with whatever was in it; `size` becomes how large it is. */
+/* A block with unspecified content; `size` becomes its real size. NULL: memory is short. */
 static void *take_as_it_is(arena *a, size_t *size)
 {
     size_t room = *size;
@@ -82,7 +88,7 @@ static void *take_as_it_is(arena *a, size_t *size)
         a->used += (made != NULL) ? room : 0;
         return made;
     }
-    if (a->left < room) {
+    if (a->left < room) { /* the rest of the current chunk, less than 16 KiB, is abandoned */
         made = add_chunk(a, CHUNK_SIZE);
         if (made == NULL) {
             return NULL;
@@ -137,7 +143,7 @@ void arena_give(arena *a, void *block, size_t size)
         return;
     }
     class = class_of(&room);
-    (void)memcpy(block, &a->spare[class], sizeof block);
+    (void)memcpy(block, &a->spare[class], sizeof block); /* a spare block begins with the link */
     a->spare[class] = block;
 }
 

@@ -1,14 +1,17 @@
-/* What a run hits of coverpoints and crosses. A hit is counted where it is sure.
+/* Coverage: hits of the items of coverpoints and crosses. A hit counts only where it is certain.
  *
- * A group with an occasion is looked at where an attempt `upon` that would start. Any other is looked at
- * everywhere: an item is hit at each position where it is true if a bin of it is a pulse, else once for
- * each stretch on which it is true; that it is unknown in between ends no stretch, as it may have been
- * true. An item is true where all of its bins are. */
+ * A group with an occasion samples its bins where an attempt `upon` that occasion would start. Any
+ * other group samples at every position: an item with a pulse among its bins is hit at each position at
+ * which it is true, any other once per stretch on which it is true. A position at which it is unknown
+ * does not end the stretch, since it may have been true. An item is true if all its bins are.
+ *
+ * Work is done only where a watch changed or a pulse is true (call_watch), and only for the groups of
+ * that watch. */
 #include "results/results.h"
 
 #include <string.h>
 
-/* Room for what is kept of watches and groups; false: memory is short. */
+/* Allocate coverage for a part; false: memory is short. */
 static bool make_covering(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -49,7 +52,7 @@ static bool make_covering(home *h)
     return true;
 }
 
-/* Begin a run: nothing was hit; false: memory is short. */
+/* Reset coverage for a new run; false: memory is short. */
 bool begin_cover(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -66,7 +69,7 @@ bool begin_cover(home *h)
     return true;
 }
 
-/* Have the groups of a watch look at the position at hand. */
+/* Have the groups of a watch evaluate the position at hand. */
 void call_watch(run *r, int32_t number)
 {
     covering *c = r->home->covering;
@@ -90,7 +93,8 @@ static uint8_t truth_of(const run *r, int32_t number)
     return r->truth[r->part->watches[number].node];
 }
 
-/* Whether no bin of an item is known to be false. */
+/* Whether no bin of an item is false. The bins are digits of the item's number, the last axis the
+ * lowest. */
 static bool may_be_true(const run *r, const group_plan *g, int32_t item)
 {
     const int32_t *axes = LIST(PLAN(r), g->axes);
@@ -105,7 +109,8 @@ static bool may_be_true(const run *r, const group_plan *g, int32_t item)
     return true;
 }
 
-/* Count an item that is true; one that stands was counted. A pulse is over at the next position. */
+/* Count an item that is true, unless it is current, i.e. was counted in this stretch. Pulses do not
+ * become current. */
 static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
 {
     if (c->stands[item] == 0U) {
@@ -120,7 +125,8 @@ static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item
     }
 }
 
-/* Count the items that are true: of each axis the bins that are, in all ways together. */
+/* Count the items that are true: collect the true bins of each axis, then go through all combinations
+ * like an odometer. */
 static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
 {
     covering *c = r->home->covering;
@@ -164,7 +170,7 @@ static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
     }
 }
 
-/* Let those items stand no more that are known to be false. */
+/* Items that became false are no longer current. */
 static void drop_items(run *r, const group_plan *g, covered *s)
 {
     covering *c = r->home->covering;
@@ -200,7 +206,8 @@ static void look_at_group(run *r, int32_t number, int64_t t)
     }
 }
 
-/* See the position at `t`: whose watches changed, and whose pulses go on, look at it. */
+/* Evaluate the groups whose watches changed at `t`; pulses that are true have to be looked at again at
+ * the next position. */
 void cover(run *r, int64_t t)
 {
     covering *c = r->home->covering;

@@ -1,4 +1,6 @@
-/* Records of attempts, in the order of reports. */
+/* Records of attempts. They are appended as attempts are decided, and sorted at the end of each call by
+ * decision, requirement and number, which they mostly are already. rv_trim bounds them, and the
+ * attempts that stay undecided, for runs without end. */
 #include "margins/margins.h"
 #include "networks/network.h"
 #include "notes/notes.h"
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Keep the values that an attempt captured; -1: there is no room. */
+/* Store the captured values of a record; -1: memory is short. */
 int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
 {
     const int64_t at = m->captured_count;
@@ -26,7 +28,7 @@ int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
     return at;
 }
 
-/* Make room for so many records; false if there is none. */
+/* Make room for this many records; false: memory is short. */
 bool grow_records(rv_monitor *m, int64_t wanted)
 {
     int32_t room = (int32_t)m->record_room;
@@ -39,7 +41,7 @@ bool grow_records(rv_monitor *m, int64_t wanted)
     return true;
 }
 
-/* One record more; NULL: there is no room. */
+/* Append a record; NULL: memory is short. */
 rv_record *next_record(rv_monitor *m)
 {
     if ((m->record_count == m->record_room) && !grow_records(m, m->record_count + 1)) {
@@ -49,7 +51,8 @@ rv_record *next_record(rv_monitor *m)
     return &m->records[m->record_count - 1];
 }
 
-/* Tell of an attempt that has its number. */
+/* Record an attempt, and count it. One in doubt that passes leaves no record: it was met, triggered or
+ * not. Counts are right even if memory is too short for the record. */
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
             uint8_t decision, int64_t t, int64_t note)
 {
@@ -59,7 +62,7 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     rv_record *record;
     if ((verdict == RV_PASS) && !x->sure) {
         margin_vanished(r->home->monitor, x->record);
-        return; /* it was met, triggered or not */
+        return; /* met, whether it was triggered or not */
     }
     if (apart) {
         home *h = r->home;
@@ -75,7 +78,7 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     if (apart) {
         captured = keep_captured(r->home->monitor, r->captured, r->part->plan->captured);
         if (captured < 0) {
-            return; /* it would say other values */
+            return; /* a record would show wrong values */
         }
     }
     record = next_record(r->home->monitor);
@@ -94,7 +97,7 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     record->in_doubt = x->sure ? 0 : 1;
 }
 
-/* Whether a record stands before another: by decision, requirement, number. */
+/* The order of reports, for qsort. */
 static int compared(const void *one, const void *other)
 {
     const rv_record *a = one;
@@ -111,7 +114,7 @@ static int compared(const void *one, const void *other)
     return (int)a->in_doubt - (int)b->in_doubt;
 }
 
-/* Bring what was recorded in this call into order; mostly it is. */
+/* Sort the records of this call, unless they are in order. */
 void sort_records(rv_monitor *m)
 {
     int64_t i = m->sorted + 1;
@@ -125,15 +128,16 @@ void sort_records(rv_monitor *m)
     m->sorted = m->record_count;
 }
 
-/* Bounds for a run of weeks: of each requirement and verdict the newest records are kept, with their
- * notes, and as many of the attempts that stay open for good. Counts stay exact. */
+/* Bounded records (rv_keep, rv_trim): per requirement and verdict the newest, with their notes, and per
+ * requirement the newest undecidable attempts. Counts stay exact. Trimming copies what stays, so it
+ * waits until there is twice as much. */
 
-/* So much more may be there than was kept before something is dropped, which costs what is there. */
+/* Slack before the first trim. */
 #define PATIENCE 32
-/* Where an attempt stands that is to be dropped: at no location. */
+/* Marks an attempt to be dropped: no location. */
 #define DROPPED (-1)
 
-/* An attempt that stays open for good. */
+/* An undecidable attempt, for sorting. */
 typedef struct {
     int64_t triggered;
     uint32_t number;
@@ -151,11 +155,12 @@ int rv_keep(rv_monitor *m, int64_t most)
         }
     }
     m->keep = most;
-    m->trim_at = (m->trim_at > PATIENCE) ? m->trim_at : PATIENCE; /* it may be that of a run taken up */
+    m->trim_at = (m->trim_at > PATIENCE) ? m->trim_at : PATIENCE; /* it may be a restored one */
     return RV_OK;
 }
 
-/* Mark the records that go: all but the newest of their requirement and verdict; whether there are any. */
+/* Mark all records but the newest of each requirement and verdict by requirement -1; whether any is
+ * marked. */
 static bool mark_surplus(rv_monitor *m)
 {
     bool some = false;
@@ -175,7 +180,8 @@ static bool mark_surplus(rv_monitor *m)
     return some;
 }
 
-/* Drop the records that are too many. */
+/* Copy the records that stay, with their captured values and notes, and drop the rest; false: nothing
+ * was dropped, or memory is short. */
 static bool trim_records(rv_monitor *m)
 {
     kept_notes to;
@@ -235,7 +241,8 @@ static int compare_laid(const void *one, const void *other)
     return (a->number > b->number) ? -1 : ((a->number < b->number) ? 1 : 0);
 }
 
-/* Gather the attempts of a home that stay open for good, but for those that run: `to` NULL counts them. */
+/* Collect the undecidable attempts of a part into `to`, unless they belong to a running episode;
+ * returns how many. `to` NULL: only count. */
 static int64_t gather_laid(const home *h, lasting *to)
 {
     int64_t count = 0;
@@ -261,7 +268,7 @@ static int64_t gather_laid(const home *h, lasting *to)
     return count;
 }
 
-/* Take the marked attempts out of what a judge has; they count as what they stay. */
+/* Remove the marked attempts of a judge, counting them as inconclusive, which they are for good. */
 static void drop_laid(run *r, int32_t index)
 {
     home *h = r->home;
@@ -278,13 +285,13 @@ static void drop_laid(run *r, int32_t index)
         if (h->part->plan->captured > 0) {
             h->inconclusive++;
             h->turns[at].judge = NULL;
-            touch_run(r); /* it may be over now */
+            touch_run(r); /* it may be released now */
         } else {
             owner->inconclusive++;
         }
         free_attempt(h, at);
     }
-    if (j->noting != NULL) { /* what was noted for those that went may go, too */
+    if (j->noting != NULL) { /* its notes may go, too */
         int32_t at;
         j->noting->undecidable_since = NEVER;
         for (at = j->undecidable; at >= 0; at = attempt_at(h, at)->next) {
@@ -293,7 +300,7 @@ static void drop_laid(run *r, int32_t index)
     }
 }
 
-/* Drop the oldest of the attempts of a home that stay open for good; so many are left. */
+/* Drop the oldest undecidable attempts of each requirement of a part; returns how many are left. */
 static int64_t trim_laid(rv_monitor *m, home *h)
 {
     const int64_t count = gather_laid(h, NULL);

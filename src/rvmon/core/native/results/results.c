@@ -1,4 +1,4 @@
-/* What a monitor tells: records, open attempts, counts and verdicts, times; and what it is told too late. */
+/* What core.h lets a program read: records, open attempts, counts, verdicts, times; and rv_late. */
 #include "networks/network.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
@@ -41,7 +41,7 @@ void rv_forget_records(rv_monitor *m)
     m->sorted = 0;
 }
 
-/* The record of an attempt that is open. */
+/* The record of an open attempt, with a note if notes are kept. */
 static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t number)
 {
     const rv_monitor *m = r->home->monitor;
@@ -62,7 +62,7 @@ static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t n
     return made;
 }
 
-/* Tell of the open attempts of a judge; false: that was enough. */
+/* Call `take` for the open attempts of a judge; false: it returned false. */
 static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
 {
     const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
@@ -101,7 +101,9 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user)
     tell_open(m, false);
 }
 
-/* Add what the runs of a home have of a requirement. */
+/* Add the counts of a requirement in a part. A part with captured values counts in its home, as its
+ * runs come and go; whether its trigger was known is asked of the root and instances, but for an
+ * instance whose key has occurred at no position yet. */
 static void count_home(const home *h, int32_t requirement, rv_counts *counts)
 {
     const run *r;
@@ -128,7 +130,7 @@ static void count_home(const home *h, int32_t requirement, rv_counts *counts)
                 counts->inconclusive += j->inconclusive;
                 counts->heard = was_heard(r, i);
             } else {
-                /* Attempts in doubt count as those of their requirement. */
+                /* Judges of attempts in doubt count with their owner. */
             }
         }
     }
@@ -187,6 +189,8 @@ int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first)
     return m->plan.field_first[event + 1] - *first;
 }
 
+/* The end of the trace: the last sample or outage, `t` if later, and in a trace with a gap also the
+ * last tick that has passed for sure. */
 int64_t rv_end(const rv_monitor *m, int64_t t)
 {
     int64_t end = (m->heard > m->last) ? m->heard : m->last;
@@ -218,10 +222,11 @@ rv_times rv_times_of(const rv_monitor *m)
     return found;
 }
 
-/* What comes behind what was judged: it is not judged any more, and nothing that it would have touched is
- * green.
+/* A sample that comes too late is not judged. Requirements that it could have affected are marked, and
+ * get PASS or NOT_TRIGGERED no more: those whose judges depend on a leaf of its names, found by one
+ * pass up the graph of nodes.
  *
- * Source: the law, section 6 (Too late). */
+ * Source: SEMANTICS 6 (Too late). */
 
 static void mark_nodes(const run *r, list l, uint8_t *reads)
 {
@@ -232,7 +237,7 @@ static void mark_nodes(const run *r, list l, uint8_t *reads)
     }
 }
 
-/* Mark the leaves of some atoms. */
+/* Mark the leaves that read some atoms. */
 static void mark_atoms(const run *r, list l, uint8_t *reads)
 {
     const int32_t *atoms = LIST(PLAN(r), l);
@@ -253,7 +258,8 @@ static void mark_leaves(const run *r, bool event, int32_t local, uint8_t *reads)
     }
 }
 
-/* Mark what depends on what is marked, and the requirements that hear of it. */
+/* Propagate the marks up the nodes, which are in order, and mark the requirements that are linked to
+ * them. */
 static void mark_above(const run *r, uint8_t *reads)
 {
     rv_monitor *m = r->home->monitor;
@@ -274,7 +280,8 @@ static void mark_above(const run *r, uint8_t *reads)
     }
 }
 
-/* Mark the requirements of a part that read a name; false: memory is short. */
+/* Mark the requirements of a part that depend on a name; false: memory is short. A part with captured
+ * values has one requirement, which reads all its names. */
 static bool mark_readers(const home *h, bool event, int32_t local)
 {
     const part_plan *p = h->part->plan;
@@ -303,7 +310,7 @@ int rv_late(rv_monitor *m, int64_t t, const int32_t *names, int32_t count)
     int32_t i;
     int32_t k;
     for (i = 0; all && (i < m->plan.header->requirements); i++) {
-        m->late[i] = 1; /* it was a position, or one before all others */
+        m->late[i] = 1; /* the sample would have been a position, or come before all others */
     }
     for (i = 0; !all && (i < count); i++) {
         int32_t readers;

@@ -1,4 +1,5 @@
-/* What is kept of decisions, and beside them. */
+/* Results of a run: records of attempts, coverage, truths over time, moves of automata, and the
+ * relative state (situation) of a run. */
 #ifndef RVMON_RESULTS_H
 #define RVMON_RESULTS_H
 
@@ -12,39 +13,39 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
             uint8_t decision, int64_t t, int64_t note);
 void sort_records(rv_monitor *m);
 
-/* ---- watch.c: what is kept beside what becomes of attempts */
+/* ---- watch.c: truths over time */
 bool begin_watch(home *h);
 void watch(run *r, int64_t t);
 void end_watch(run *r, int64_t end, int64_t reached);
 
-/* ---- cover.c: what runs hit of coverpoints and crosses */
+/* ---- cover.c: hits of coverpoints and crosses */
 bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
 void call_watches(run *r);
 void cover(run *r, int64_t t);
 
-/* ---- watch.c: where attempts go in automata */
+/* ---- watch.c: moves of attempts in automata */
 bool begin_moves(home *h);
 void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
 void count_begin(run *r, int32_t index, int64_t t);
 
 /* ---- situation.c */
-/* What is told, as words; those that do not fit are counted alone. */
+/* A word sequence being written; words beyond `room` are only counted. */
 typedef struct {
     int64_t *words;
     int64_t room;
     int64_t count;
-    int64_t now;
-    int64_t next;              /* the first instant behind it at which time alone may change something */
+    int64_t now;               /* the instant that others are relative to */
+    int64_t next;              /* the next instant at which time alone may change something */
 } situation;
 
 void put_word(situation *s, int64_t word);
 void put_bytes(situation *s, const uint8_t *bytes, int32_t count);
 
-/* ---- network_state.c: what networks know, in a situation */
+/* ---- network_state.c */
 void put_networks(situation *s, run *r, int32_t index);
 
-/* Where it is counted where the attempts of a judge go; NULL: it is not. */
+/* The move counts of a judge; NULL: none are kept. */
 static inline rv_hit *moves_of(const run *r, int32_t index)
 {
     return (r->home->moves != NULL) ? r->home->moves[index] : NULL;

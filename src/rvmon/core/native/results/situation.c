@@ -1,12 +1,14 @@
-/* How a run stands at an instant, seen from there: two runs that stand alike go on alike. For who looks
- * for short runs that show something, and need not go on from where it has been. */
+/* The state of a run relative to an instant, as words: two runs with equal words behave the same from
+ * there on. A search for example runs uses them to recognise states it has explored. So instants become
+ * distances from `now`; what is past, and ages beyond the last bound that matters, become equal;
+ * attempts in equal states are one, whatever their order. */
 #include "results/results.h"
 #include "runs/runs.h"
 #include "windows/windows.h"
 
 #include <string.h>
 
-/* Words of an attempt, at most: its flags, and two readings of a location and clocks. */
+/* The most words of an attempt: flags, and location and clocks in both readings. */
 #define PIECE_MOST (3 + 2 * CLOCKS_MOST)
 
 void put_word(situation *s, int64_t word)
@@ -17,7 +19,7 @@ void put_word(situation *s, int64_t word)
     s->count++;
 }
 
-/* An instant as it lies ahead; all that are over are alike. */
+/* An instant as a distance ahead; all past ones are alike. */
 static void put_ahead(situation *s, int64_t t)
 {
     put_word(s, (t == NEVER) ? NEVER : ((t <= s->now) ? -1 : t - s->now));
@@ -63,7 +65,7 @@ static void put_stretches(situation *s, const stretches *own)
     put_word(s, (own->left ? 1 : 0) + (own->right ? 2 : 0) + (own->growing ? 4 : 0));
 }
 
-/* The members of a window; of one without an end, what they come to. */
+/* The members of a window; of an unbounded one, what they add up to. */
 static void put_window(situation *s, const node_plan *n, const stretches *own, const tally *x)
 {
     int32_t i;
@@ -86,17 +88,17 @@ static void put_window(situation *s, const node_plan *n, const stretches *own, c
     }
 }
 
-/* What formulas are, and remember. */
+/* Truths and memories of the nodes. */
 static void put_formulas(situation *s, const run *r)
 {
     const part_plan *p = r->part->plan;
     const int64_t gap = GAP(r);
     int32_t i;
-    if (gap > 1) { /* how far it is to the next tick */
+    if (gap > 1) { /* distance to the next tick */
         put_word(s, s->now - floored(s->now, gap) * gap);
         put_ahead(s, r->at.awaited);
     }
-    if ((gap == 0) && (p->edges + p->stretches > 0)) { /* what was at the last sample is remembered by that */
+    if ((gap == 0) && (p->edges + p->stretches > 0)) { /* past operators refer to the last sample */
         put_word(s, s->now - last_position(r->home->monitor));
     }
     put_word(s, (r->at.started ? 1 : 0) + 2 * r->at.phase + 4 * r->at.starting);
@@ -124,7 +126,7 @@ static void put_formulas(situation *s, const run *r)
         } else if (n->op == NODE_WINDOW) {
             put_window(s, n, &r->past[2 * n->slot], (n->sum < 0) ? NULL : &r->tallies[n->sum]);
         } else {
-            /* It remembers no more than a truth. */
+            /* Its memory is in `seen`, or it has none. */
         }
     }
     for (i = 0; i < p->signals.count; i++) {
@@ -139,7 +141,7 @@ static void put_formulas(situation *s, const run *r)
     }
 }
 
-/* The ages of a token; beyond the last region they are alike. */
+/* Location and ages of an attempt in one reading; ages beyond the last cut are alike. */
 static void put_token(situation *s, const machine *a, int32_t location, const int64_t *clocks)
 {
     int32_t c;
@@ -194,8 +196,8 @@ static int32_t order_of_words(const int64_t *one, const int64_t *other, int64_t 
     return 0;
 }
 
-/* Put what was told from a place on, in pieces of one width, in order, each once: attempts that stand
- * alike are one, whichever began first. */
+/* Sort the records of `width` words from `start` on, drop duplicates, and append how many are left:
+ * attempts in equal states are one. By insertion, as there are few. */
 static void sort_told(situation *s, int64_t start, int64_t width)
 {
     int64_t held[PIECE_MOST];
@@ -204,7 +206,7 @@ static void sort_told(situation *s, int64_t start, int64_t width)
     int64_t kept = 0;
     int64_t i;
     if (s->count > s->room) {
-        put_word(s, 0); /* what was told is not there */
+        put_word(s, 0); /* the words are not there, only counted */
         return;
     }
     for (i = 0; i < end; i += width) {
@@ -242,7 +244,7 @@ static void put_queue(situation *s, run *r, int32_t index)
     }
 }
 
-/* How the attempts of a judge stand. */
+/* The state of a judge and its attempts. */
 static void put_judge(situation *s, run *r, int32_t index)
 {
     judge *j = &r->judges[index];
@@ -269,7 +271,7 @@ static void put_judge(situation *s, run *r, int32_t index)
     sort_told(s, start, width);
 }
 
-/* What may be captured at the next tick of a clock. */
+/* With a clock: inputs that may be captured at the next tick. */
 static void put_captured(situation *s, const run *r)
 {
     int32_t i;
@@ -311,7 +313,7 @@ static void put_run(situation *s, run *r)
     }
 }
 
-/* The samples that are kept for those that look at what was before. */
+/* Stored samples, which replay would read. */
 static void put_past(situation *s, const home *h)
 {
     int32_t i;

@@ -1,17 +1,18 @@
-/* What is kept beside what becomes of attempts: where formulas are known, for who draws them, or asks
- * when something came that was awaited. */
+/* Two records kept beside the judging of attempts: where in time each operator of a formula is known to
+ * be true or false (for pictures, and for questions about late arrivals), and how often attempts moved
+ * between locations of automata. */
 #include "networks/network.h"
 #include "results/results.h"
 
 #include <string.h>
 
-/* The form of whose operators it is kept where they are known. */
+/* The form whose truths are recorded. */
 static form kept_form(const run *r)
 {
     return form_at(r, r->part->plan->truths);
 }
 
-/* Forget what was kept of the run before; false: memory is short. */
+/* Reset coverage, truths and moves for a new run; false: memory is short. */
 bool begin_watch(home *h)
 {
     if (h->truths != NULL) {
@@ -22,13 +23,13 @@ bool begin_watch(home *h)
            && (!h->part->is_traced || begin_moves(h));
 }
 
-/* How many readings there are at present. */
+/* Number of readings in use. */
 static int32_t readings_of(const networks *net)
 {
     return net->parted ? 2 : 1;
 }
 
-/* Let the letter that is stay up to a position, when time has come to `now`. */
+/* Extend the letter as it is up to position `last`, time having come to `now`. */
 static void stay(const form *f, networks *net, int64_t now, int64_t last)
 {
     int32_t i;
@@ -37,7 +38,7 @@ static void stay(const form *f, networks *net, int64_t now, int64_t last)
     }
 }
 
-/* Begin at the first position; false: memory is short. */
+/* Start at the first position; false: memory is short. */
 static bool begin_truths(home *h, const form *f, int64_t t)
 {
     if (h->truths == NULL) {
@@ -53,7 +54,7 @@ static bool begin_truths(home *h, const form *f, int64_t t)
     return true;
 }
 
-/* Where only samples are positions, the one at `t` is another. */
+/* Sampled time: add the position of the sample at `t`. */
 static void add_sample(const form *f, networks *net, int64_t t)
 {
     int32_t i;
@@ -66,7 +67,7 @@ static void add_sample(const form *f, networks *net, int64_t t)
     }
 }
 
-/* Take in the letter at the position at `t`; one that stays is told of when it changes. */
+/* Take the letter at `t`. With a gap, a letter that stays is extended only when it changes. */
 static void keep_truths(run *r, int64_t t)
 {
     home *h = r->home;
@@ -91,8 +92,8 @@ static void keep_truths(run *r, int64_t t)
     }
 }
 
-/* See the position at `t`, at which the truths are. Where only samples are positions, each of them
- * counts. */
+/* Watch the position at `t`, at which nodes have their truths. stays_busy asks for the next position:
+ * for coverage of pulses, and in sampled time because every sample counts. */
 void watch(run *r, int64_t t)
 {
     r->stays_busy = false;
@@ -101,7 +102,7 @@ void watch(run *r, int64_t t)
         r->stays_busy = r->home->covering->called_count > 0;
     }
     if ((r->part->plan->truths >= 0) && r->at.dense) {
-        r->home->is_blind = true; /* nobody knows which positions there are */
+        r->home->is_blind = true; /* it is unknown which positions exist */
     } else if (r->part->plan->truths >= 0) {
         keep_truths(r, t);
         r->stays_busy = r->stays_busy || (GAP(r) == 0);
@@ -110,7 +111,7 @@ void watch(run *r, int64_t t)
     }
 }
 
-/* The trace ends: what stays goes on to there, and time has come behind it. */
+/* The trace ends: extend the last letter to the end. */
 void end_watch(run *r, int64_t end, int64_t reached)
 {
     networks *net = r->home->truths;
@@ -139,8 +140,8 @@ int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, boo
     return known->end - known->first;
 }
 
-/* Where attempts go in automata: from which location to which, how often, and when first. Automata are
- * shared by all of one shape; counts are each judge's own. */
+/* Moves of attempts between locations: how often, and when first. Automata are shared by all
+ * requirements of one shape; the counts belong to each judge. */
 
 static bool is_traced(const home *h, int32_t index)
 {
@@ -153,7 +154,7 @@ static int32_t pairs_of(const home *h, int32_t index)
     return locations * locations;
 }
 
-/* Begin a run: nothing went anywhere; false: memory is short. */
+/* Reset the counts of moves; false: memory is short. */
 bool begin_moves(home *h)
 {
     const int32_t judges = h->part->plan->judges.count;
@@ -184,7 +185,7 @@ void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64
     one->count += count;
 }
 
-/* An attempt of a judge begins at `t`. */
+/* Count the start of an attempt at `t`, on the diagonal of the initial location. */
 void count_begin(run *r, int32_t index, int64_t t)
 {
     const machine *a = &r->part->machines[index];

@@ -1,8 +1,14 @@
-/* Attempts of which values are captured: each has a run of its own. They are numbered, and told of, at
- * the end of each call.
+/* Attempts with captured values: each is judged in a run of its own, forked from the one in which it
+ * was triggered, where formulas read the values it captured.
  *
- * By then it is known which of all instances came first: where attempts begin at one instant, the
- * one that was triggered first does, then that of the instance that occurred first. */
+ * They are numbered, and reported, at the end of each call: only then is it known which came first over
+ * all instances. Of attempts that begin at one instant the one triggered first comes first, then the
+ * one whose instance's key occurred first.
+ *
+ * Captured values may become unknown afterwards: while a trigger is in doubt, an attempt may have begun
+ * at any of its positions, with other values. The parent run checks that at each of its positions
+ * (check after look_after), and from the first difference on (`cut`) nodes LAPSED are TRUE and the
+ * attempt cannot pass. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -16,11 +22,13 @@ bool starts_here(const run *r, int32_t index)
     return ((r->starters >> index) & 1) != 0;
 }
 
+/* Whether the attempt of a run is over and nothing of it is still to be reported. */
 bool is_idle(const run *r)
 {
     return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->asked == 0);
 }
 
+/* The instant by which an attempt is ordered among those that became sure, or that are in doubt. */
 static int64_t turn_of(const home *h, int32_t at, bool sure)
 {
     return sure ? h->turns[at].became : attempt_at(h, at)->triggered;
@@ -47,7 +55,7 @@ static int32_t *link_of(home *h, int32_t at, bool sure)
     return sure ? &h->turns[at].next_sure : &h->turns[at].next_doubt;
 }
 
-/* Take it that an attempt became sure at `t`, or began in doubt. */
+/* Queue an attempt to be numbered: it became sure at `t`, or began in doubt. */
 void note_turn(run *r, int32_t at, int64_t t)
 {
     home *h = r->home;
@@ -65,7 +73,8 @@ void note_turn(run *r, int32_t at, int64_t t)
     ends[1] = at;
 }
 
-/* Merge two lists in order, of which what stands in the first was noted before; either may be empty. */
+/* Merge two sorted lists of attempts, stably: on a tie the first one, which was queued earlier, comes
+ * first. Either may be empty (-1). */
 static int32_t merged(home *h, int32_t one, int32_t other, bool sure)
 {
     int32_t first = -1;
@@ -84,10 +93,11 @@ static int32_t merged(home *h, int32_t one, int32_t other, bool sure)
     return first;
 }
 
-/* The first of what was noted, brought into the order in which it is numbered; mostly it is. */
+/* Sort a list of attempts for numbering, returning its head. It mostly is sorted, which is looked for
+ * first; else merge sort bottom-up. */
 static int32_t in_order(home *h, int32_t first, bool sure)
 {
-    int32_t lists[32];         /* one of 2^i attempts, or none; the longer ones were noted before */
+    int32_t lists[32];         /* sorted lists of 2^i attempts, or -1 */
     int32_t at = first;
     int32_t i;
     while ((at >= 0) && (*link_of(h, at, sure) >= 0) && !is_earlier(h, *link_of(h, at, sure), at, sure)) {
@@ -115,7 +125,7 @@ static int32_t in_order(home *h, int32_t first, bool sure)
     return at;
 }
 
-/* Take it that an attempt was decided. */
+/* Queue an attempt to be reported as decided. */
 void note_done(run *r, int32_t at)
 {
     home *h = r->home;
@@ -128,7 +138,8 @@ void note_done(run *r, int32_t at)
     h->done[1] = at;
 }
 
-/* Number what began, and tell of what was decided. */
+/* Number the attempts that began or became sure in this call, then report the decided ones and free
+ * their slots. */
 void flush_turns(home *h)
 {
     int32_t at;
@@ -157,8 +168,8 @@ void flush_turns(home *h)
     }
 }
 
-/* The values that an attempt captures which begins at the position of a run, behind that of `for
- * each`. */
+/* Evaluate the `let` values of an attempt that begins at the position of `r`, behind its key in
+ * `values`. */
 static void capture(run *r, rv_number *values)
 {
     const list captures = r->part->plan->captures;
@@ -168,9 +179,10 @@ static void capture(run *r, rv_number *values)
     rv_number *now = r->value;
     int32_t i;
     if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
-        r->value = r->home->nothing; /* what windows come to is not known there: see left_number */
+        r->value = r->home->nothing; /* no signal is known here; windows see to themselves
+                                      * (left_number) */
     }
-    r->captured = values; /* one may be made of those before it */
+    r->captured = values; /* a `let` may use those before it */
     for (i = 0; i < captures.count; i++) {
         values[first + i] = program_value(r, programs[i], NULL);
     }
@@ -178,7 +190,8 @@ static void capture(run *r, rv_number *values)
     r->value = now;
 }
 
-/* Whether an attempt may have begun at this position with other values than it captured. */
+/* Whether an attempt may have begun at the parent's position with other values than it captured: the
+ * trigger is in doubt there, and evaluating the captures now gives something else. */
 static bool may_be_other(run *r)
 {
     const judge_plan *j = &r->part->judges[r->judged];
@@ -200,7 +213,7 @@ static bool may_be_other(run *r)
     return false;
 }
 
-/* Have those looked at that say whether the values are known. */
+/* Have the LAPSED nodes evaluated. */
 void mark_lapsed(run *r)
 {
     const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
@@ -210,7 +223,7 @@ void mark_lapsed(run *r)
     }
 }
 
-/* See from the position `t` of its parent whether the values of an attempt stay known. */
+/* Check at position `t` of the parent whether the captured values remain known. */
 static void keep_watch(run *r, int64_t t)
 {
     const uint8_t trigger = r->parent->truth[r->part->judges[0].trigger];
@@ -222,7 +235,7 @@ static void keep_watch(run *r, int64_t t)
         r->at.alarm = least(r->at.alarm, t);
         mark_lapsed(r);
     } else {
-        /* They do. */
+        /* They remain known. */
     }
     if (r->cut < NEVER) {
         for (at = next_open(r, r->judged, -1); at >= 0; at = next_open(r, r->judged, at)) {
@@ -234,7 +247,7 @@ static void keep_watch(run *r, int64_t t)
     r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
 }
 
-/* Take a run among those of attempts that were triggered in another. */
+/* Link the run of an attempt below the one that it was triggered in. */
 void adopt(run *parent, run *child)
 {
     child->parent = parent;
@@ -246,7 +259,7 @@ void adopt(run *parent, run *child)
     parent->first_child = child;
 }
 
-/* Let go of the run of an attempt that is over. */
+/* Release the run of an attempt that is over. */
 void let_go(run *r)
 {
     if (r->previous_sibling != NULL) {
@@ -257,10 +270,12 @@ void let_go(run *r)
     if (r->sibling != NULL) {
         r->sibling->previous_sibling = r->previous_sibling;
     }
-    touch_run(r->parent); /* it may be over now, too */
+    touch_run(r->parent); /* an instance without attempts may be closed */
     delist(r, true);
 }
 
+/* Start an attempt that captures values: fork the run, evaluate the captures, and bring what depends on
+ * them up to date, by replaying the past if past operators do. Only then is the attempt judged. */
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const bool watched = r->part->judges[index].blurs >= 0;
@@ -288,7 +303,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
         reevaluate_varying(made, t, false);
     } else {
-        /* Everything is unknown there. */
+        /* In an outage everything is unknown. */
     }
     adopt(r, made);
     enlist(made, true);
@@ -299,7 +314,8 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     }
 }
 
-/* Have those looked after that were triggered here, at the position `t`. */
+/* Check the captured values of the attempts triggered in this run, at its position `t`; tells in
+ * stays_busy whether the next position has to be visited for them. */
 void look_after(run *r, int64_t t)
 {
     run *one;
@@ -316,12 +332,12 @@ void look_after(run *r, int64_t t)
     }
     r->stays_busy = other_next && ((r->part->plan->flags & PART_CAPTURES_NOW) != 0);
     for (i = 0; some && (i < r->part->plan->events.count); i++) {
-        /* Payloads are others behind this position. */
+        /* The payloads are gone at the next position. */
         r->stays_busy = r->stays_busy || (r->payloads[i].count > 0);
     }
 }
 
-/* What occurred at the last position is over. */
+/* Forget what occurred at the last position, when captures cannot read it any more. */
 void forget_last(run *r)
 {
     touch_run(r);

@@ -1,4 +1,7 @@
-/* Positions and time: which instants are looked at, and in which order things happen there. */
+/* The clock of a run: which instants are positions that have to be looked at, and in which order things
+ * happen there. Between samples nothing is evaluated unless a timer is due (`wake` for nodes, `rules`
+ * for judges), an atom was valid at one position only, or an episode restarts; `alarm` is the next such
+ * instant. So passing time costs what happens in it, not its length. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "notes/notes.h"
@@ -8,7 +11,7 @@
 
 #include <string.h>
 
-/* What time alone changes by `t`. */
+/* Fire the timers of nodes and of signals that go stale, up to `t`. */
 static void ring(run *r, int64_t t)
 {
     const int32_t nodes = r->part->plan->timers;
@@ -24,8 +27,8 @@ static void ring(run *r, int64_t t)
     }
 }
 
-/* Whether the truth of its trigger may start attempts of a judge here, or end its episode; the
- * formula that says so, or -1. */
+/* The node by which this run starts attempts of a judge or ends its episodes; -1: neither happens here.
+ * With captured values attempts start in one run and are judged in another. */
 int32_t followed(const run *r, int32_t index)
 {
     const judge_plan *j = &r->part->judges[index];
@@ -47,7 +50,8 @@ void touch_all(run *r, uint8_t what)
     }
 }
 
-/* Who is to look at the position at `t` whatever changes there. */
+/* Register who has to look at the position at `t` even if no node changes there: repeating pulses,
+ * attempts that move at every position, and judges whose timer is due. */
 static void call_up(run *r, int64_t t)
 {
     int32_t kept = 0;
@@ -75,7 +79,7 @@ static void call_up(run *r, int64_t t)
     }
 }
 
-/* The first position: everything is looked at. */
+/* The first position: everything is evaluated. */
 static void start(run *r, int64_t t)
 {
     r->at.started = true;
@@ -96,11 +100,14 @@ void look_at_all(run *r)
     touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
 }
 
-/* What those that were touched do, each kind of thing for all of them before the next. */
+/* Run the judges that were touched, in phases over all of them. Episodes take the truth of their
+ * trigger before attempts move, since it ends the obligation from this very position on; new attempts
+ * start after existing ones have moved, so that those see each position once; and what failed here
+ * restarts at the next position at the earliest. */
 void have_judged(run *r, int64_t t)
 {
     int32_t i;
-    r->repeating_count = 0; /* each judge may be put there once now, and no more than once */
+    r->repeating_count = 0; /* starts below list each judge at most once again */
     if (r->part->is_watched) {
         watch(r, t);
     }
@@ -143,7 +150,7 @@ void have_judged(run *r, int64_t t)
     }
 }
 
-/* Move to the position at `t`. */
+/* Visit the position at `t`: the steps are in the order that runs.h describes. */
 void visit(run *r, int64_t t)
 {
     const bool apart = r->part->plan->captured > 0;
@@ -176,7 +183,7 @@ void visit(run *r, int64_t t)
     if (t >= r->at.ends_at) {
         end_outages(r, t);
     }
-    ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
+    ring(r, t); /* first: a stale signal's atoms may become momentary ones */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
@@ -195,24 +202,25 @@ void visit(run *r, int64_t t)
     r->at.awaited = NEVER;
     have_judged(r, t);
     if (r->margins != NULL) {
-        margins_visit(r, t); /* before what occurred is forgotten */
+        margins_visit(r, t); /* before occurrences are forgotten */
     }
     if (r->at.phase == 0) {
         settle_phase(r);
     }
     if (apart) {
-        r->over = r->over || r->at.gathered; /* who captures sees it until the next position */
+        r->over = r->over || r->at.gathered; /* captures may read them until the next position */
         r->at.gathered = false;
         look_after(r, t);
     } else if (r->at.gathered) {
         r->at.gathered = false;
         forget(r);
     } else {
-        /* There is nothing to forget. */
+        /* Nothing occurred. */
     }
 }
 
-/* Let time come to `t`, of which no position is known. */
+/* Let time come to `t` though it is not known whether `t` is a position, or with which letter: only
+ * what time alone decides is decided. */
 void reach(run *r, int64_t t)
 {
     if (timers_next(&r->rules) <= t) {
@@ -224,8 +232,9 @@ void reach(run *r, int64_t t)
     }
 }
 
-/* Let time pass up to `limit`, positions there included, without a further sample. If a sample
- * `comes` behind it, what networks find can wait for that. */
+/* Let time pass up to `limit`, visiting the positions on the way at which something can change. If a
+ * sample `comes` behind it, networks may leave what they find to that visit. Stops early are for
+ * restarts: a failure may be followed at once by an attempt that changes what comes next. */
 void through(run *r, int64_t limit, bool comes)
 {
     const int32_t *index = r->part->networked;
@@ -247,7 +256,7 @@ void through(run *r, int64_t limit, bool comes)
         for (i = 0; restarts && (i < networked); i++) {
             network_foresee(r, index[i], until);
         }
-        /* What fails may be followed by another attempt at once. */
+        /* A failure may be followed by another attempt at once. */
         stop = restarts ? least(until, timers_next(&r->rules)) : until;
         if (timers_next(&r->rules) <= stop) {
             const int32_t count = timers_due(&r->rules, stop, r->due_rules);
@@ -267,7 +276,7 @@ void through(run *r, int64_t limit, bool comes)
     set_alarm(r, position);
 }
 
-/* Let time come to the tick before a sample. */
+/* Let time pass up to the tick before a sample at `t`. */
 void approach(run *r, int64_t t)
 {
     if (t > r->at.alarm) {
@@ -275,7 +284,8 @@ void approach(run *r, int64_t t)
     }
 }
 
-/* Judge the instant of a sample, of which the updates are taken. */
+/* Judge the instant of a sample whose updates were taken. With a clock (gap above 1) the sample is seen
+ * at the next tick, which is `t` itself if that is one; until then time alone decides. */
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
@@ -299,16 +309,16 @@ void arrive(run *r, int64_t t)
         }
         set_alarm(r, next_position(r));
     } else if (r->margins != NULL) {
-        margins_visit(r, t); /* values are others, though no formula is */
+        margins_visit(r, t); /* a distance may change though no truth does */
     } else {
-        /* Nothing is to be looked at. */
+        /* Nothing changed and nothing is due. */
     }
     if (gap == 0) {
         r->at.position = t;
     }
 }
 
-/* Settle all that are undecided, when time has come to the end. */
+/* Settle every undecided attempt by the policy of its requirement. */
 void settle_all(run *r, int64_t end, int64_t reached)
 {
     int32_t i;
@@ -329,7 +339,7 @@ void settle_all(run *r, int64_t end, int64_t reached)
     }
 }
 
-/* The next instant at which something is decided if nothing comes. */
+/* The next instant at which something is decided if no sample comes. Networks find theirs by search. */
 int64_t next_decision(run *r)
 {
     int32_t i;
@@ -339,7 +349,7 @@ int64_t next_decision(run *r)
     return least(next_position(r), timers_next(&r->rules));
 }
 
-/* Whether the trigger of a judge was ever true or false. */
+/* Whether the trigger of a judge was ever known to be true or false. */
 bool was_heard(const run *r, int32_t index)
 {
     const int32_t determined = r->part->judges[index].determined;

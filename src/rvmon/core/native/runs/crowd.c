@@ -1,5 +1,6 @@
-/* Which runs a part has, and which of them a call concerns: those that time wakes, and those that the
- * values of its events name. The others sleep on, however many there are. */
+/* The runs of a part, and which of them a call concerns: those with an alarm, and those whose key the
+ * events of the sample name. All others are not looked at, so a call costs what it concerns and not how
+ * many instances there are. Behind that: at which positions a run can change without a sample. */
 #include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "notes/notes.h"
@@ -8,14 +9,14 @@
 
 #include <string.h>
 
-/* A larger array of whatever runs have by number; the old one stays if memory is short. */
+/* One of the arrays by id, grown; NULL: memory is short, and the old one stays valid. */
 static void *resized(rv_monitor *m, void *old, int32_t room, size_t each)
 {
     int32_t same = room;
     return enlarged(m, old, &same, (int64_t)room + 1, each);
 }
 
-/* Give a run that is new its number; false: memory is short. */
+/* Give a new run its id; false: memory is short. */
 bool register_run(home *h, run *r)
 {
     rv_monitor *m = h->monitor;
@@ -47,7 +48,7 @@ bool register_run(home *h, run *r)
     return true;
 }
 
-/* Take it that a run comes to something in this call. */
+/* Record that a run does something in this call: its alarm is set again at the end of it. */
 void touch_run(run *r)
 {
     if (!r->touched_now) {
@@ -57,7 +58,7 @@ void touch_run(run *r)
     }
 }
 
-/* Add a run to those that attempts start in, or to those of one attempt each. */
+/* Append a run to the list of root and instances, or to that of runs of attempts. */
 void enlist(run *r, bool captured)
 {
     home *h = r->home;
@@ -74,7 +75,7 @@ void enlist(run *r, bool captured)
     *last = r;
 }
 
-/* Take a run out of its list, and put it aside. */
+/* Remove a run from its list and release it. */
 void delist(run *r, bool captured)
 {
     home *h = r->home;
@@ -106,19 +107,20 @@ void set_aside(home *h, run *r)
     h->spare = r;
 }
 
-/* The run behind another: those that attempts start in, then those of attempts. */
+/* The next run: the root and instances first, then the runs of attempts. So a run comes after the one
+ * in which its attempt was triggered. */
 run *following(const home *h, const run *r)
 {
     return ((r == h->last_root) && (r->next == NULL)) ? h->captured : r->next;
 }
 
-/* An instant before which nothing happens in a run, no sample being taken. */
+/* The instant before which nothing happens in a run without a sample. */
 static int64_t alarm_of(const run *r)
 {
     return r->at.started ? r->at.alarm : ((GAP(r) > 0) ? r->at.awaited : NEVER);
 }
 
-/* Set the alarms of what was touched. */
+/* Set the alarms of the runs touched, and that of the home. */
 void set_alarms(home *h)
 {
     int32_t i;
@@ -128,20 +130,20 @@ void set_alarms(home *h)
     h->alarm = timers_next(&h->alarms);
 }
 
-/* Those with an alarm by `t`: numbers of runs in `called`. */
+/* Put the ids of runs with an alarm up to `t` into `called`; returns how many. */
 int32_t call_due(home *h, int64_t t)
 {
     return timers_due(&h->alarms, t, h->called);
 }
 
-/* Whether a run is of one attempt, and so comes after the one that its attempt was triggered in. */
+/* Whether it is the run of an attempt: those come after the runs in which they were triggered. */
 static bool is_of_attempt(const run *r)
 {
     return r->parent != NULL;
 }
 
-/* Do something with some runs: those that attempts start in, then those of attempts. What these make
- * meanwhile has come to `t` already. */
+/* Call `act` for the called runs, parents before children. Runs that it creates have come to `t`
+ * already and are not visited. */
 void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t))
 {
     int32_t pass;
@@ -157,7 +159,7 @@ void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t
     }
 }
 
-/* The field of an event whose value says whom it concerns; -1: all. */
+/* The key that an event's payload names; NULL: the event concerns every instance. */
 static const rv_number *key_of(const home *h, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -172,7 +174,7 @@ static const rv_number *key_of(const home *h, const incoming *in)
     return &u->fields[field];
 }
 
-/* Call a run, unless it is called already. */
+/* Add a run to `called` unless it is in it. */
 static int32_t called_with(home *h, int32_t count, run *r)
 {
     if (r->call == h->call) {
@@ -193,14 +195,16 @@ static int32_t called_with_children(home *h, int32_t count, run *r)
     return found;
 }
 
-/* Those that the sample at hand concerns, or time; -1: all. */
+/* Put the ids of the runs that the sample or an alarm concerns into `called`; returns how many, -1:
+ * all. A key's instance is called with the runs of its attempts; the root always, as instances are
+ * forked from it. */
 int32_t call_concerned(home *h, int64_t t)
 {
     int32_t count;
     int32_t i;
     if ((h->part->plan->each == 0)
         || ((h->monitor->shapes != NULL) && (h->monitor->plan.header->gap == 0))) {
-        return -1; /* each sample is a position of what is measured */
+        return -1; /* every sample is a position to measure */
     }
     for (i = 0; i < h->inbox_count; i++) {
         if (key_of(h, &h->inbox[i]) == NULL) {
@@ -222,29 +226,30 @@ int32_t call_concerned(home *h, int64_t t)
     return count;
 }
 
-/* Which positions something can change at without a further sample. */
+/* The next position at which something can change without a sample. */
 
-/* The smallest multiple of `step` from `start` on that is not before `t`. */
+/* The first of start, start + step, ... that is not before `t`. */
 static int64_t position_from(int64_t start, int64_t step, int64_t t)
 {
     const int64_t ahead = t - start;
     return start + (ahead + step - 1) / step * step;
 }
 
-/* The first tick of a clock from `t` on; in between two samples every instant is one. */
+/* The first multiple of the gap from `t` on, for t of either sign. */
 int64_t tick_from(int64_t gap, int64_t t)
 {
     return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
 }
 
-/* Whether the attempt of the episode that runs has failed, and what is owed now does not at once. */
+/* Whether the episode's attempt has failed, and its obligations would not fail again at once, so that a
+ * new attempt may start. */
 bool may_go_on(const run *r, int32_t index)
 {
     const int32_t again = r->part->judges[index].again;
     return (again >= 0) && (r->judges[index].failed_at < NEVER) && (r->truth[again] != IS_FALSE);
 }
 
-/* Drop those whose episode is over. */
+/* Drop judges whose episode is over from `failing`. */
 void tidy_failing(run *r)
 {
     int32_t kept = 0;
@@ -261,12 +266,13 @@ void tidy_failing(run *r)
     r->failing_count = kept;
 }
 
-/* In one silence, so many failures that follow each other by time alone are told one by one; beyond
- * them, and but for the last two, they are counted. It bounds what a stamp that leaps by years costs:
- * `always within 3 s e` fails 500 million times in fifty years. */
+/* Bounds on how many failures that only time brings about, one after the other, are reported singly
+ * while no input comes; the rest of them, but for the last two, is only counted. That bounds the cost
+ * of a stamp that leaps by years: `always within 3 s e` fails 500 million times in fifty years.
+ * COUNTS_LEFT keeps counts clear of 32 bits. */
 enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
 
-/* Whether all that the attempts of a run read stays as it is while nothing comes, but for timers. */
+/* Whether what the attempts of a run read stays the same without input, except by timers. */
 static bool is_silent(const run *r)
 {
     return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
@@ -274,12 +280,13 @@ static bool is_silent(const run *r)
            && !r->opening && !r->stays_busy;
 }
 
-/* Count what an episode would do again and again before something comes, if that is often, in place
- * of doing it; false if another attempt is to begin at `t`.
+/* If an episode would fail and restart very often before the next input, count that instead of doing
+ * it; false if another attempt has to begin at `t`.
  *
- * The one that would begin at `t` finds what the last one found, which began in the same silence: no
- * attempt is open, and nothing that is read changes before the next timer. So it fails after the same
- * time, and so on. Records and numbers have 32 bits: the counts stay below that. */
+ * The attempt that would begin at `t` finds what the last one found, which began in the same
+ * silence: no attempt is open, and nothing that it reads changes before the next timer. So it fails
+ * after the same time, and so do all others up to there. Numbers have 32 bits, so the count is
+ * capped below that. */
 bool passes_repeats_over(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
@@ -324,7 +331,8 @@ int64_t next_start(const run *r)
     return found;
 }
 
-/* The next position at which something can change without a further sample. */
+/* The next position at which something can change without a sample; NEVER. In sampled time only an
+ * outage makes one. */
 int64_t next_position(const run *r)
 {
     const int64_t gap = GAP(r);
@@ -361,7 +369,8 @@ static bool is_restless(const run *r)
     return false;
 }
 
-/* Set when to look again, of which the next position is known. */
+/* Set the alarm of a run, given the next position. In sampled time every sample is a position, so
+ * whatever is momentary or moves at each position keeps the alarm in the past. */
 void set_alarm(run *r, int64_t position)
 {
     if (!r->at.started) {

@@ -1,11 +1,11 @@
-/* Outages where only samples are positions: while anything is lost, each tick may be a position, or may
- * not, and every formula is unknown there.
+/* Outages in sampled time. Where only samples are positions, each tick of an outage may be a position,
+ * or may not; every formula is unknown there.
  *
- * What looks back is told so once. Attempts are stepped at each of these ticks with a letter of which
- * nothing is known; those of automata all at once as long as none is due. A network goes from tick to
- * tick, at most so many: then nothing more is said of its attempts.
+ * Past operators are told so once, at its first tick. Attempts step at every tick with a letter that is
+ * wholly unknown: those of automata are driven in bulk up to the next timer; a network goes tick by
+ * tick, up to TICKS_MOST, and is then given up: its open attempts stay undecided.
  *
- * Source: the law, section 1 (Outage). */
+ * Source: SEMANTICS 1 (Outage). */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/* Ticks of one stretch that networks are taken through one by one. */
+/* Ticks of one outage that networks are taken through one by one: bounds its cost. */
 #define TICKS_MOST 1000
 
 int64_t last_position(const rv_monitor *m)
@@ -21,7 +21,7 @@ int64_t last_position(const rv_monitor *m)
     return (m->dense_end > m->last) ? m->dense_end : m->last;
 }
 
-/* Whether a judge has to see each position, one by one. */
+/* Whether a judge has to see each tick, one by one. */
 static bool is_slow(const run *r, int32_t index)
 {
     return is_networked(r, index) && !r->judges[index].blind
@@ -39,8 +39,8 @@ static bool goes_slowly(const run *r)
     return false;
 }
 
-/* Have nothing more be said of what networks judge now; one that looks back will have missed what it
- * is asked for. */
+/* Make all open attempts of networks undecidable. A network that looks back also misses the positions
+ * from here on, so nothing can be said of its later attempts either. */
 static void give_up_networks(run *r)
 {
     int32_t i;
@@ -60,7 +60,7 @@ static void give_up_networks(run *r)
     }
 }
 
-/* Come to the first tick that may be a position. */
+/* Enter an outage: `t` is the first tick that may be a position. Everything becomes unknown. */
 void run_begin_dense(run *r, int64_t t)
 {
     const bool apart = r->part->plan->captured > 0;
@@ -88,18 +88,19 @@ void run_begin_dense(run *r, int64_t t)
     }
 }
 
-/* The tick that a run is to be taken to: the next one that may matter, or `limit`. */
+/* The next tick to visit: the next one that may matter, or `limit`. The second tick of an outage is
+ * always visited, as attempts in doubt may differ there; an episode that failed may go on at any. */
 static int64_t next_tick(const run *r, int64_t limit)
 {
     const int64_t next = r->at.position + 1;
     const int64_t due = timers_next(&r->rules);
     if ((r->at.position == r->at.dense_from) || (r->failing_count > 0) || goes_slowly(r)) {
-        return next; /* what is hidden may be so there, what failed may go on */
+        return next; /* attempts in doubt; restarts; networks */
     }
     return (due < limit) ? ((due > next) ? due : next) : limit;
 }
 
-/* Take a run through the ticks up to one. */
+/* Take a run through the ticks up to `limit`. */
 void run_pass_dense(run *r, int64_t limit)
 {
     const int32_t judges = r->part->plan->judges.count;
@@ -111,7 +112,7 @@ void run_pass_dense(run *r, int64_t limit)
             give_up_networks(r);
         }
         next = next_tick(r, limit);
-        if (second) { /* what may be hidden there is another letter */
+        if (second) { /* from the second tick on a trigger may have been hidden before */
             r->at.before = r->at.position;
             blank_out(r, next);
             touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
@@ -122,7 +123,7 @@ void run_pass_dense(run *r, int64_t limit)
             } else if (is_slow(r, i)) {
                 touch(r, i, TOUCHED_LETTER);
             } else {
-                /* None of its attempts is open. */
+                /* A network without open attempts. */
             }
         }
         r->at.before = next - 1;
@@ -134,7 +135,8 @@ void run_pass_dense(run *r, int64_t limit)
     }
 }
 
-/* Only samples are positions from here on. */
+/* Leave the outage: behind `until` only samples are positions. The first of them evaluates
+ * everything. */
 void run_end_dense(run *r, int64_t until)
 {
     run_pass_dense(r, until);
@@ -143,7 +145,8 @@ void run_end_dense(run *r, int64_t until)
     r->at.alarm = -LIMIT;
 }
 
-/* Take updates at a tick that may be no position: what occurs there is not seen at any other. */
+/* Take updates during the outage: values are held, but the tick may be no position, so occurrences are
+ * forgotten at once. */
 void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count)
 {
     int32_t i;
@@ -155,6 +158,7 @@ void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count)
     forget(r);
 }
 
+/* Do something in every run of a part, then end the call there. */
 static void for_all(home *h, int64_t t, void (*act)(run *r, int64_t t))
 {
     run *one;
@@ -170,6 +174,7 @@ static void for_all(home *h, int64_t t, void (*act)(run *r, int64_t t))
     }
 }
 
+/* Store a marker (SAYS_DENSE, SAYS_SPARSE) between the stored samples, for replay. */
 static void keep_word(home *h, int64_t t, int32_t says)
 {
     if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
@@ -189,7 +194,7 @@ static void begin_one(run *r, int64_t t)
     }
 }
 
-/* Have the values of signals where all are unknown; false if memory is short. */
+/* Make the array of unknown values that captures read in an outage; false: memory is short. */
 bool make_nothing(home *h)
 {
     if (h->nothing == NULL) {
@@ -199,6 +204,8 @@ bool make_nothing(home *h)
     return h->nothing != NULL;
 }
 
+/* An outage begins at `t` in every part. Until then a position is that of the last sample in any part;
+ * an event that opens instances may have occurred with any key. */
 bool begin_dense(rv_monitor *m, int64_t t)
 {
     int32_t i;
@@ -225,7 +232,7 @@ bool begin_dense(rv_monitor *m, int64_t t)
     return !m->spoilt;
 }
 
-/* Take all through the ticks up to one, and out of the stretch if it is over. */
+/* Take all runs through the ticks up to `limit`, and out of the outage if it ends there. */
 void pass_dense(rv_monitor *m, int64_t limit)
 {
     int32_t i;
@@ -249,7 +256,7 @@ void end_dense(rv_monitor *m)
     m->dense_until = RV_NO_TIME;
 }
 
-/* Whether an instant is a tick that may be no position; what is behind one ends the stretch. */
+/* Whether `t` lies in the outage; one behind its end ends it. */
 bool is_amid_dense(rv_monitor *m, int64_t t)
 {
     if (t > m->dense_until) {

@@ -1,4 +1,6 @@
-/* All runs of a part: begun, given samples, taken through time, ended. */
+/* A part with all its runs: what each call of core.h does in it. A part without captured values mostly
+ * forwards to its one run. Else a call lets time pass in runs with an alarm, creates instances, gives
+ * the sample to the runs it concerns, and at its end (rest_all) numbers, reports and releases. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -17,7 +19,7 @@ static void come_through(run *r, int64_t t)
     through(r, t, false);
 }
 
-/* Let time pass up to `limit`, in all as one. */
+/* Let time pass up to `limit` in all runs, by alarms in order: so decisions are reported in order. */
 static void pass_all(home *h, int64_t limit)
 {
     while (timers_next(&h->alarms) <= limit) {
@@ -25,12 +27,11 @@ static void pass_all(home *h, int64_t limit)
         for_called(h, call_due(h, t), t, come_through);
         set_alarms(h);
         if (h->monitor->plan.header->gap == 0) {
-            break; /* there is no position before the next sample */
+            break; /* sampled time: no position before the next sample */
         }
     }
 }
 
-/* Forget of those that were touched the ones that are gone. */
 static void drop_gone(home *h)
 {
     int32_t kept = 0;
@@ -53,7 +54,8 @@ void untouch_all(home *h)
     h->touched_count = 0;
 }
 
-/* End a call: let go of attempts and instances that are over, and set the alarms of what was touched. */
+/* End a call: number and report attempts; release the runs of attempts that are over, then instances,
+ * which may be over because of that; set the alarms of all runs touched. */
 void rest_all(home *h)
 {
     int32_t i;
@@ -79,7 +81,7 @@ void rest_all(home *h)
     untouch_all(h);
 }
 
-/* Put all runs aside but the root, which is as before the first sample. */
+/* Release all runs but the root, and reset that to before the first sample. */
 static void clear_home(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -127,6 +129,7 @@ static void clear_home(home *h)
     }
 }
 
+/* Begin a run of the monitor; on the first call, create the root. False: memory is short. */
 bool home_begin(home *h)
 {
     const part_plan *p = h->part->plan;
@@ -150,7 +153,6 @@ bool home_begin(home *h)
     return begin_watch(h) && ((p->each == 0) || begin_keys(h));
 }
 
-/* Make room for so many open attempts, each with a run if it has values of its own. */
 bool home_reserve(home *h, int32_t attempts)
 {
     const run *one;
@@ -175,7 +177,7 @@ void home_mark_absent(home *h, bool event, int32_t local)
 {
     declare_no_source(h->root, event, local);
     if (event && (h->part->plan->each != 0) && (local == h->part->plan->each_event)) {
-        h->root->opens_at = -LIMIT; /* whatever occurs is unknown, from the first position on */
+        h->root->opens_at = -LIMIT; /* any key may occur at any position, unknown */
     }
 }
 
@@ -184,7 +186,7 @@ static void give_inbox(run *r, int64_t t)
     give(r, t, r->home->inbox, r->home->inbox_count);
 }
 
-/* Judge what the inbox has, of which attempts or instances have values of their own. */
+/* Judge the sample in the inbox, in a part that captures values. */
 void take_inbox(home *h, int64_t t)
 {
     const part_plan *p = h->part->plan;
@@ -207,7 +209,6 @@ void take_inbox(home *h, int64_t t)
     rest_all(h);
 }
 
-/* Judge what the inbox has. */
 void home_sample(home *h, int64_t t)
 {
     if (!is_apart(h)) {
@@ -227,6 +228,7 @@ static void come_to_instant(run *r, int64_t t)
     set_alarm(r, next_position(r));
 }
 
+/* Pass all positions before `t`, then let time itself come to `t`. */
 void home_wait(home *h, int64_t t)
 {
     if (!is_apart(h)) {
@@ -242,8 +244,7 @@ void home_wait(home *h, int64_t t)
     rest_all(h);
 }
 
-/* Have names be lost, or found, as the inbox has it, of which attempts or instances have values of their
- * own. */
+/* Begin or end the outages in the inbox, in a part that captures values: every run hears of them. */
 void lose_inbox(home *h, int64_t t)
 {
     run *one;
@@ -259,7 +260,6 @@ void lose_inbox(home *h, int64_t t)
     rest_all(h);
 }
 
-/* The same of any part; time has come to `t`. */
 void home_lose(home *h, int64_t t)
 {
     if (!is_apart(h)) {
@@ -273,7 +273,6 @@ void home_lose(home *h, int64_t t)
     h->inbox_count = 0;
 }
 
-/* The trace may begin at `t`. */
 void home_begin_blank(home *h, int64_t t)
 {
     const bool keeps = (h->part->plan->flags & PART_KEEPS_PAST) != 0;
@@ -294,7 +293,8 @@ void home_begin_blank(home *h, int64_t t)
     }
 }
 
-/* The last position of a run, to which it is taken for what is judged at the end. */
+/* Move a run to its last position up to `end`. Time has passed, so formulas do not change on the
+ * way. */
 static void come_to_end(run *r, int64_t end)
 {
     const int64_t gap = GAP(r);
@@ -315,7 +315,6 @@ static void come_to_end(run *r, int64_t end)
     }
 }
 
-/* Begin what is triggered by the end. */
 static void begin_at_end(run *r, int64_t end)
 {
     int32_t i;
@@ -323,7 +322,7 @@ static void begin_at_end(run *r, int64_t end)
         return;
     }
     come_to_end(r, end);
-    /* A value that came after the last tick of a clock has not occurred at any. */
+    /* A key that first occurred behind the last tick has occurred at no position. */
     if ((r->rank != 0U) && (r->occurred > r->at.position)) {
         return;
     }
@@ -334,7 +333,6 @@ static void begin_at_end(run *r, int64_t end)
     }
 }
 
-/* Whether some judge waits for the end. */
 static bool awaits_end(const home *h)
 {
     int32_t i;
@@ -346,7 +344,7 @@ static bool awaits_end(const home *h)
     return false;
 }
 
-/* Let time come to `end`, positions there included, with the letters as they are. */
+/* Let time come to `end`, which is passed itself, with inputs as they are. */
 void home_come_to(home *h, int64_t end)
 {
     run *one;
@@ -364,6 +362,8 @@ void home_come_to(home *h, int64_t end)
     }
 }
 
+/* End the trace. First all positions up to `end`; then attempts triggered by the end; then time behind
+ * it, which closes windows that end there; only then are undecided attempts settled by policy. */
 void home_close(home *h, int64_t end, int64_t reached)
 {
     run *one;

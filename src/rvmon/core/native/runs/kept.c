@@ -1,10 +1,13 @@
-/* Samples that are kept for those that look at what was before. */
+/* Stored samples, for two purposes. A run with captured values may have to replay everything from
+ * the first sample, because the past operators of its formulas depend on the values it captured
+ * (PART_REPLAYS). And where values are captured at the end of a trace with a clock, samples wait
+ * until the tick that sees them. */
 #include "input/input.h"
 #include "runs/runs.h"
 
 #include <string.h>
 
-/* Add an update to what is kept; NULL: memory is short. */
+/* Append an empty update to the stored ones; NULL: memory is short. */
 past_update *keep_one(home *h, int64_t t)
 {
     past_update *made = enlarged(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
@@ -21,8 +24,8 @@ past_update *keep_one(home *h, int64_t t)
     return made;
 }
 
-/* Keep the sample at hand for those that look at what was before: also one that says nothing is a
- * position. */
+/* Store the sample in the inbox. A sample without updates is stored, too: in sampled time it is a
+ * position. The last update is marked, which delimits samples. */
 void keep_updates(home *h, int64_t t)
 {
     rv_monitor *m = h->monitor;
@@ -59,20 +62,24 @@ void keep_updates(home *h, int64_t t)
     }
 }
 
-/* Keep what is judged now, if somebody will look at it again. */
+/* Count the sample at hand as judged, and store it if runs may replay it. While samples wait for a
+ * tick it has been stored before. */
 void keep_given(home *h, int64_t t)
 {
     if (holds_back(h)) {
-        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* it is kept already */
+        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* stored already */
     } else if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
         keep_updates(h, t);
         h->given = h->past_count;
     } else {
-        /* Nobody does. */
+        /* No run replays it. */
     }
 }
 
-/* Have a run with values of its own see all that was. */
+/* Replay all stored samples in a run with captured values, from the first on. Between samples time
+ * passes as it did; outages and the stretches in which every tick may be a position are replayed
+ * from the markers stored with the samples. `previous` of the home is what runs read as the sample
+ * before, so it follows along and is restored. */
 void replay(run *r)
 {
     home *h = r->home;
@@ -117,7 +124,7 @@ void replay(run *r)
             } else if (one->local >= 0) {
                 take_update(r, t, &in);
             } else {
-                /* It says nothing. */
+                /* A sample without updates. */
             }
             first++;
         } while ((first < h->given) && !h->past[first - 1].last);
@@ -129,12 +136,11 @@ void replay(run *r)
     h->previous = previous;
 }
 
-/* Samples that wait for the tick of a clock that sees them, where values are captured at the end: those
- * of the last tick, whatever came behind it.
- *
- * Such a part judges nothing before the end, so nobody hears of it late. */
+/* Samples that wait for the tick that sees them. With a clock (gap above 1) and values captured at
+ * the end of the trace, only the samples up to the last tick count, whichever come behind it. Such
+ * a part decides nothing before the end, so the delay is not observable. */
 
-/* Whether samples wait in a part. */
+/* Whether a part delays its samples: its first requirement is triggered by the end of the trace. */
 bool holds_back(const home *h)
 {
     const part *p = h->part;
@@ -142,7 +148,7 @@ bool holds_back(const home *h)
            && (p->plan->judges.count > 0) && (p->judges[0].trigger < 0);
 }
 
-/* Forget the samples that were judged. */
+/* Drop the stored samples that were judged. */
 void forget_given(home *h)
 {
     const int32_t left = h->past_count - h->given;
@@ -160,7 +166,8 @@ void forget_given(home *h)
     h->given = 0;
 }
 
-/* Put a sample that was kept into the inbox, which has held it before; false: memory is short. */
+/* Put the stored sample that begins at `first` back into the inbox, which was large enough when it
+ * arrived; false: memory is short. */
 static bool recall(home *h, int32_t first)
 {
     int32_t count = 1;
@@ -178,7 +185,7 @@ static bool recall(home *h, int32_t first)
     h->inbox_count = 0;
     for (i = 0; (i < count) && (h->past[first].local >= 0); i++) {
         const past_update *one = &h->past[first + i];
-        h->held[i].name = 0; /* the part has a number of its own for it */
+        h->held[i].name = 0; /* not used: `local` is the part's own number */
         h->held[i].says = one->says;
         h->held[i].value = one->value;
         h->held[i].fields = one->fields;
@@ -190,8 +197,8 @@ static bool recall(home *h, int32_t first)
     return true;
 }
 
-/* Judge the samples that wait, which one tick sees, if that is not behind `limit`; but for those from
- * `end` on. */
+/* Judge the waiting samples before `end` if the tick that sees the last of them is not behind
+ * `limit`. */
 static void give_until(home *h, int64_t limit, int32_t end)
 {
     const int64_t gap = h->monitor->plan.header->gap;
@@ -211,7 +218,7 @@ static void give_until(home *h, int64_t limit, int32_t end)
     h->inbox_count = 0;
 }
 
-/* Judge the samples of which the tick is not behind `limit`. */
+/* Judge the waiting samples whose tick is not behind `limit`. */
 void give_held(home *h, int64_t limit)
 {
     if (holds_back(h)) {
@@ -219,7 +226,8 @@ void give_held(home *h, int64_t limit)
     }
 }
 
-/* Keep the sample at hand until its tick comes, which may be at once. */
+/* Store the sample at hand until its tick. Waiting samples of earlier ticks are judged first; if
+ * `t` is a tick itself, this one is, too. */
 void hold_back(home *h, int64_t t)
 {
     const int32_t before = h->past_count;

@@ -1,4 +1,10 @@
-/* The values of `for each` that are known, and their instances. */
+/* Instances of `for each`: a key is a value that occurred, an instance the run that judges requirements
+ * for it. Keys are found by a hash table with chains. An instance is created when its key first occurs,
+ * by forking the root, or by replay. If it later equals the root it is closed (PART_FORGETS), and
+ * created anew when its key occurs again, so memory follows the keys that are active.
+ *
+ * An occurrence with an unknown key may be of any key: it reopens every closed instance, and the root
+ * stands for the keys that never occurred. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "runs/runs.h"
@@ -6,7 +12,7 @@
 
 #include <string.h>
 
-/* So many values that are over are remembered, the latest. */
+/* Closed keys remembered, the latest: their rank keeps the order of numbering. */
 #define MOST_OVER 10000
 #define FIRST_KEYS 16
 
@@ -15,7 +21,8 @@ static int32_t hash_of_key(const rv_number *value, int32_t room)
     uint64_t bits = 0;
     if ((value->kind == RV_REAL) && (value->as.real >= -0x1p63) && (value->as.real < 0x1p63)
         && ((double)(int64_t)value->as.real == value->as.real)) {
-        bits = (uint64_t)(int64_t)value->as.real; /* as that of a whole number, which it may equal */
+        bits = (uint64_t)(int64_t)value->as.real; /* equal numbers need equal hashes: as that of the
+                                                   * whole number */
     } else if (value->kind == RV_REAL) {
         (void)memcpy(&bits, &value->as.real, sizeof bits);
     } else {
@@ -25,6 +32,7 @@ static int32_t hash_of_key(const rv_number *value, int32_t room)
     return (int32_t)((bits >> 33) % (uint64_t)room);
 }
 
+/* Put a key into the chain of its hash. */
 static void hang(home *h, int32_t at)
 {
     const int32_t hash = hash_of_key(&h->keys[at].value, h->key_room);
@@ -32,7 +40,7 @@ static void hang(home *h, int32_t at)
     h->heads[hash] = at;
 }
 
-/* Make room for more keys; false: memory is short. All that there are are in use. */
+/* Enlarge the table, and rehash; false: memory is short. Called when every key is in use. */
 static bool grow_keys(home *h)
 {
     rv_monitor *m = h->monitor;
@@ -62,6 +70,7 @@ static bool grow_keys(home *h)
     return true;
 }
 
+/* Forget all keys; on the first call, allocate the table. */
 bool begin_keys(home *h)
 {
     int32_t i;
@@ -86,7 +95,7 @@ static int32_t find_key(const home *h, const rv_number *value)
     return at;
 }
 
-/* Know another value, which occurs at `t`; -1: there is no room. */
+/* Add a key that first occurs at `t`; -1: memory is short. */
 static int32_t add_key(home *h, const rv_number *value, int64_t t)
 {
     int32_t at = h->free_key;
@@ -107,7 +116,7 @@ static int32_t add_key(home *h, const rv_number *value, int64_t t)
     return at;
 }
 
-/* Know a value as it was known before; -1: it is known already, or there is no room. */
+/* Restore a key from a snapshot; -1: it is there already, or memory is short. */
 int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank)
 {
     const int32_t at = (find_key(h, value) < 0) ? add_key(h, value, occurred) : -1;
@@ -117,7 +126,6 @@ int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t ra
     return at;
 }
 
-/* Take a value out of those whose instance is over. */
 static void take_from_over(home *h, int32_t at)
 {
     const key *k = &h->keys[at];
@@ -134,7 +142,7 @@ static void take_from_over(home *h, int32_t at)
     h->over_count--;
 }
 
-/* Let attempts start from `t` on, as if none had run before. */
+/* Let attempts start in an instance from `t` on, as if its triggers had never been true. */
 void open_at(run *r, int64_t t)
 {
     int32_t i;
@@ -153,8 +161,8 @@ void open_at(run *r, int64_t t)
     }
 }
 
-/* Whether the occurrence that an instance was opened by came before a tick at which its event is lost:
- * then its value is not known. The instance waits for the next one. */
+/* Whether an outage hides, at the tick `t`, the occurrence that opened an instance: then its key is not
+ * known to have occurred, and the instance waits for the next occurrence. */
 bool was_swallowed(run *r, int64_t t)
 {
     const part_plan *p = r->part->plan;
@@ -167,7 +175,7 @@ bool was_swallowed(run *r, int64_t t)
     return true;
 }
 
-/* Have an instance that was made know that its value occurs at `t`. */
+/* Open an instance whose first occurrence an outage hid: its key occurs, as if first, at `t`. */
 static void open_anew(home *h, int32_t at, int64_t t)
 {
     run *r = h->keys[at].open;
@@ -179,7 +187,8 @@ static void open_anew(home *h, int32_t at, int64_t t)
     open_at(r, t);
 }
 
-/* Have an instance of a value that begins at the sample at `t`. */
+/* Create the instance of a key, known before or new, at the sample at `t`. FRESH: its formulas depend
+ * on its key only at the position at hand, so the root's state serves; else the past is replayed. */
 static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
 {
     const part_plan *p = h->part->plan;
@@ -200,11 +209,11 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
     made->judging = (p->captures.count > 0) ? 0 : p->instance_starters;
     made->opens_at = NEVER;
     if ((p->flags & PART_FRESH) != 0) {
-        /* What came since the last tick of a clock belongs to the next one. */
+        /* Samples since the last tick of a clock belong to the next tick. */
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
         if ((made->truth_log != NULL) && made->at.started) {
-            made->truth_log->begun = made->at.position; /* what it would have seen before is lost */
+            made->truth_log->begun = made->at.position; /* notes cannot tell what was before */
         }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
             reevaluate_varying(made, made->at.position, made->at.gathered);
@@ -217,7 +226,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
     enlist(made, false);
 }
 
-/* Have the instances that the sample at hand asks for; an occurrence of unknown value may be of any. */
+/* Create the instances that the sample in the inbox names, before it is judged. */
 void open_instances(home *h, int64_t t)
 {
     const part_plan *p = h->part->plan;
@@ -244,7 +253,7 @@ void open_instances(home *h, int64_t t)
             } else if ((at >= 0) && (h->keys[at].open->occurred == NEVER)) {
                 open_anew(h, at, t);
             } else {
-                /* It has begun. */
+                /* It exists. */
             }
         } else {
             unknown = true;
@@ -255,7 +264,7 @@ void open_instances(home *h, int64_t t)
     }
 }
 
-/* What occurs at `t` may be of any value. */
+/* An occurrence at `t` may be of any key. */
 void open_unknown(home *h, int64_t t)
 {
     while ((h->oldest >= 0) && !h->monitor->spoilt) {
@@ -266,7 +275,8 @@ void open_unknown(home *h, int64_t t)
     }
 }
 
-/* What is said of an event of which this instance sees what has its value; -1: nothing. */
+/* What an update of the key's event says to this instance, as an RV_SAYS value; -1: it concerns another
+ * key. */
 int32_t concerning(const run *r, const rv_update *u)
 {
     const rv_number *value;
@@ -280,7 +290,8 @@ int32_t concerning(const run *r, const rv_update *u)
     return same_number(value, &r->captured[0]) ? RV_SAYS_YES : -1;
 }
 
-/* Whether nothing of an instance is still to come. */
+/* Whether nothing is pending in an instance: no attempt, no run of one, no margin, no repeating
+ * pulse. */
 static bool is_quiet(const run *r)
 {
     int32_t i;
@@ -296,7 +307,9 @@ static bool is_quiet(const run *r)
     return true;
 }
 
-/* Whether an instance stands as one would that is made anew when its value occurs next. */
+/* Whether an instance equals the root in all but what depends on its key, so that one created later
+ * would behave the same. Nodes that depend on it (`varying`, ascending) are evaluated at creation
+ * anyway. */
 bool is_over(const run *r)
 {
     const part_plan *p = r->part->plan;
@@ -314,7 +327,7 @@ bool is_over(const run *r)
         } else if (r->truth[i] != root->truth[i]) {
             return false;
         } else {
-            /* It depends on nothing of the instance's own. */
+            /* It is equal. */
         }
     }
     for (i = 0; i < p->seen; i++) {
@@ -340,7 +353,6 @@ bool is_over(const run *r)
     return true;
 }
 
-/* Forget the value that was over first. */
 static void forget_oldest(home *h)
 {
     const int32_t at = h->oldest;
@@ -354,7 +366,6 @@ static void forget_oldest(home *h)
     h->free_key = at;
 }
 
-/* Put a value behind those whose instance is over. */
 void put_over(home *h, int32_t at)
 {
     key *k = &h->keys[at];
@@ -370,7 +381,7 @@ void put_over(home *h, int32_t at)
     h->over_count++;
 }
 
-/* Let go of an instance that is over; its value is remembered for a while. */
+/* Close an instance that is_over; its key is remembered for a while. */
 void close_instance(run *r)
 {
     home *h = r->home;
@@ -381,7 +392,7 @@ void close_instance(run *r)
     }
 }
 
-/* The instance of a value; NULL: it has none. */
+/* The instance of a key; NULL: there is none. */
 run *instance_of(const home *h, const rv_number *value)
 {
     const int32_t at = find_key(h, value);

@@ -1,4 +1,6 @@
-/* Runs of a part: made, forked, taken through what was, put aside. */
+/* Creating, resetting and forking runs. The arrays of a run lie in one block, so that forking an
+ * instance or an attempt is one memcpy, plus what grows: occurrences and the rings of past
+ * operators. Released runs are reused. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -9,7 +11,7 @@
 
 #define ALIGNED(size) (((size) + 15U) & ~(size_t)15U)
 
-/* Hands out pieces of a block one after the other; without a block it only adds them up. */
+/* Carves arrays out of a block. Without a block it only adds up their sizes. */
 typedef struct {
     char *block;
     size_t used;
@@ -29,7 +31,8 @@ static void cut_timers(cutter *c, timers *h, int32_t ids)
     h->place = piece(c, ids, sizeof *h->place);
 }
 
-/* Lay out the arrays of a run: first what a fork copies as it stands. Returns the size of that. */
+/* Place the arrays of a run in its block: first those that a fork copies, whose size is returned;
+ * then those that it does not, since they own other memory or belong to attempts. */
 static size_t cut_block(cutter *c, run *r)
 {
     const part_plan *p = r->part->plan;
@@ -85,7 +88,7 @@ static size_t cut_block(cutter *c, run *r)
     return copied;
 }
 
-/* A run of a part, all zero but for where its arrays are; NULL: memory is short. */
+/* A run with its arrays, all zero and not yet reset; NULL: memory is short. */
 run *new_run(home *h)
 {
     rv_monitor *m = h->monitor;
@@ -126,7 +129,9 @@ run *new_run(home *h)
     return made;
 }
 
-/* Copy what grows: occurrences and stretches. False: memory is short. */
+/* Copy what is allocated outside the block: occurrences and the rings of past operators. The copied
+ * rings start at 0, and their hash tables of distinct members are left to be rebuilt. False: memory
+ * is short. */
 static bool copy_grown(run *made, const run *r)
 {
     rv_monitor *m = r->home->monitor;
@@ -190,7 +195,7 @@ static bool copy_grown(run *made, const run *r)
     return true;
 }
 
-/* A run that has not begun. */
+/* Reset a run to before its first sample. */
 void clear_run(run *r)
 {
     const part_plan *p = r->part->plan;
@@ -254,7 +259,8 @@ void clear_run(run *r)
     }
 }
 
-/* Its judges without attempts; what their letters are is read off the nodes. */
+/* Reset the judges of a run: no attempts. Letters are sums over the truths of nodes, so they are
+ * added up anew. What judges own (networks, queues, notes) is kept for reuse. */
 void clear_judges(run *r)
 {
     const part_plan *p = r->part->plan;
@@ -308,7 +314,8 @@ void clear_judges(run *r)
     }
 }
 
-/* A run that goes on as another one does, without its attempts; NULL: memory is short. */
+/* A run in the same state as another, but without its attempts; NULL: memory is short. The caller
+ * sets who may start attempts in it, and links it. */
 run *forked(const run *r)
 {
     home *h = r->home;
@@ -354,7 +361,8 @@ run *forked(const run *r)
     return made;
 }
 
-/* Give a sample to a run, unless that began by it. */
+/* Judge a sample in one run. Does nothing if the run was created by this very sample and has taken
+ * it already. */
 void give(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const quick_signal *quick;

@@ -1,4 +1,9 @@
-/* Runs: a part of the plan over the samples, once, or once for each key and for each attempt with values of its own. */
+/* Runs: the state of a part of the plan as samples and time pass. A part without captured values is
+ * one run; for one with `let` or `for each` these files create, fork, replay and release runs.
+ *
+ * The order at one position (clock.c): outages end; timers fire; atoms valid at the last position
+ * only are read again; changed nodes are evaluated; judges whose letter or trigger changed move
+ * their attempts; new attempts start; failed episodes restart. */
 #ifndef RVMON_RUNS_H
 #define RVMON_RUNS_H
 
@@ -9,7 +14,7 @@ void settle_margins(rv_monitor *m, int64_t t);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
-/* ---- crowd.c: at which positions something can change */
+/* ---- crowd.c: the next position at which something can change */
 int64_t tick_from(int64_t gap, int64_t t);
 bool may_go_on(const run *r, int32_t index);
 void tidy_failing(run *r);
@@ -34,7 +39,7 @@ int64_t next_decision(run *r);
 void settle_all(run *r, int64_t end, int64_t reached);
 bool was_heard(const run *r, int32_t index);
 
-/* ---- dense.c: outages where only samples are positions */
+/* ---- dense.c: outages in sampled time */
 bool make_nothing(home *h);
 bool begin_dense(rv_monitor *m, int64_t t);
 void pass_dense(rv_monitor *m, int64_t limit);
@@ -47,19 +52,19 @@ void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count);
 void home_take_amid(home *h, int64_t t);
 int64_t last_position(const rv_monitor *m);
 
-/* ---- runs.c: made, forked, replayed, let go */
+/* ---- runs.c: creating and forking runs */
 run *new_run(home *h);
 run *forked(const run *r);
 void set_aside(home *h, run *r);
 void give(run *r, int64_t t, const incoming *in, int32_t count);
 
-/* ---- kept.c: samples for those that look at what was before */
+/* ---- kept.c: samples stored for replay */
 past_update *keep_one(home *h, int64_t t);
 void keep_updates(home *h, int64_t t);
 void keep_given(home *h, int64_t t);
 void replay(run *r);
 
-/* ---- kept.c: samples that wait for the tick that sees them */
+/* ---- kept.c: samples that wait for their tick */
 bool holds_back(const home *h);
 void hold_back(home *h, int64_t t);
 void give_held(home *h, int64_t limit);
@@ -78,7 +83,7 @@ bool is_idle(const run *r);
 void let_go(run *r);
 void adopt(run *parent, run *child);
 
-/* ---- keys.c: instances of a `for each` */
+/* ---- keys.c: instances of `for each` */
 bool begin_keys(home *h);
 int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank);
 void put_over(home *h, int32_t at);
@@ -91,7 +96,7 @@ void open_at(run *r, int64_t t);
 bool was_swallowed(run *r, int64_t t);
 int32_t concerning(const run *r, const rv_update *u);
 
-/* ---- crowd.c: which runs a part has, and which of them a call concerns */
+/* ---- crowd.c: the runs of a part, and which of them a call concerns */
 bool register_run(home *h, run *r);
 void touch_run(run *r);
 void enlist(run *r, bool captured);
@@ -101,7 +106,7 @@ int32_t call_due(home *h, int64_t t);
 int32_t call_concerned(home *h, int64_t t);
 void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
 
-/* ---- homes.c: all runs of a part */
+/* ---- homes.c: a part with all its runs */
 bool home_begin(home *h);
 bool home_reserve(home *h, int32_t attempts);
 void home_mark_absent(home *h, bool event, int32_t local);
