@@ -294,12 +294,13 @@ rv_counts rv_count(const rv_monitor *m, int32_t requirement);
 int rv_verdict(const rv_monitor *m, int32_t requirement);
 
 /* Serialise the run, including all records not yet forgotten. Returns the size in bytes, and writes
- * them if `size` is at least that; 0 if the run is spoilt. */
+ * them if `size` is at least that; 0 if the run is spoilt, or the plan has margins. */
 size_t rv_save(rv_monitor *m, void *bytes, size_t size);
 
-/* Restore a run that rv_save wrote into a monitor newly made from the same plan. The bytes are
- * validated like a plan: none can lead outside the monitor's memory. After RV_BAD_SNAPSHOT the
- * monitor is spoilt and can only be freed. */
+/* Restore a run that rv_save wrote into a monitor newly made from the same plan (no absent names, no
+ * rv_reserve). The bytes are validated like a plan: none can lead outside the monitor's memory. After
+ * RV_BAD_SNAPSHOT the monitor is spoilt and can only be freed, unless the bytes were too few for a
+ * header. */
 int rv_load(rv_monitor *m, const void *bytes, size_t size);
 
 /* Whether memory ran out in this run. */

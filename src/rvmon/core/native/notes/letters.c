@@ -1,15 +1,17 @@
-/* The letters by which a network judges, kept for notes: where the truths of propositions changed, or
- * stood at a sample, from the begin of the oldest attempt on.
+/* Letters of a network's propositions, stored for notes: one where they changed (with samples as
+ * positions, one per sample), from the begin of the oldest open attempt on.
  *
- * They stand in pieces of a fixed size. A note refers to the pieces between the begin of its attempt and
- * its decision, so a decision copies none; a piece goes when no open attempt needs it, and no note. */
+ * They are in pieces of fixed size, linked in order. A note refers to the pieces from the begin of its
+ * attempt to its decision, so decisions copy no letters. A piece lives while it is in the list of its
+ * judge, or pinned: referred to by a record's note. Pinning compares a number with the monitor's
+ * `pins`, so that bumping that unpins all at once. */
 #include "networks/network.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
 
 #include <string.h>
 
-/* So many pieces are kept at most: what lasts longer is explained by its last part. */
+/* Most pieces of a judge: an attempt that lasts longer is explained by its last part. */
 #define PIECES_MOST 4096
 
 const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count)
@@ -38,7 +40,7 @@ static size_t size_of_piece(int32_t stride)
     return sizeof(rv_piece) + (size_t)LETTERS_IN_PIECE * (size_t)stride * sizeof(int64_t);
 }
 
-/* Let go of a piece that nobody needs. */
+/* Free a piece, and release what the reader attached to it. */
 static void drop_piece(rv_monitor *m, rv_piece *piece)
 {
     int32_t i;
@@ -50,7 +52,8 @@ static void drop_piece(rv_monitor *m, rv_piece *piece)
     arena_give(&m->memory, piece, size_of_piece(piece->stride));
 }
 
-/* The oldest piece is needed by no open attempt. */
+/* Take the oldest piece out of the list: no open attempt needs it. If notes do, it moves to `left`;
+ * else it is freed. Notes of open attempts may refer to either, so they are dropped first. */
 static void leave_first(rv_monitor *m, noting *n)
 {
     rv_piece *piece = n->first;
@@ -60,18 +63,18 @@ static void leave_first(rv_monitor *m, noting *n)
     n->pieces--;
     if (piece->pinned == m->pins) {
         if ((piece->next != NULL) && (piece->next->pinned != m->pins)) {
-            drop_told_open(m);  /* these may refer to both */
-            piece->next = NULL; /* that may go before this one */
+            drop_told_open(m);  /* may refer to both */
+            piece->next = NULL; /* the next piece may be freed before this one */
         }
         piece->next_left = m->left;
         m->left = piece;
     } else {
-        drop_told_open(m); /* these may refer to it */
+        drop_told_open(m); /* may refer to it */
         drop_piece(m, piece);
     }
 }
 
-/* A piece without letters; NULL: memory is short. */
+/* An empty piece; NULL: memory is short. */
 rv_piece *made_piece(rv_monitor *m, int32_t stride)
 {
     rv_piece *piece = arena_take(&m->memory, size_of_piece(stride));
@@ -83,7 +86,7 @@ rv_piece *made_piece(rv_monitor *m, int32_t stride)
     return piece;
 }
 
-/* The same behind the others of a judge. */
+/* An empty piece at the end of a judge's list; NULL: memory is short. */
 rv_piece *next_piece(rv_monitor *m, noting *n, int32_t stride)
 {
     rv_piece *piece = made_piece(m, stride);
@@ -107,8 +110,8 @@ void forget_letters(rv_monitor *m, noting *n)
     }
 }
 
-/* The first instant of which the letter is needed: from the begin of the oldest attempt on, or as long
- * before the last letter as a position matters. */
+/* The first instant whose letter is needed: since the begin of the oldest attempt, or within `reach` of
+ * the last letter, whichever is later. */
 static int64_t needed_from(const run *r, int32_t index)
 {
     const judge *j = &r->judges[index];
@@ -125,7 +128,7 @@ static int64_t needed_from(const run *r, int32_t index)
     return found;
 }
 
-/* Drop the pieces that no open attempt needs, all its letters being from an instant on. */
+/* Drop pieces from the front while the next one still covers `needed`. */
 static void drop_letters(rv_monitor *m, noting *n, int64_t needed)
 {
     while ((n->first != n->last)
@@ -135,19 +138,20 @@ static void drop_letters(rv_monitor *m, noting *n, int64_t needed)
     }
 }
 
-/* Whether one of the truths in some words is UNKNOWN. */
+/* Whether a packed truth is UNKNOWN, that is 1: the lower bit of its pair is set. */
 static bool is_doubtful(const int64_t *packed, int32_t words)
 {
     int32_t i;
     for (i = 0; i < words; i++) {
-        if (((uint64_t)packed[i] & (UINT64_MAX / 3U)) != 0U) { /* the lower bit of each */
+        if (((uint64_t)packed[i] & (UINT64_MAX / 3U)) != 0U) { /* the lower bit of each pair */
             return true;
         }
     }
     return false;
 }
 
-/* Take the letter at the position `t`; if it is not known, attempts that are open hang on that. */
+/* Store the letter at position `t`; if something in it is unknown, open attempts may hang on it. The
+ * slot behind the last letter is written first, and kept only if the letter differs. */
 void keep_letter(run *r, int32_t index, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -185,13 +189,13 @@ void keep_letter(run *r, int32_t index, int64_t t)
         && ((n->last->before[0] == t)
             || ((GAP(r) > 0)
                 && (memcmp(&n->last->before[1], &made[1], (size_t)words * sizeof *made) == 0)))) {
-        return; /* it stays */
+        return; /* as before */
     }
     n->last->count += stride;
 }
 
-/* Have letters from one piece on be kept as long as notes are. Between two of a judge that are kept so
- * are all. */
+/* Pin the pieces from `first` to the end of a judge's list: from `first` up to one that is pinned, then
+ * from the last pinned one on. Pinned pieces have no gaps. */
 static void pin(const rv_monitor *m, noting *n, rv_piece *first)
 {
     rv_piece *one = first;
@@ -207,7 +211,8 @@ static void pin(const rv_monitor *m, noting *n, rv_piece *first)
     n->pinned = n->last;
 }
 
-/* Refer to the letters from `begin` on; -1: there are none. */
+/* A span of the letters from `begin` to the last one, shared with the span before if equal; -1: there
+ * are none. */
 int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
 {
     rv_piece *first = n->first;
@@ -232,13 +237,14 @@ int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
         made->last_count = n->last->count;
         m->span_count++;
     }
-    if (!m->tells_open) { /* what is told of open attempts is over with the call */
+    if (!m->tells_open) { /* notes of open attempts end with the call */
         pin(m, n, first);
     }
     return m->span_count - 1;
 }
 
-/* Have a span be kept; its new number. The old one says that it is. */
+/* Copy a span to those that stay, once; returns its new index, which the old span then stores
+ * negated. */
 int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
 {
     span_of_letters *old = &m->spans[number];
@@ -250,10 +256,9 @@ int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
     return -1 - old->last_count;
 }
 
-/* Let go of the letters that no note refers to any more, after notes were dropped.
- *
- * Of each judge, what is pinned goes up to the end of its last span: so that a piece that is ends a walk
- * from the last span back to the first. */
+/* Free the letters that no note refers to any more: unpin all, pin those of the spans left, free the
+ * rest. Taking spans last first, the pieces pinned per judge end with its last span, so reaching a
+ * pinned piece ends the walk. */
 void pin_kept_letters(rv_monitor *m)
 {
     rv_piece **link = &m->left;
@@ -293,7 +298,7 @@ void pin_kept_letters(rv_monitor *m)
     }
 }
 
-/* No note refers to letters any more. */
+/* No notes are left: free the letters that only they needed. */
 void unpin_letters(rv_monitor *m)
 {
     while (m->left != NULL) {
@@ -304,14 +309,14 @@ void unpin_letters(rv_monitor *m)
     m->pins++;
 }
 
-/* ---- rings of truths */
+/* Rings of truths. */
 
-/* The entry that stands for an instant: the last one not behind it. NULL: there is none. */
+/* The last entry not behind instant `t`, by bisection; NULL: none. */
 const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
 {
     int32_t low = 0;
     int32_t high = ring->count;
-    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* as mostly */
+    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* the common case */
         return entry_of(ring, high - 1, words);
     }
     while (low < high) {
@@ -325,7 +330,7 @@ const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
     return (low > 0) ? entry_of(ring, low - 1, words) : NULL;
 }
 
-/* Drop the entries that stand for nothing from `oldest` on. */
+/* Drop the entries that stand for nothing from `oldest` on: all but the last one before it. */
 void drop_truths(truths *ring, int32_t words, int64_t oldest)
 {
     while ((ring->count > 1) && (entry_of(ring, 1, words)[0] <= oldest)) {
@@ -334,7 +339,7 @@ void drop_truths(truths *ring, int32_t words, int64_t oldest)
     }
 }
 
-/* Make room for as many entries again; false: memory is short. */
+/* Double the room; false: memory is short. */
 bool grow_truths(rv_monitor *m, truths *ring, int32_t words)
 {
     const int32_t room = (ring->room > 0) ? 2 * ring->room : 4;
@@ -355,7 +360,7 @@ bool grow_truths(rv_monitor *m, truths *ring, int32_t words)
     return true;
 }
 
-/* Add an entry; NULL: memory is short. */
+/* Append an entry; NULL: memory is short. */
 int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
 {
     if ((ring->count == ring->room) && !grow_truths(m, ring, words)) {

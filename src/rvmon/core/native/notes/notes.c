@@ -1,17 +1,16 @@
-/* What is kept so that notes can be told (told.c): since when propositions have their truths, what the
- * leaves were at triggers, and where something was unknown. Nothing of it has a say in verdicts.
+/* The history from which notes are written (told.c). It never influences verdicts.
  *
- * Of a run: of each node that notes tell of, since when it has its truth, and when it had the others
- * last; also how that was before the last position at which one changed, since a network may find a
- * little later what was decided before. Of a judge: rings of truths at instants, in which an entry
- * stands for all triggers up to the next one, so that attempts need not keep theirs. */
+ * Per run: for each node that notes describe, since when it has its truth and when it last had each
+ * other truth; and the same before the last change of any node, because a network may report a decision
+ * one position late. Per judge: rings of the leaves at triggers and at doubts. Consecutive triggers
+ * with equal leaves share an entry, so that attempts need not store any. */
 #include "input/input.h"
 #include "networks/network.h"
 #include "notes/notes.h"
 
 #include <string.h>
 
-/* Number the nodes of a part that notes tell of. */
+/* Assign slots to the nodes that notes of some judge describe: propositions and leaves. */
 static void number_logged(const rv_monitor *m, part *p)
 {
     int32_t i;
@@ -35,7 +34,7 @@ static void number_logged(const rv_monitor *m, part *p)
     }
 }
 
-/* Have what a run stands at be noted; false: memory is short. */
+/* Allocate the history of a run; false: memory is short. */
 bool make_notes(run *r)
 {
     arena *a = &r->home->monitor->memory;
@@ -65,7 +64,7 @@ bool make_notes(run *r)
     return true;
 }
 
-/* Have nothing be noted of a run: not all of it could be made. */
+/* Keep no history of a run: not all of it could be allocated. */
 static void drop_notes(run *r)
 {
     int32_t i;
@@ -80,7 +79,7 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
     int32_t i;
     bool done = true;
     if (m->shapes != NULL) {
-        return RV_OK; /* figures are told without reasons */
+        return RV_OK; /* margins are reported without reasons */
     }
     m->let_go = let_piece_go;
     m->let_go_user = user;
@@ -104,7 +103,7 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
     return RV_OK;
 }
 
-/* Forget what a judge remembers. */
+/* Reset the history of a judge. */
 void clear_noting(run *r, int32_t index)
 {
     noting *n = r->judges[index].noting;
@@ -118,7 +117,7 @@ void clear_noting(run *r, int32_t index)
     }
 }
 
-/* All truths are as from the first position on, at `t`. */
+/* Reset the history: every node has its truth since the first position, `t`. */
 void stand_at_first(run *r, int64_t t)
 {
     truth_log *s = r->truth_log;
@@ -132,7 +131,7 @@ void stand_at_first(run *r, int64_t t)
     s->moved_at = t;
 }
 
-/* Have a run that goes on as another one does stand as that does. */
+/* Copy the history to a forked run. */
 void stand_like(run *made, const run *r)
 {
     int32_t i;
@@ -144,7 +143,7 @@ void stand_like(run *made, const run *r)
     made->truth_log->begun = r->truth_log->begun;
 }
 
-/* Take it that a node becomes another one than it `was` at the position `t`. */
+/* A node changes at position `t`; `was` is its old truth. */
 void note_node(run *r, int32_t node, uint8_t was, int64_t t)
 {
     const int32_t slot = r->part->slots[node];
@@ -165,7 +164,7 @@ void note_node(run *r, int32_t node, uint8_t was, int64_t t)
     }
 }
 
-/* How a node was before the last position at which one changed, if it did there; else NULL. */
+/* The history of a node, if it changed at the last position at which any did; else NULL. */
 static const logged_node *moved_last(const run *r, int32_t node)
 {
     const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
@@ -178,7 +177,7 @@ truth_times truth_times_of(const run *r, int32_t node, bool before)
     return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
 }
 
-/* The truths of some nodes, now or before the last position at which one changed. */
+/* Pack the truths of nodes, as they are or as they were before the last change of any. */
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
@@ -203,7 +202,7 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
     }
 }
 
-/* The trigger of the oldest attempt of a judge that is open. */
+/* The trigger of a judge's oldest open attempt; NEVER. */
 static int64_t oldest_trigger(const run *r, int32_t index)
 {
     const judge *j = &r->judges[index];
@@ -217,14 +216,15 @@ static int64_t oldest_trigger(const run *r, int32_t index)
     return found;
 }
 
-/* Add an entry of a judge for the instant `t`; NULL: memory is short. */
+/* Append an entry for instant `t` to a ring of a judge; NULL: memory is short. A full ring first drops
+ * what no open attempt needs, and grows if that freed less than half. */
 static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t words, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
     int64_t *made;
     if (ring->count == ring->room) {
         drop_truths(ring, words, least(oldest_trigger(r, index), t));
-        if ((2 * (int64_t)ring->count > ring->room) /* else it would be full again soon */
+        if ((2 * (int64_t)ring->count > ring->room) /* else it would soon be full again */
             && !grow_truths(m, ring, words)) {
             return NULL;
         }
@@ -236,7 +236,7 @@ static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t wo
     return made;
 }
 
-/* Take it that an attempt begins that is triggered at `t`, at which the leaves are. */
+/* An attempt is triggered at `t`: remember the leaves, unless they are as at the last trigger. */
 void note_trigger(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
@@ -251,11 +251,12 @@ void note_trigger(run *r, int32_t index, int64_t t)
     pack_truths(r, leaves, false, &made[1]);
     last = (n->triggers.count > 1) ? entry_of(&n->triggers, n->triggers.count - 2, words) : NULL;
     if ((last != NULL) && (memcmp(&last[1], &made[1], (size_t)words * sizeof *made) == 0)) {
-        n->triggers.count--; /* the one before stands for this, too */
+        n->triggers.count--; /* the entry before stands for this one, too */
     }
 }
 
-/* Take it that something is unknown at `t` that attempts may hang on. */
+/* Something is unknown at `t` that may keep attempts undecided: remember the leaves, once per
+ * instant. */
 void note_doubt(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
@@ -273,13 +274,14 @@ void note_doubt(run *r, int32_t index, int64_t t)
     }
 }
 
-/* The position at which an attempt began: what the end triggers begins at the last one. */
+/* The position at which an attempt began: the last one if the end of the trace triggered it. */
 int64_t begin_of(const run *r, int32_t index, const attempt *x)
 {
     return (r->part->judges[index].trigger < 0) ? r->at.position : x->triggered;
 }
 
-/* Where and what an open attempt may hang on that was not known: the instant, and the leaves. */
+/* The entry of the doubt that keeps an attempt open, or NULL: where its readings parted; for a network
+ * the first doubt since it began. */
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
 {
     const truths *ring = &r->judges[index].noting->doubts;
@@ -296,7 +298,7 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
     return NULL;
 }
 
-/* Take it that the two readings of an attempt part at the position of its judge, or meet. */
+/* The readings of an attempt have parted, or met again, at the position of its judge. */
 void note_parting(run *r, int32_t index, attempt *x)
 {
     if ((r->part->judges[index].flags & JUDGE_HIDDEN) == 0) {
@@ -307,7 +309,7 @@ void note_parting(run *r, int32_t index, attempt *x)
     }
 }
 
-/* Whether something is unknown that a judge's attempts may hang on. */
+/* Whether a proposition of a judge is unknown. */
 static bool is_in_doubt(const run *r, int32_t index)
 {
     const list propositions = r->part->judges[index].propositions;
@@ -321,7 +323,7 @@ static bool is_in_doubt(const run *r, int32_t index)
     return false;
 }
 
-/* Take it that an attempt that is in no queue begins at the position `t`. */
+/* An attempt begins at position `t` (not in a queue). */
 void note_begin(run *r, int32_t index, attempt *x, int64_t t)
 {
     if ((r->part->judges[index].flags & JUDGE_HIDDEN) != 0) {
@@ -334,14 +336,14 @@ void note_begin(run *r, int32_t index, attempt *x, int64_t t)
     }
 }
 
-/* Take it that an attempt that stays open for good was triggered at `t`. */
+/* An undecidable attempt was triggered at `t`. */
 void note_undecidable(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
     n->undecidable_since = least(n->undecidable_since, t);
 }
 
-/* Count the open attempts of a judge, before they are told of. */
+/* Count the open attempts of a network, for their notes. */
 void note_open_count(run *r, int32_t index)
 {
     int32_t at;

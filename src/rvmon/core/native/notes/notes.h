@@ -1,10 +1,12 @@
-/* Notes: what the files share that keep and tell them. */
+/* Notes: the raw data from which monitor/reasons derives why an attempt was decided, or is open.
+ * notes.c keeps the history of truths as it happens, letters.c the letters of networks, told.c writes a
+ * note with each record. Verdicts never depend on notes. */
 #ifndef RVMON_NOTES_H
 #define RVMON_NOTES_H
 
 #include "basics.h"
 
-/* ---- notes.c: what is kept so that notes can be told */
+/* ---- notes.c: history of truths */
 bool make_notes(run *r);
 void clear_noting(run *r, int32_t index);
 void stand_at_first(run *r, int64_t t);
@@ -22,7 +24,7 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 /* ---- letters.c: the letters by which a network judges */
 void keep_letter(run *r, int32_t index, int64_t t);
 
-/* ---- told.c: notes of decisions and of open attempts */
+/* ---- told.c: writing notes */
 int64_t note_nothing(run *r, int32_t index, const attempt *x);
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
 int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end);
@@ -31,9 +33,9 @@ void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, 
 void tell_open(rv_monitor *m, bool begins);
 void forget_notes(rv_monitor *m, int64_t words, int32_t spans);
 
-/* Truths in a word, two bits each. */
+/* Truths are packed two bits each. */
 #define TRUTHS_IN_WORD 32U
-/* Letters in a piece. */
+/* Letters of a piece: its capacity. */
 #define LETTERS_IN_PIECE 64
 
 static inline int32_t words_for(int32_t nodes)
@@ -63,7 +65,7 @@ void drop_truths(truths *ring, int32_t words, int64_t oldest);
 bool grow_truths(rv_monitor *m, truths *ring, int32_t words);
 int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
 
-/* Where notes go that stay when others are dropped. */
+/* The notes that stay while others are dropped (rv_trim), copied with their spans. */
 typedef struct {
     int64_t *words;
     span_of_letters *spans;
@@ -77,13 +79,13 @@ void pin_kept_letters(rv_monitor *m);
 /* ---- told.c */
 enum { NOTE_DECIDED, NOTE_OPEN, NOTE_NOTHING };
 enum {
-    NOTE_NETWORK = 1,          /* a network judges */
-    NOTE_CUT = 2,              /* it is not known any more which values were captured */
+    NOTE_NETWORK = 1,          /* the judge is a network */
+    NOTE_CUT = 2,              /* captured values became unknown */
     NOTE_PARTED = 4,           /* the two readings differ */
     NOTE_CANNOT_PASS = 8,
     NOTE_SURE = 16
 };
-/* Words before those of the leaves. */
+/* Words of a note before those of the leaves. */
 #define NOTE_HEAD 7
 void drop_told_open(rv_monitor *m);
 bool begin_keeping(rv_monitor *m, kept_notes *to);

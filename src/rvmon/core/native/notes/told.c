@@ -1,19 +1,21 @@
-/* Notes: what the reasons of decisions and of open attempts are worked out from, as words.
+/* Writing notes: the words from which reasons of decisions and of open attempts are derived. All notes
+ * are in one array of int64, each found by the index in its record.
  *
- * Word 0: the kind; flags, from bit 8 on; the judge, from bit 24 on; how many words, from bit 40 on.
- * Word 1: the place of the state of the propositions then, which many notes share.
- * Word 2: DECIDED: the instant; OPEN: where the runs stand, -1 NOTHING.
- * Word 3: of a network, the number of the span of letters, or -1, and of OPEN from bit 32 on how many
- *         are; of an automaton, how many clocks its run has, and from bit 32 on the other run.
- * Word 4: the instant of the doubt, RV_NO_TIME if there is none; of OPEN alone.
- * Word 5: the end of the trace, or RV_NO_TIME; of OPEN alone.
- * Word 6: the position at which the attempt began.
- * Then the leaves at the trigger; of OPEN with a doubt, the leaves there; then of an automaton the
- * location and the clocks of the run that decided, as it stood just before; of OPEN, of both; of a
- * network that is open, two locations. Of OPEN behind all that what was not known; see unknowns.c.
+ * 0  kind; from bit 8, flags; from bit 24, the judge; from bit 40, the number of words
+ * 1  the index of the state of the propositions, which notes share; -1: none
+ * 2  DECIDED: the instant; OPEN: the stamp of time; NOTHING: -1
+ * 3  network: its span of letters, or -1, and in OPEN from bit 32 the number of open attempts;
+ *    automaton: the number of clocks, in OPEN of the worse reading and from bit 32 of the better
+ * 4  OPEN: the instant of the doubt, or RV_NO_TIME
+ * 5  OPEN: the end of the trace, or RV_NO_TIME
+ * 6  the position at which the attempt began
+ * Then the leaves at the trigger; for OPEN with a doubt, the leaves there; of an automaton location and
+ * clocks just before the decision, for OPEN of both readings; for OPEN of a network, two locations; for
+ * OPEN then what was not known (input/unknowns.c).
  *
- * A state: how many words; where a run began to see what is its own, or RV_NO_TIME; the leaves; the propositions; of
- * each of these since when, and when it was false and true last, or RV_NO_TIME. */
+ * A state: its number of words; the first position the run saw, or RV_NO_TIME; the leaves; the
+ * propositions; for each of these since when, and when it was last false and last true, or
+ * RV_NO_TIME. */
 #include "input/input.h"
 #include "networks/network.h"
 #include "notes/notes.h"
@@ -33,7 +35,7 @@ static int64_t *further_words(rv_monitor *m, int64_t count)
     return &m->notes[m->note_count - count];
 }
 
-/* What was told of open attempts is over. */
+/* Drop the notes of open attempts, which stand behind those of records. */
 void drop_told_open(rv_monitor *m)
 {
     if (m->told_open && !m->tells_open) {
@@ -41,7 +43,8 @@ void drop_told_open(rv_monitor *m)
     }
 }
 
-/* The place of how all stands at the instant `t`; -1: there is no room. */
+/* The index of the state at instant `t`, shared with the last one if nothing changed since; -1: memory
+ * is short. */
 static int64_t place_state(run *r, int32_t index, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -93,8 +96,8 @@ static int64_t flags_of(const run *r, int32_t index, const attempt *x)
     return flags;
 }
 
-/* Begin a note, with so many words behind the leaves at its trigger, which the caller fills; -1: there is
- * no room. */
+/* Begin a note with `count` words behind the leaves at its trigger, which the caller fills; returns its
+ * index, -1: memory is short. */
 static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind, int64_t flags,
                           int64_t count)
 {
@@ -120,7 +123,6 @@ static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind,
     return made - m->notes;
 }
 
-/* Where the words of a note stand behind the leaves at the trigger. */
 static int64_t *behind_trigger(const run *r, int32_t index, int64_t note)
 {
     return &r->home->monitor->notes[note + NOTE_HEAD + words_for(r->part->judges[index].leaves.count)];
@@ -134,13 +136,12 @@ static void write_token(int64_t *to, int32_t location, const int64_t *clocks, in
     }
 }
 
-/* Note an attempt that is met, or failed, but says nothing. */
 int64_t note_nothing(run *r, int32_t index, const attempt *x)
 {
     return begin_note(r, index, x, NOTE_NOTHING, 0, 0);
 }
 
-/* Note a decision at `t`; where its run stood is held already, if an automaton judges. */
+/* A note for a decision at `t`. For an automaton, hold_token has saved where it stood before. */
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
@@ -162,13 +163,13 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
     return note;
 }
 
-/* Hold where a run stands before it moves. */
+/* Save location and clocks before a move, for the note of a decision by it. */
 void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t *clocks)
 {
     before_decision *was = &m->before;
     was->location = location;
     was->width = a->widths[location];
-    if (was->width == 1) { /* as mostly */
+    if (was->width == 1) { /* the common case */
         was->clocks[0] = clocks[0];
     } else if (was->width > 1) {
         (void)memcpy(was->clocks, clocks, (size_t)was->width * sizeof *clocks);
@@ -177,8 +178,8 @@ void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t
     }
 }
 
-/* Have what is held stand where it did just before the instant `t`: positions from `first` on were
- * stepped with a letter. */
+/* Advance what was saved to just before instant `t`: positions from `first` on had this letter. Needed
+ * as attempts are driven over many positions at once. */
 void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t)
 {
     before_decision *was = &m->before;
@@ -186,7 +187,7 @@ void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, 
     token k;
     k.location = was->location;
     k.clocks = was->clocks;
-    k.moves = NULL; /* they are counted where the attempt itself moves */
+    k.moves = NULL; /* the attempt itself counts its moves */
     if ((a->gap > 0) && (first <= t - 1) && (k.location > PASSED)) {
         (void)run_token(a, &k, letter, first, t - 1, &slides);
         was->location = k.location;
@@ -194,7 +195,8 @@ void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, 
     }
 }
 
-/* Put where a run of an open attempt stands by the position before time comes to more. */
+/* Write location and clocks of one reading of an open attempt as of instant `until`; returns the number
+ * of clocks. */
 static int32_t put_by_now(run *r, int32_t index, int32_t location, const int64_t *clocks,
                           int32_t letter, int64_t until, int64_t *to)
 {
@@ -206,8 +208,8 @@ static int32_t put_by_now(run *r, int32_t index, int32_t location, const int64_t
     return m->before.width;
 }
 
-/* Note an attempt that is open when time has come to a stamp: twice the instant, one more if its letter
- * is known. `end`: of the trace, or RV_NO_TIME. */
+/* A note for an open attempt at stamp `now` (2t, or 2t + 1 if the letter at t is known); `end` of the
+ * trace, or RV_NO_TIME. */
 int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end)
 {
     rv_monitor *m = r->home->monitor;
@@ -229,7 +231,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
     m->notes[note + 2] = now;
     m->notes[note + 5] = end;
     to = behind_trigger(r, index, note);
-    (void)memset(to, 0, (size_t)more * sizeof *to); /* not all are used */
+    (void)memset(to, 0, (size_t)more * sizeof *to); /* the end may stay unused */
     if (doubt != NULL) {
         m->notes[note + 4] = doubt[0];
         (void)memcpy(to, &doubt[1], (size_t)words * sizeof *to);
@@ -253,7 +255,6 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
     return note;
 }
 
-/* Forget notes behind some words and spans. */
 void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
 {
     m->note_count = words;
@@ -265,7 +266,7 @@ void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
     m->epoch++;
 }
 
-/* Begin to drop notes but for some: those go elsewhere; false: there is no room. */
+/* Begin to drop all notes but some, which are copied to `to`; false: memory is short. */
 bool begin_keeping(rv_monitor *m, kept_notes *to)
 {
     drop_told_open(m);
@@ -293,7 +294,8 @@ static int64_t keep_words(kept_notes *to, const int64_t *words, int64_t count)
     return to->count - count;
 }
 
-/* Have a note be kept, with what it refers to; its new place. */
+/* Copy a note and what it refers to; returns its new index. A state copied stores its new index,
+ * negated, so that it is copied once. */
 int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note)
 {
     const int64_t *words;
@@ -305,7 +307,7 @@ int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note)
     made = keep_words(to, words, words[0] >> 40);
     if (words[1] >= 0) {
         int64_t *stands = &m->notes[words[1]];
-        if (stands[0] >= 0) { /* else it says where it went */
+        if (stands[0] >= 0) { /* else it was copied before */
             const int64_t place = keep_words(to, stands, stands[0]);
             stands[0] = -1 - place;
         }
@@ -335,7 +337,7 @@ void end_keeping(rv_monitor *m, kept_notes *to)
     }
 }
 
-/* Begin or end to tell of open attempts: their notes are behind those of records. */
+/* Bracket the writing of notes of open attempts, which stand behind those of records. */
 void tell_open(rv_monitor *m, bool begins)
 {
     if (begins) {
@@ -343,12 +345,12 @@ void tell_open(rv_monitor *m, bool begins)
         m->settled_notes = m->note_count;
         m->settled_spans = m->span_count;
     }
-    m->epoch++; /* no state is shared across */
+    m->epoch++; /* states are not shared across the bracket */
     m->tells_open = begins;
     m->told_open = true;
 }
 
-/* Whether some words stand at a place. */
+/* Whether `count` words at an index are notes. */
 static bool is_told(const rv_monitor *m, int64_t place, int64_t count)
 {
     return (place >= 0) && (count >= 2) && (count <= m->note_count - place);

@@ -1,5 +1,6 @@
-/* Which rows change nothing: many are looked at together, column by column, and only those at which a
- * value comes to compare otherwise, an event occurs or something is due are judged. */
+/* Examining rows ahead: for up to 64 rows, column by column, which updates may change something.
+ * Columns that stay within their interval are recognised by loops without branches, which compilers
+ * vectorise; the constant TOGETHER as their length lets them unroll. */
 #include "rows/rows.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@ static bool are_alike(const rv_number *a, const rv_number *b)
            && ((a->kind == RV_UNKNOWN) || (memcmp(&a->as, &b->as, sizeof a->as) == 0));
 }
 
-/* Whether so many numbers compare as the last one does; without branches. */
+/* Whether every number compares as the last one does. */
 static inline bool reals_are_within(const double *v, int32_t count, double low, double high, double last)
 {
     int32_t beyond = 0;
@@ -52,7 +53,8 @@ static inline bool bytes_are(const uint8_t *v, int32_t count, uint8_t last)
     return other == 0;
 }
 
-/* Whether a column says the same in all these rows, seen at a glance. */
+/* Whether no row of a column changes anything; false also if that takes a closer look. Words are
+ * compared as bits: equal bits are equal values. */
 static bool stays(const column_watch *w, int64_t first, int32_t count)
 {
     const rv_column *c = w->column;
@@ -84,7 +86,8 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
     }
 }
 
-/* Bytes that are 0 or 1 as bits. */
+/* Pack 64 bytes of 0 or 1 into bits. The multiplication moves the low bits of 8 bytes into the top
+ * byte. */
 static uint64_t bits_of(const uint8_t *one)
 {
     uint64_t word = 0;
@@ -99,7 +102,7 @@ static uint64_t bits_of(const uint8_t *one)
     return word;
 }
 
-/* The rows in which a column says something between two bounds. */
+/* The rows whose `says` lies between two bounds. */
 static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least_said,
                               uint8_t most_said)
 {
@@ -112,7 +115,7 @@ static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, 
     return bits_of(one);
 }
 
-/* The rows of truth values at which one is another than before; false if some are no truth values. */
+/* The rows at which a Boolean column changes; false if it is not a full block of 0 and 1. */
 static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint64_t *found)
 {
     const uint8_t *v = &((const uint8_t *)w->column->values)[first];
@@ -131,7 +134,7 @@ static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint
     return most <= 1U;
 }
 
-/* Note at which of the rows that say something a signal is told what may change something. */
+/* Go through the updates of a signal one by one, and mark those that may change something. */
 static void look_for_news(const batch *s, column_watch *w, int64_t first)
 {
     uint64_t left = w->said;
@@ -152,12 +155,12 @@ static void look_for_news(const batch *s, column_watch *w, int64_t first)
                 learn_between(s, w);
             }
         } else {
-            /* It tells nothing new. */
+            /* Nothing changes. */
         }
     }
 }
 
-/* Whether nothing awaits that a signal goes stale. */
+/* Whether some reader has no staleness timer set, so that the first update has to reach it. */
 static bool is_ageless(const batch *s, const column_watch *w)
 {
     bool found = false;
@@ -171,7 +174,7 @@ static bool is_ageless(const batch *s, const column_watch *w)
     return found;
 }
 
-/* The rows of which the number is none. */
+/* The rows whose number is NaN. */
 static uint64_t rows_unknown(const rv_column *c, int64_t first, int32_t count)
 {
     const double *v = &((const double *)c->values)[first];
@@ -187,7 +190,7 @@ static uint64_t rows_unknown(const rv_column *c, int64_t first, int32_t count)
     return found;
 }
 
-/* Look through the rows of a column; those at which something may change. */
+/* Examine the rows of a column; returns those at which something may change. */
 static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, int32_t count)
 {
     const rv_column *c = w->column;
@@ -231,7 +234,8 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
     return moved;
 }
 
-/* The rows of which the instant is not one behind the row before, or is told twice. */
+/* Rows that rv_step has to see, whatever they say: stamps not ascending, out of range, or equal to the
+ * next row's. */
 static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
 {
     const int64_t *t = &s->times[first];
@@ -252,7 +256,8 @@ static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
     return found;
 }
 
-/* Whether rows may be passed over now. */
+/* Whether rows may be passed over at all: not before the first position, not if samples are stored, not
+ * with an outage. */
 static bool is_calm(const rv_monitor *m)
 {
     int32_t i;

@@ -1,4 +1,5 @@
-/* Passing over rows that change nothing: time comes to them, and what they said is held at last. */
+/* Passing over rows that change nothing: only time is moved. What they said reaches the core later:
+ * values when rows are examined anew (turn_from), staleness before its timer could fire (refresh). */
 #include "input/input.h"
 #include "rows/rows.h"
 
@@ -17,15 +18,15 @@ static int64_t alarm_of_all(const rv_monitor *m)
     return found;
 }
 
-/* The last row before `row` in which a column says something, from `from` on; -1: none. */
+/* The last row in [from, row) in which a column has an update; -1: none. */
 static int64_t last_said(const batch *s, const column_watch *w, int64_t from, int64_t row)
 {
     const uint64_t said = w->said & bits_before(row - s->first) & ~bits_before(from - s->first);
     return (said != 0U) ? s->first + highest_bit(said) : -1;
 }
 
-/* Have all that read a signal hold what a row says. What compares alike is held at last: nothing but
- * comparisons with constants looks at it. */
+/* Store the value of a row in every reader without evaluating anything: it compares as the value before
+ * does, and only comparisons with constants read it. */
 static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
 {
     const rv_number value = number_in(w->column, row);
@@ -35,7 +36,8 @@ static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
     }
 }
 
-/* Have what perishes be as fresh as the rows before `row` make it. */
+/* Apply the rows before `row` to signals that go stale: postpone their timers. Alarms may move later by
+ * that. */
 static void refresh(batch *s, int64_t row)
 {
     bool some = false;
@@ -62,7 +64,8 @@ static void refresh(batch *s, int64_t row)
     s->fresh = row;
 }
 
-/* Have the core hold what the rows before `row` said, and look at other rows from there on. */
+/* Store what the rows before `row` said, and forget what was examined: examination starts anew at
+ * `row`. */
 static void turn_from(batch *s, int64_t row)
 {
     int32_t i;
@@ -82,7 +85,6 @@ static void turn_from(batch *s, int64_t row)
     s->moved = 0;
 }
 
-/* Have time come to a row that is passed over. */
 static void pass_to_row(const batch *s, int64_t row)
 {
     rv_monitor *m = s->m;
@@ -99,7 +101,7 @@ static void pass_to_row(const batch *s, int64_t row)
     m->reached = t;
 }
 
-/* The first of some rows that is due, or their end. */
+/* The first row in [row, end) with something due, or `end`. */
 static int64_t first_due(const batch *s, int64_t row, int64_t end)
 {
     const int64_t alarm = alarm_of_all(s->m);
@@ -113,7 +115,8 @@ static int64_t first_due(const batch *s, int64_t row, int64_t end)
     return found;
 }
 
-/* Pass over the rows that change nothing; returns the next one that may. */
+/* Pass over rows from `row` on that change nothing; returns the first that may, or the end of the
+ * block. When an alarm is due, staleness is refreshed first: it may be due to updates passed over. */
 int64_t pass_over(batch *s, int64_t row)
 {
     int64_t at = row;
@@ -147,13 +150,12 @@ int64_t pass_over(batch *s, int64_t row)
         } else if (at < s->first + s->together) {
             return at;
         } else {
-            /* There are rows that were not looked at. */
+            /* The examined rows are used up. */
         }
     }
     return at;
 }
 
-/* Make ready to judge the rows from `row` up to `end`, which are of one instant. */
 void make_ready(batch *s, int64_t row, int64_t end)
 {
     if (end > s->first + s->together) {
@@ -162,10 +164,11 @@ void make_ready(batch *s, int64_t row, int64_t end)
     refresh(s, row);
 }
 
-/* Note that these rows were judged. */
+/* Rows up to `end` were judged. What was examined behind them stays valid, unless a signal became
+ * unknown, or attempts that matter to margins began or ended. */
 void note_judged(batch *s, int64_t end)
 {
-    bool other = false;        /* whether what stands there is no longer what the rows before it said */
+    bool other = false;        /* whether examined rows have to be examined anew */
     int32_t i;
     s->fresh = end;
     for (i = 0; (s->m->shapes != NULL) && (i < s->columns); i++) {
@@ -182,7 +185,6 @@ void note_judged(batch *s, int64_t end)
     } else if (other) {
         turn_from(s, end);
     } else {
-        /* What is known of the rows behind is still so. */
     }
 }
 
@@ -224,10 +226,9 @@ void end_rows(batch *s, int64_t row)
     }
 }
 
-/* Which updates of a signal or event can change something, and between which numbers a value can move
- * and compare as it does. */
+/* Which updates of a name can change something, and the interval of values that compare alike. */
 
-/* Whether a program is a number and nothing else, and which. */
+/* Whether a program is just a constant, and which. */
 static bool is_number(const plan *p, int32_t place, rv_number *number)
 {
     const int32_t *word = &p->code[place];
@@ -250,7 +251,7 @@ static bool is_signal(const plan *p, int32_t place, int32_t local)
     return ((word[0] & 255) == CODE_SIGNAL) && (word[0] >> 8 == local) && ((word[1] & 255) == CODE_END);
 }
 
-/* The constant that an atom compares a signal with, if it does no more. */
+/* The constant that an atom compares a signal with; false: it does something else. */
 static bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant)
 {
     const plan *p = PLAN(r);
@@ -279,8 +280,8 @@ static bool all_with_constants(const run *r, const signal_plan *s, int32_t local
     return true;
 }
 
-/* Which updates of a signal can change something in a run; sleeping runs of a part hold what the first
- * one does. */
+/* Which updates of a signal can change something: all runs of a part hold the same inputs as its
+ * root. */
 static int32_t signal_matters(const home *h, const column_watch *w, int32_t local)
 {
     const run *r = h->root;
@@ -323,7 +324,6 @@ void learn_how(const batch *s, column_watch *w)
     w->is_plain = is_plain_column(s, w);
 }
 
-/* What is on another side of a real constant compares otherwise than the last value. */
 static void bound_real(column_watch *w, double constant)
 {
     if (w->last.as.real <= constant) {
@@ -334,7 +334,7 @@ static void bound_real(column_watch *w, double constant)
     }
 }
 
-/* The same of whole numbers, beside a constant of either kind. */
+/* The same for whole numbers and a constant of either kind. */
 static void bound_whole(column_watch *w, const rv_number *constant)
 {
     const int64_t last = w->last.as.whole;
@@ -343,7 +343,7 @@ static void bound_whole(column_watch *w, const rv_number *constant)
     if (constant->kind == RV_WHOLE) {
         below = constant->as.whole;
     } else if (!(constant->as.real >= -0x1p62) || !(constant->as.real <= 0x1p62)) {
-        w->floor = last; /* too far to say more */
+        w->floor = last; /* rounding could matter: only an equal value compares alike */
         w->ceiling = last;
         return;
     } else {
@@ -360,7 +360,7 @@ static void bound_whole(column_watch *w, const rv_number *constant)
     }
 }
 
-/* Learn what compares as the last value does: see `learn_span`. */
+/* Set the interval of values that compare as the last one does; see learn_span in input/values.c. */
 void learn_between(const batch *s, column_watch *w)
 {
     rv_number constant;

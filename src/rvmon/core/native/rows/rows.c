@@ -1,4 +1,5 @@
-/* Rows of columns: those of one instant are a sample, and what changes nothing is passed over. */
+/* rv_rows: the loop over the rows of a block. Rows of one instant are one sample; rows that change
+ * nothing are passed over (passing.c). */
 #include "input/input.h"
 #include "rows/rows.h"
 
@@ -48,7 +49,7 @@ static rv_update *further(laid *made, int32_t name, int32_t says)
     return u;
 }
 
-/* Lay out what a signal is told at one instant: the last value in these rows. */
+/* The update of a signal at one instant: the last value in its rows. */
 static void lay_signal(laid *made, const column_watch *w, int64_t row, int64_t end)
 {
     int64_t i;
@@ -75,8 +76,8 @@ static void lay_payload(laid *made, const column_watch *w, int64_t row)
     further(made, w->column->name, RV_SAYS_YES)->fields = own;
 }
 
-/* Lay out what is said of an event at one instant: all payloads in these rows; if there is none, the
- * surest of what they say. */
+/* The updates of an event at one instant: one for each payload in its rows. Without a payload, one with
+ * the most certain of what they say: YES over UNKNOWN over NO. */
 static void lay_event(laid *made, const column_watch *w, int64_t row, int64_t end)
 {
     int32_t most = -1;
@@ -108,7 +109,7 @@ static void give_room(rv_monitor *m, laid *made, int32_t columns)
     }
 }
 
-/* Make room for the updates of so many rows. */
+/* Make room for a sample of `count` rows; false: memory is short. */
 static bool make_room_for(rv_monitor *m, laid *made, int64_t count, int32_t columns)
 {
     const size_t each = (size_t)columns * sizeof *made->updates;
@@ -128,7 +129,7 @@ static bool make_room_for(rv_monitor *m, laid *made, int64_t count, int32_t colu
     return true;
 }
 
-/* The row behind those of one instant. */
+/* The end of the rows with the instant of `row`. */
 static int64_t end_of_instant(const batch *s, int64_t row)
 {
     int64_t end = row + 1;
@@ -138,8 +139,8 @@ static int64_t end_of_instant(const batch *s, int64_t row)
     return end;
 }
 
-/* Judge a sample: the rows from `row` on that are of one instant. Of rows that were looked at ahead only
- * what may change something is told. */
+/* Judge rows [row, end) as one sample. For a single row that was examined only the updates that may
+ * change something are passed on; the rest is held by turn_from later. */
 static int judge_instant(batch *s, int64_t row, int64_t end)
 {
     laid *made = &s->laid;

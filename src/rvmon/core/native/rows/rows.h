@@ -1,50 +1,55 @@
-/* Rows of columns: what rows.c and ahead.c share. */
+/* Judging whole columns of samples. Most rows of a recording change no truth, so 64 rows at a time are
+ * compared column by column, without branches where possible, and only rows at which something can
+ * change are judged as samples (rv_step). The result is the same as judging each row.
+ *
+ * Two row masks per column: `said`, it has an update; `told`, the core has to see that update. A row is
+ * judged if some column tells, or something is due by then. */
 #ifndef RVMON_ROWS_H
 #define RVMON_ROWS_H
 
 #include "runs/runs.h"
 
-/* Of a row: it says nothing of a name. */
+/* In `says` of a column: no update. */
 #define NO_UPDATE 255
 
-/* Rows that are looked at together: a bit each. */
+/* Rows that are examined together, a bit each. */
 #define TOGETHER 64
 
-/* Which updates of a name can change something. */
+/* Which updates of a name can change something, from all to few; smaller is stricter. */
 enum {
     NO_UPDATES,                /* nobody reads it */
     EACH_UPDATE,
-    EACH_VALUE,                /* those that bring another value */
-    BY_CONSTANTS,              /* those that bring a value that compares otherwise */
-    OCCURRENCES                /* of an event */
+    EACH_VALUE,                /* those that change its value */
+    BY_CONSTANTS,              /* those that change the outcome of a comparison with a constant */
+    OCCURRENCES                /* events: those that say it occurred */
 };
 
-/* A column of those rows. */
+/* A column while its rows are examined. */
 typedef struct {
     const rv_column *column;
-    const subscription *readers;
+    const subscription *readers; /* parts that read the name */
     int32_t reader_count;
-    int32_t how;
-    int32_t fields;            /* of an event */
+    int32_t how;               /* which updates matter: EACH_VALUE, ... */
+    int32_t fields;            /* fields of an event that the column gives */
     bool is_event;
     bool ignores_nan;
-    bool perishable;           /* an update keeps it from going stale, whatever it says */
-    bool is_plain;             /* nobody but attempts hears what it compares as */
-    bool is_idle;              /* and there are none */
-    rv_number last;            /* what it said before, while rows are looked through */
-    double low;                /* what lies between these, or is the same, compares as that does */
+    bool perishable;           /* updates postpone that it goes stale */
+    bool is_plain;             /* its comparisons influence attempts only: measured.c */
+    bool is_idle;              /* and no attempt is open */
+    rv_number last;            /* its last value in the rows examined so far */
+    double low;                /* a value in (low, high), or equal to `last`, compares as `last` does */
     double high;
-    int64_t floor;             /* the same of whole numbers */
+    int64_t floor;             /* the same for whole numbers: (floor, ceiling) */
     int64_t ceiling;
-    uint64_t said;             /* rows at which it says something */
-    uint64_t told;             /* those of which the core has to hear */
+    uint64_t said;             /* rows with an update, as bits */
+    uint64_t told;             /* those the core has to see */
 } column_watch;
 
-/* A sample that is laid out. */
+/* A sample assembled from rows. */
 typedef struct {
     rv_update *updates;
     rv_number *fields;
-    int64_t room;              /* in rows */
+    int64_t room;              /* capacity in rows */
     int32_t count;
     int32_t field_count;
 } laid;
@@ -56,15 +61,15 @@ typedef struct {
     column_watch *watches;
     int32_t columns;
     laid laid;
-    int64_t first;             /* of those that are looked at together */
-    int64_t together;          /* so many; 0: none */
-    int64_t fresh;             /* what perishes is as fresh as the rows before this one make it */
-    uint64_t moved;            /* at which something may change */
-    bool known;                /* whether it is known for good which updates can change something */
-    bool perishes;             /* whether a column is of a signal that goes stale */
-    double *leaves[2];         /* room for what is measured of rows: at least, and at most */
-    int32_t leaves_room;       /* of one row */
-    int64_t unsettled;         /* rows of which it was not asked which figures they have settled */
+    int64_t first;             /* the first row examined */
+    int64_t together;          /* rows examined; 0: none are */
+    int64_t fresh;             /* updates before this row have postponed staleness */
+    uint64_t moved;            /* rows at which something may change, as bits from `first` */
+    bool known;                /* `how` of the columns is final: every part is in phase 1 */
+    bool perishes;             /* some column is of a signal that goes stale */
+    double *leaves[2];         /* margins: scratch for the leaves of rows, at least and at most */
+    int32_t leaves_room;       /* capacity, in values per row */
+    int64_t unsettled;         /* rows since margins were last settled */
 } batch;
 
 static inline home *home_of(const batch *s, const column_watch *w, int32_t reader)
@@ -82,7 +87,7 @@ static inline bool bit_at(uint64_t word, int64_t place)
     return ((word >> place) & 1U) != 0U;
 }
 
-/* The bits before a place, which is 64 at most. */
+/* A mask of the bits below a place, which is 64 at most. */
 static inline uint64_t bits_before(int64_t place)
 {
     return (place >= TOGETHER) ? ~UINT64_C(0) : ((UINT64_C(1) << place) - 1);
@@ -91,12 +96,12 @@ static inline uint64_t bits_before(int64_t place)
 /* ---- rows.c */
 rv_number number_in(const rv_column *c, int64_t row);
 
-/* ---- passing.c: what matters */
+/* ---- passing.c: which updates matter */
 void learn_how(const batch *s, column_watch *w);
 void learn_between(const batch *s, column_watch *w);
 bool compares_alike(const column_watch *w, const rv_number *value);
 
-/* ---- measured.c: rows that are measured, and are not judged */
+/* ---- measured.c: rows that are measured but not judged */
 bool begin_measured(batch *s);
 void end_measured(batch *s);
 bool may_pass_measured(const rv_monitor *m);
@@ -105,7 +110,7 @@ bool is_idle_now(const batch *s, const column_watch *w);
 void measure_rows(batch *s, int64_t row, int64_t end);
 void settle_rows(batch *s, int64_t rows);
 
-/* ---- ahead.c: at which rows something may change */
+/* ---- ahead.c: the rows at which something may change */
 void look_ahead(batch *s, int64_t row);
 
 /* ---- passing.c */

@@ -1,8 +1,6 @@
-/* A run as bytes, at any instant, and from them.
- *
- * A head: what they are and of which version, the hash of the plan, how many they are, a hash of all
- * behind it. That is against accidents alone; bytes of whatever kind are either refused or a state that
- * the core can go on from. */
+/* rv_save and rv_load. A header (magic with version, hash of the plan, size, hash of the rest), then
+ * the whole run. The hash guards against accidents only: whatever the bytes are, each field is checked,
+ * so they are refused or yield a state that the core can go on from. */
 #include "notes/notes.h"
 #include "results/results.h"
 #include "snapshot/snapshot.h"
@@ -22,7 +20,7 @@ static uint64_t hash_of_bytes(const uint8_t *bytes, size_t size)
     return hash;
 }
 
-/* The head of so many bytes, with a hash of the others. */
+/* The header of a snapshot of `size` bytes. */
 static void carry_head(carrier *c, size_t size, uint64_t hash)
 {
     const uint64_t head[4] = {SNAPSHOT_MAGIC, c->m->plan.header->hash, (uint64_t)size, hash};
@@ -34,7 +32,7 @@ static void carry_head(carrier *c, size_t size, uint64_t hash)
     }
 }
 
-/* What has been recorded, each with the values that it captured. */
+/* The records, each with its captured values. 27 is less than the bytes of any record. */
 static void carry_records(carrier *c, rv_monitor *m)
 {
     const int32_t requirements = m->plan.header->requirements;
@@ -99,7 +97,7 @@ static void carry_records(carrier *c, rv_monitor *m)
     arena_give(&m->memory, parts, parts_size);
 }
 
-/* How far a run has come, and what is said of its names. */
+/* The clock of the monitor, and the state of names. */
 static void carry_times(carrier *c, rv_monitor *m)
 {
     const int32_t names = m->plan.header->signals + m->plan.header->events;
@@ -131,7 +129,7 @@ static void carry_times(carrier *c, rv_monitor *m)
     }
 }
 
-/* All of a run. What has a state of its own is carried by a function of the file that describes it. */
+/* The whole run. */
 static void carry_monitor(carrier *c, size_t size, uint64_t hash)
 {
     rv_monitor *m = c->m;
@@ -169,7 +167,7 @@ size_t rv_save(rv_monitor *m, void *bytes, size_t size)
     return m->spoilt ? 0 : wanted;
 }
 
-/* Whether nothing was done with a monitor since it was made. */
+/* Whether a monitor is as rv_new made it. */
 static bool is_fresh(const rv_monitor *m)
 {
     const int32_t names = m->plan.header->signals + m->plan.header->events;
@@ -197,7 +195,7 @@ int rv_load(rv_monitor *m, const void *bytes, size_t size)
     carry_monitor(&c, size, hash_of_bytes((const uint8_t *)bytes + HEAD_SIZE, size - HEAD_SIZE));
     demand(&c, c.at == size);
     if (c.refused) {
-        m->spoilt = true; /* it is torn: nothing is said of it */
+        m->spoilt = true; /* half restored: nothing may be read from it */
         return RV_BAD_SNAPSHOT;
     }
     return m->spoilt ? RV_NO_MEMORY : RV_OK;

@@ -1,9 +1,10 @@
-/* What is written of a state and read back. One description serves for both: each function here carries
- * the fields of something either out or in, so the two cannot differ.
+/* Snapshots: a run as bytes. One description serves for writing and reading: each carry_... function
+ * visits the fields of something in order, and either writes them or reads them, so the two cannot
+ * differ.
  *
- * What follows from the rest is not carried but made anew: heaps, free places, links of lists, sums,
- * spans, room. What is carried in is checked against the plan and what was carried before; once
- * something does not fit nothing more is taken, and who called throws the state away. */
+ * What follows from other state is not stored but rebuilt: heaps, free lists, links, sums, spans,
+ * capacities. What is read is checked against the plan and against what was read before; after the
+ * first misfit nothing more is read, and the caller discards the monitor. */
 #ifndef RVMON_SNAPSHOT_H
 #define RVMON_SNAPSHOT_H
 
@@ -12,28 +13,28 @@
 
 typedef struct {
     rv_monitor *m;
-    const uint8_t *from;       /* what is read */
-    uint8_t *to;               /* where it is written; NULL: it is only counted */
-    size_t at;
-    size_t size;               /* of what is read */
+    const uint8_t *from;       /* bytes being read */
+    uint8_t *to;               /* bytes being written; NULL: only count them */
+    size_t at;                 /* offset reached */
+    size_t size;               /* bytes to read */
     bool reading;
-    bool refused;              /* what was read does not fit */
-    uint8_t *begins;           /* of each word of notes, what begins there; while they are read */
+    bool refused;              /* something read does not fit */
+    uint8_t *begins;           /* while notes are read: for each word, what begins there */
 } carrier;
 
-/* Whether something went wrong: nothing more is carried. */
+/* Whether carrying has stopped: a misfit, or memory was short. */
 static inline bool is_lost(const carrier *c)
 {
     return c->refused || c->m->spoilt;
 }
 
-/* Refuse what was read unless something is so. */
+/* While reading, require a condition. */
 static inline void demand(carrier *c, bool so)
 {
     c->refused = c->refused || (c->reading && !so);
 }
 
-/* ---- snapshot_fields.c: numbers, the lowest byte first */
+/* ---- snapshot_fields.c: integers in little-endian order; bounds are those demanded on reading */
 void carry_byte(carrier *c, uint8_t *x, uint8_t most);
 void carry_bytes(carrier *c, uint8_t *x, int64_t count, uint8_t most);
 void carry_flag(carrier *c, bool *x);
@@ -41,19 +42,19 @@ void carry_int(carrier *c, int32_t *x, int64_t low, int64_t behind);
 void carry_count(carrier *c, uint32_t *x);
 void carry_word(carrier *c, uint64_t *x);
 void carry_long(carrier *c, int64_t *x, int64_t low, int64_t most);
-/* An instant within the bounds of time; the same, or `none`. */
+/* An instant in range; or that, or the value `none`. */
 void carry_instant(carrier *c, int64_t *x);
 void carry_instant_or(carrier *c, int64_t *x, int64_t none);
 void carry_number(carrier *c, rv_number *x);
-/* How many of something there are, of which each takes so many bytes at least. */
+/* A count of items that take at least `each` bytes, so that a forged count cannot ask for more memory
+ * than there are bytes. */
 void carry_size(carrier *c, int32_t *x, int64_t most, size_t each);
-/* Different numbers below one, in their order; each is marked in `listed`, if that is not NULL. */
+/* A list of distinct numbers below `behind`, in order; marked in `listed` unless that is NULL. */
 void carry_list(carrier *c, int32_t *items, int32_t *count, int32_t behind, uint8_t *listed);
-/* Timers in the order of their heap, which so comes to be the same; `numbers`: by id what it is written
- * as, if not as itself. */
+/* Timers in heap order, so that the heap is restored as it was; `numbers` renames ids if not NULL. */
 void carry_timers(carrier *c, timers *h, int32_t ids, const int32_t *numbers);
 
-/* ---- snapshot_runs.c: names, formulas, what they remember */
+/* ---- snapshot_runs.c: inputs and formulas of a run */
 void carry_run(carrier *c, run *r);
 
 /* ---- snapshot_judges.c: judges, their attempts and queues */
@@ -63,16 +64,16 @@ void carry_judges(carrier *c, run *r);
 void carry_networks(carrier *c, const form *f, networks **own);
 void carry_chain(carrier *c, run *r, int32_t index);
 
-/* ---- snapshot_homes.c: what is kept beside what becomes of attempts */
+/* ---- snapshot_homes.c: staleness, coverage, truths, moves */
 void carry_stale(carrier *c, rv_monitor *m);
 void carry_watch(carrier *c, home *h);
 
-/* ---- snapshot_notes.c: what is kept so that notes can be told */
+/* ---- snapshot_notes.c: state from which notes are made */
 void carry_truth_log(carrier *c, run *r);
 void carry_noting(carrier *c, run *r, int32_t index);
 void carry_unknowns(carrier *c, home *h);
 
-/* ---- snapshot_letters.c: letters that notes refer to */
+/* ---- snapshot_letters.c: letters of notes */
 void carry_letters(carrier *c, noting *n, int32_t stride);
 void carry_spans(carrier *c, rv_monitor *m);
 
@@ -82,7 +83,7 @@ bool is_state(const carrier *c, const judge_plan *judged, int64_t place);
 void check_note(carrier *c, const part *own, const rv_record *one);
 void end_notes(carrier *c, rv_monitor *m);
 
-/* Whether words of truths have nothing in them that is none. */
+/* Whether packed truths are valid: no pair of bits is 3. */
 static inline bool are_truths(const int64_t *words, int32_t count)
 {
     int32_t i;
@@ -95,7 +96,7 @@ static inline bool are_truths(const int64_t *words, int32_t count)
     return true;
 }
 
-/* ---- snapshot_homes.c: all runs of a part, and what they share */
+/* ---- snapshot_homes.c: a part with all its runs */
 void carry_home(carrier *c, home *h);
 
 #endif

@@ -1,10 +1,12 @@
-/* The fields of a snapshot: numbers of fixed size, the lowest byte first. */
+/* The primitive fields of a snapshot: integers of fixed size in little-endian order. Each function
+ * writes or reads one; when reading, a value out of its bounds refuses the snapshot and is not
+ * stored. */
 #include "formulas/formulas.h"
 #include "snapshot/snapshot.h"
 
 #include <string.h>
 
-/* Carry a number of so many bytes as it stands. */
+/* Carry the low `bytes` bytes of a number. */
 static void carry_digits(carrier *c, uint64_t *x, size_t bytes)
 {
     size_t i;
@@ -26,12 +28,12 @@ static void carry_digits(carrier *c, uint64_t *x, size_t bytes)
             c->to[c->at + i] = (uint8_t)(*x >> (8 * i));
         }
     } else {
-        /* They are counted. */
+        /* Only counted. */
     }
     c->at += bytes;
 }
 
-/* The number that some digits stand for, without a step out of its range. */
+/* Two's complement to int64, without the implementation-defined conversion of a large uint64. */
 static int64_t signed_of(uint64_t digits)
 {
     int64_t made;
@@ -73,7 +75,7 @@ void carry_bytes(carrier *c, uint8_t *x, int64_t count, uint8_t most)
     } else if ((c->to != NULL) && (size > 0)) {
         (void)memcpy(&c->to[c->at], x, size);
     } else {
-        /* They are counted. */
+        /* Only counted. */
     }
     c->at += size;
 }
@@ -130,11 +132,12 @@ void carry_instant_or(carrier *c, int64_t *x, int64_t none)
     } else if (c->reading) {
         *x = none;
     } else {
-        /* It stays so. */
+        /* There is none. */
     }
 }
 
-/* Behind the kinds of numbers stands why one is unknown. */
+/* A number: its kind, then its value. For an unknown one with a known cause, kinds above RV_REAL tell
+ * the cause. */
 void carry_number(carrier *c, rv_number *x)
 {
     const bool says_why = (x->kind == RV_UNKNOWN) && (x->as.whole > 0) && (x->as.whole <= IS_STALE);

@@ -1,11 +1,11 @@
-/* The runs of a part in a snapshot, the values of `for each`, and samples that are kept. */
+/* Parts in a snapshot: their runs, keys, stored samples, and coverage. */
 #include "formulas/formulas.h"
 #include "runs/runs.h"
 #include "snapshot/snapshot.h"
 
 #include <string.h>
 
-/* What is kept of an update. */
+/* A stored update. */
 static void carry_kept(carrier *c, home *h, past_update *one)
 {
     const part_plan *p = h->part->plan;
@@ -37,8 +37,9 @@ static void carry_kept(carrier *c, home *h, past_update *one)
     }
 }
 
-/* Whether what is kept can be told again: in order, an outage after the other, the trace beginning once
- * where there is a clock. `longest`: so many updates has a sample. */
+/* Whether stored samples can be replayed: stamps ascend, outages begin and end in turn, and an outage
+ * before the first sample occurs with a clock only. `*longest` becomes the largest number of updates of
+ * a sample, for which the inbox needs room. */
 static bool is_in_turn(const home *h, int32_t *longest)
 {
     const bool clocked = h->monitor->plan.header->gap > 0;
@@ -83,7 +84,7 @@ static void carry_past_updates(carrier *c, home *h)
     }
 }
 
-/* Values that are over, the oldest first. */
+/* The closed keys, oldest first. */
 static void carry_over(carrier *c, home *h)
 {
     int32_t count = h->over_count;
@@ -110,7 +111,7 @@ static void carry_over(carrier *c, home *h)
     }
 }
 
-/* A run that is read; NULL: memory is short. */
+/* A new run to read into; NULL: memory is short. */
 static run *blank_run(home *h)
 {
     run *made = new_run(h);
@@ -142,7 +143,7 @@ static void carry_instance(carrier *c, home *h, run *r)
     }
 }
 
-/* A run of one attempt; `parent` is the number of the one that it was triggered in. */
+/* The run of an attempt; `parent` is the index of the run in which it was triggered. */
 static void carry_child(carrier *c, home *h, run *r, int32_t parent)
 {
     const part_plan *p = h->part->plan;
@@ -165,7 +166,7 @@ static void carry_child(carrier *c, home *h, run *r, int32_t parent)
     carry_run(c, r);
 }
 
-/* Number all runs as they are numbered once they are read. */
+/* Map run ids to the ids that they get when read back, in the order of writing. */
 static void number_runs(home *h)
 {
     int32_t number = 0;
@@ -219,8 +220,8 @@ static void carry_runs(carrier *c, home *h)
     }
 }
 
-/* Whether all that a part had to do by then is done: else it would be caught up with, however long ago
- * that was. */
+/* Whether a part has done everything that was due by `reached`: else it would be caught up with,
+ * however many positions ago that was. */
 static bool is_caught_up(const home *h)
 {
     const rv_monitor *m = h->monitor;
@@ -270,10 +271,9 @@ void carry_home(carrier *c, home *h)
     }
 }
 
-/* What is kept beside what becomes of attempts, in a snapshot: where formulas are known, what was hit,
- * where attempts went, what went stale. */
+/* Staleness, coverage, truths over time and moves. */
 
-/* How often something was, and when first. */
+/* A count and its first instant. */
 static void carry_hit(carrier *c, int64_t *count, int64_t *first)
 {
     carry_long(c, count, 0, LIMIT);
@@ -290,7 +290,7 @@ void carry_stale(carrier *c, rv_monitor *m)
     }
 }
 
-/* The items of a group that stand, which are some of its own. */
+/* The current items of a group, which have to be its own. */
 static void carry_group(carrier *c, home *h, int32_t number)
 {
     covering *own = h->covering;

@@ -1,4 +1,4 @@
-/* What judges attempts in a snapshot, and the attempts that are open. */
+/* Judges in a snapshot: open attempts, queues, networks and chains. */
 #include "attempts/attempts.h"
 #include "snapshot/snapshot.h"
 #include "windows/windows.h"
@@ -12,7 +12,8 @@ static const automaton_plan *automaton_of(const run *r, int32_t index)
     return (number >= 0) ? &PLAN(r)->automata[number] : NULL;
 }
 
-/* The clocks of one reading of an attempt, as many as its location has; of a form, its position. */
+/* The clocks of one reading of an attempt, as many as its location has; with a network, its
+ * position. */
 static void carry_clocks(carrier *c, const run *r, int32_t index, int32_t location, int64_t *clocks)
 {
     const bool by_automaton = automaton_of(r, index) != NULL;
@@ -58,7 +59,7 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
     }
 }
 
-/* A place for an attempt that is read, behind others; -1: memory is short. */
+/* A new attempt behind `last` of a list; -1: memory is short. */
 static int32_t appended(run *r, int32_t *first, int32_t last)
 {
     const int32_t at = new_attempt(r);
@@ -78,7 +79,7 @@ static int32_t appended(run *r, int32_t *first, int32_t last)
     return at;
 }
 
-/* Attempts in a list; returns the last one. */
+/* A list of attempts; returns the last one. 34 is less than the bytes of any. */
 static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
 {
     int32_t count = 0;
@@ -101,7 +102,7 @@ static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
     return last;
 }
 
-/* Attempts in segments: the oldest come first. */
+/* A queue: its attempts, oldest first, then its segments, which have to add up to them. */
 static void carry_queue(carrier *c, run *r, int32_t index)
 {
     queue *q = r->judges[index].queue;
@@ -139,7 +140,7 @@ static void carry_counts(carrier *c, judge *j)
     carry_count(c, &j->inconclusive);
 }
 
-/* Whether the first attempt of those that stay open for good is found again from there. */
+/* Whether `wanted` is in the list of undecidable attempts. */
 static bool is_laid_aside(const run *r, int32_t index, int32_t wanted)
 {
     int32_t at = r->judges[index].undecidable;
@@ -149,7 +150,8 @@ static bool is_laid_aside(const run *r, int32_t index, int32_t wanted)
     return at >= 0;
 }
 
-/* Whether what drives a judge on makes progress by what was read. */
+/* Whether a judge that was read can be driven on without reading a missing structure or looping: its
+ * timer lies ahead, and attempts are in the structure of its engine. */
 static bool is_driven(const run *r, int32_t index)
 {
     const judge *j = &r->judges[index];
@@ -198,7 +200,7 @@ static void carry_judge(carrier *c, run *r, int32_t index)
         const form f = form_of(r, index);
         carry_networks(c, &f, &j->net);
     } else {
-        /* An automaton has no more. */
+        /* An automaton has no more state. */
     }
     if (j->noting != NULL) {
         carry_noting(c, r, index);
@@ -208,11 +210,11 @@ static void carry_judge(carrier *c, run *r, int32_t index)
     }
 }
 
-/* Who is to look at the next position, and what was touched since the last one. */
+/* The lists of judges that look at the next position. */
 static void carry_calls(carrier *c, run *r)
 {
     const int32_t judges = r->part->plan->judges.count;
-    /* Where all is unknown nobody looks again because of what was true. */
+    /* In an outage no pulse repeats. */
     const bool repeats = (r->at.presence == ARE_THERE) && !r->at.dense;
     int32_t none = 0;
     int32_t i;
@@ -243,10 +245,10 @@ void carry_judges(carrier *c, run *r)
     carry_calls(c, r);
 }
 
-/* Networks and chains of windows in a snapshot: what is known of formulas. What a step was that may be
- * taken back is not carried: none is between two calls. */
+/* Networks and chains. News of a step that might be taken back are not stored: none are pending between
+ * two calls. */
 
-/* Ranges in ascending order; none ends behind `most`. */
+/* Ascending disjoint ranges that end at `most` at the latest. */
 static void carry_ranges(carrier *c, ranges *x, int64_t most)
 {
     int32_t count = x->end - x->first;
@@ -268,7 +270,7 @@ static void carry_ranges(carrier *c, ranges *x, int64_t most)
     }
 }
 
-/* The instants of samples. */
+/* Ascending instants of samples. */
 static void carry_samples(carrier *c, ranges *x)
 {
     int32_t count = x->end - x->first;
@@ -286,8 +288,8 @@ static void carry_samples(carrier *c, ranges *x)
     }
 }
 
-/* What is known of a formula by one reading. Where positions are samples they count from 0, and none
- * from the oldest one that is kept on is missing. */
+/* What one reading of a network knows. In sampled time positions are sample numbers from 0, and the
+ * instants of all from `oldest` on have to be there. */
 static void carry_network(carrier *c, const form *f, network *w)
 {
     const bool sparse = f->gap == 0;
@@ -341,7 +343,7 @@ void carry_networks(carrier *c, const form *f, networks **own)
     demand(c, !net->parted || (net->readings[0].last == net->readings[1].last));
 }
 
-/* Positions at which a value changes, in ascending order. */
+/* The ascending changes of a value. */
 static void carry_changes(carrier *c, changes *x)
 {
     int32_t count = x->count;

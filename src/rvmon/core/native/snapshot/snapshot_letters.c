@@ -1,11 +1,11 @@
-/* Letters in a snapshot: the pieces of each judge, then those that notes refer to. A piece that both need is
- * written twice: read back, either has its own. */
+/* Letters in a snapshot: the pieces of each judge, then those that notes refer to. A piece of both
+ * kinds is written twice, and read back as two. */
 #include "notes/notes.h"
 #include "runs/runs.h"
 #include "snapshot/snapshot.h"
 
-/* So many words of letters of a piece, from an instant on; `whole`: there is no room for more. Returns the last one's
- * instant. */
+/* `count` words of letters of a piece, not before instant `from`; `whole`: the piece is full. Returns
+ * the instant of the last. */
 static int64_t carry_piece(carrier *c, rv_piece *piece, int32_t count, int64_t from, bool whole)
 {
     const int32_t most = LETTERS_IN_PIECE * piece->stride;
@@ -29,8 +29,8 @@ static int64_t carry_piece(carrier *c, rv_piece *piece, int32_t count, int64_t f
     return before;
 }
 
-/* The letter before the one that came last: so many from the end of the last piece, of which the first may
- * be in the piece before; 0: there is none. */
+/* `before` of the last piece, as a number of letters from the end, which may reach into the piece
+ * before it; 0: NULL. */
 static void carry_before(carrier *c, rv_piece *last, rv_piece *second)
 {
     const int32_t letters = last->count / last->stride;
@@ -83,13 +83,13 @@ void carry_letters(carrier *c, noting *n, int32_t stride)
     }
 }
 
-/* The pieces that notes refer to, by number; and of each where it stands, when they are read. */
+/* The pieces that notes refer to, while they are numbered or read. */
 typedef struct {
     rv_piece *piece;
-    int32_t count;             /* of its words, those that notes refer to */
-    int32_t next;              /* the number of the piece behind it; -1: notes refer to none */
-    int32_t chain;             /* the number of the first of those that hang together; -1: not known yet */
-    int32_t index;             /* among these */
+    int32_t count;             /* words that notes refer to */
+    int32_t next;              /* number of the following piece; -1: notes refer to none */
+    int32_t chain;             /* number of the first piece of its linked list; -1: not known yet */
+    int32_t index;             /* position in that list */
     bool follows;
 } told_piece;
 
@@ -114,8 +114,9 @@ static void forget_numbers(rv_monitor *m)
     }
 }
 
-/* Number the pieces that notes refer to, in `places` if there are some; returns how many there are. Of each
- * judge, the last span comes first, and what is numbered goes up to its end: a piece that is ends a walk. */
+/* Number the pieces that notes refer to, into `places` unless NULL; returns how many. Spans are taken
+ * last first: per judge the numbered pieces then end with its last span, so reaching a numbered piece
+ * ends the walk. */
 static int32_t number_pieces(rv_monitor *m, told_piece *places)
 {
     int32_t count = 0;
@@ -137,7 +138,7 @@ static int32_t number_pieces(rv_monitor *m, told_piece *places)
     return count;
 }
 
-/* The most words that a letter has. */
+/* The largest number of words of a letter. */
 static int32_t widest_letter(const rv_monitor *m)
 {
     int32_t found = 1;
@@ -152,7 +153,7 @@ static int32_t widest_letter(const rv_monitor *m)
     return found;
 }
 
-/* Say of each piece which others it hangs together with; what leads round in a circle is refused. */
+/* Find the linked list of each piece, and its position there; a cycle is refused. */
 static void chain_pieces(carrier *c, told_piece *places, int32_t count)
 {
     int32_t done = 0;

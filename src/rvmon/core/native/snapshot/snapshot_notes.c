@@ -1,8 +1,8 @@
-/* What is kept so that notes can be told, in a snapshot. */
+/* The state behind notes, and the notes of records, in a snapshot. */
 #include "notes/notes.h"
 #include "snapshot/snapshot.h"
 
-/* A position, or what stands for one that there was none. */
+/* A position, or RV_NO_TIME. */
 static void carry_position(carrier *c, int64_t *x)
 {
     carry_long(c, x, RV_NO_TIME, LIMIT);
@@ -34,7 +34,7 @@ void carry_truth_log(carrier *c, run *r)
     }
 }
 
-/* Truths at instants, in order. */
+/* A ring of packed truths, ascending. */
 static void carry_truths(carrier *c, truths *ring, int32_t words)
 {
     int32_t count = ring->count;
@@ -58,7 +58,7 @@ static void carry_truths(carrier *c, truths *ring, int32_t words)
     }
 }
 
-/* Where the state is that was noted last, if notes to come may share it; else -1. */
+/* The index of the last state written, if later notes may share it; else -1. */
 static void carry_shared(carrier *c, run *r, int32_t index)
 {
     rv_monitor *m = c->m;
@@ -116,13 +116,14 @@ void carry_unknowns(carrier *c, home *h)
     }
 }
 
-/* Notes of records in a snapshot: their words as they stand, which are checked when they are read: each note
- * is of one record, and refers to what is there. */
+/* The notes of records: their words as they are. On reading, each note has to belong to exactly one
+ * record and refer to existing states and letters. */
 
-/* What begins at a word of notes. */
+/* What begins at a word: a note, a state, or a note that a record has claimed. */
 enum { A_NOTE = 1, A_STANDING = 2, A_TAKEN_NOTE = 3 };
 
-/* Find where notes and states begin; a note says at its begin how long it is, in the upper bits. */
+/* Find where notes and states begin: both say their length first, a note in the upper bits of its
+ * word. */
 static void find_begins(carrier *c, const rv_monitor *m)
 {
     int64_t at = 0;
@@ -178,7 +179,7 @@ bool is_state(const carrier *c, const judge_plan *judged, int64_t place)
            && are_truths(&m->notes[place + 2], leaves + letters);
 }
 
-/* What is checked of a note, and how far. */
+/* A note being checked, and how far. */
 typedef struct {
     const part *own;
     const int64_t *words;
@@ -202,11 +203,12 @@ static void check_truths(checking *k, int32_t words)
     }
 }
 
-/* A location of an automaton, and as many clocks as it has. */
+/* A location, and the clocks that it has. */
 static void check_token(checking *k, int64_t width)
 {
     const machine *a = &k->own->machines[k->index];
-    if (has_more(k, 1) && has_more(k, width) && has_more(k, 1 + width)) { /* in this order: it is any word */
+    if (has_more(k, 1) && has_more(k, width) && has_more(k, 1 + width)) { /* in this order, as `width`
+                                                                           * may be any number */
         const int64_t location = k->words[k->at];
         k->fits = (location >= 0) && (location < a->locations) && (width == a->widths[location]);
         k->at += 1 + width;
@@ -215,7 +217,7 @@ static void check_token(checking *k, int64_t width)
     }
 }
 
-/* What was not known when an open attempt was told of. */
+/* The unknown inputs in a note of an open attempt. */
 static void check_unknowns(const carrier *c, checking *k)
 {
     const int32_t names = c->m->plan.header->signals + c->m->plan.header->events;
@@ -259,7 +261,7 @@ static bool has_letters(const carrier *c, const judge_plan *judged, int64_t word
                && (c->m->spans[number].last->stride == words_for(judged->propositions.count) + 1));
 }
 
-/* Check the note of a record, of which a judge of a part may have told. */
+/* Check the note of a record, written by a judge of part `own`. */
 void check_note(carrier *c, const part *own, const rv_record *one)
 {
     const rv_monitor *m = c->m;
@@ -300,5 +302,7 @@ void check_note(carrier *c, const part *own, const rv_record *one)
     case NOTE_OPEN: check_open(c, &k, networked, words_for(judged->leaves.count)); break;
     default: k.fits = k.fits && ((k.words[0] & 0xff) == NOTE_NOTHING); break;
     }
-    demand(c, k.fits && ((k.at == k.length) || ((k.words[0] & 0xff) == NOTE_OPEN))); /* that has room to spare */
+    demand(c, k.fits && ((k.at == k.length) || ((k.words[0] & 0xff) == NOTE_OPEN))); /* those have
+                                                                                      * spare words
+                                                                                      * at the end */
 }

@@ -1,4 +1,4 @@
-/* A run in a snapshot: its names, its formulas, and what these remember. */
+/* A run in a snapshot: inputs, nodes, and what past operators remember. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "runs/runs.h"
@@ -31,7 +31,7 @@ static void carry_signals(carrier *c, run *r)
     }
 }
 
-/* The payloads of what occurred. */
+/* The occurrences of an event with their payloads. */
 static void carry_occurrences(carrier *c, run *r, int32_t event)
 {
     occurrences *o = &r->payloads[event];
@@ -63,7 +63,7 @@ static void carry_events(carrier *c, run *r)
     }
 }
 
-/* What is lost of a name. */
+/* The outage of a name. */
 static void carry_loss(carrier *c, run *r, int32_t name)
 {
     carry_byte(c, &r->lost[name], LOST_SINCE);
@@ -141,7 +141,7 @@ static void carry_tally(carrier *c, tally *x)
     }
 }
 
-/* Members of windows lie within the bounds of time, one behind the other. */
+/* Members of windows are in range and ascending, as sums of instants rely on it. */
 static void demand_members(carrier *c, const run *r, const stretches *s)
 {
     int64_t behind = -LIMIT;
@@ -155,7 +155,7 @@ static void demand_members(carrier *c, const run *r, const stretches *s)
     demand(c, !s->growing || (s->count > 0));
 }
 
-/* There is a number for each. */
+/* The two rings of a window have the same length. */
 static void demand_windows(carrier *c, const run *r)
 {
     int32_t i;
@@ -169,7 +169,7 @@ static void demand_windows(carrier *c, const run *r)
     }
 }
 
-/* What looks back; a second reading is there only if it is another. */
+/* The memory of past operators; a second reading only if it differs. */
 static void carry_past(carrier *c, run *r)
 {
     const part_plan *p = r->part->plan;
@@ -196,7 +196,7 @@ static void carry_past(carrier *c, run *r)
     demand_windows(c, r);
 }
 
-/* The nodes that are to be worked out. */
+/* The nodes to be evaluated, as bits; none beyond the last node. */
 static void carry_dirt(carrier *c, run *r)
 {
     const int32_t nodes = r->part->plan->nodes.count;
@@ -223,8 +223,9 @@ static void carry_nodes(carrier *c, run *r)
     carry_timers(c, &r->wake, p->timers + p->perishable, NULL);
 }
 
-/* Whether time has a meaning for a run: no sum of instants leaves 64 bits, and nothing that is known to
- * come lies behind its position. At one that may not be there nothing comes back: the next one sees to it. */
+/* Whether the clock of a run is consistent: sums of instants stay in 64 bits, no pending position lies
+ * behind the one it is at (or passing time would go backwards or loop), and the outage states fit the
+ * time model. */
 static bool is_in_time(const run *r)
 {
     const int64_t gap = GAP(r);
@@ -273,7 +274,7 @@ static void carry_progress(carrier *c, run *r)
     }
 }
 
-/* What a run of a part has whose attempts or instances have values of their own. */
+/* The fields of a run whose part captures values. */
 static void carry_own(carrier *c, run *r)
 {
     carry_long(c, &r->opens_at, -LIMIT, NEVER);
@@ -296,7 +297,7 @@ void carry_run(carrier *c, run *r)
     carry_nodes(c, r);
     demand(c, c->m->finished || is_in_time(r));
     if (c->reading && !is_lost(c)) {
-        clear_judges(r); /* their letters follow from the nodes */
+        clear_judges(r); /* letters are sums over the nodes read */
     }
     if (r->truth_log != NULL) {
         carry_truth_log(c, r);
