@@ -189,8 +189,11 @@ def judge_all(
     """
     done = 0
     is_alone = len(traces) == 1
-    begin = partial(partial, _judge_apart, spec, options=options, is_alone=is_alone)
-    if not is_alone:
+    is_apart = jobs != 1 and not is_alone
+    begin = partial(
+        partial, _judge_apart if is_apart else judge, spec, options=options, is_alone=is_alone
+    )
+    if is_apart:
         spec.planned(options.only)  # for all that go on from here
     try:
         with bar("recordings", len(traces)) as show:
@@ -199,7 +202,7 @@ def judge_all(
                 done += 1
                 if not is_alone:  # that one shows how far it is read
                     show(done)
-                if one.report is not None:
+                if is_apart and one.report is not None:
                     one = replace(one, report=told_by(one.report, spec.planned(options.only)))
                 yield one
     except WorkerLostError as error:

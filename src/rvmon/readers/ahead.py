@@ -53,29 +53,33 @@ def read_ahead(
     from concurrent.futures import ThreadPoolExecutor
 
     threads = min(MOST_THREADS, os.cpu_count() or 1)
+    pool: ThreadPoolExecutor | None = None
     waiting: deque[tuple[bytes, Future[_Read] | None]] = deque()
     fault: Exception | None = None
     is_over = False
-    with ThreadPoolExecutor(threads, "rvmon-reads") as pool:
-        try:
-            while True:
-                while not is_over and len(waiting) <= threads:
-                    try:
-                        stretch = next(found, None)
-                    except Exception as error:  # noqa: BLE001 - raised in its turn
-                        stretch, fault = None, error
-                    is_over = stretch is None
-                    if stretch is not None:
-                        whole = stretch.endswith(b"\n")
-                        waiting.append((stretch, pool.submit(read, stretch) if whole else None))
-                if not waiting:
-                    break
-                stretch, one = waiting.popleft()
-                yield stretch, None if one is None else one.result
-            if fault is not None:
-                raise fault
-        finally:
-            del fault  # its traceback holds this frame
-            for _, one in waiting:
-                if one is not None:
-                    one.cancel()
+    try:
+        while True:
+            while not is_over and len(waiting) <= threads:
+                try:
+                    stretch = next(found, None)
+                except Exception as error:  # noqa: BLE001 - raised in its turn
+                    stretch, fault = None, error
+                is_over = stretch is None
+                if stretch is not None and stretch.endswith(b"\n"):
+                    pool = pool or ThreadPoolExecutor(threads, "rvmon-reads")
+                    waiting.append((stretch, pool.submit(read, stretch)))
+                elif stretch is not None:
+                    waiting.append((stretch, None))
+            if not waiting:
+                break
+            stretch, one = waiting.popleft()
+            yield stretch, None if one is None else one.result
+        if fault is not None:
+            raise fault
+    finally:
+        del fault  # its traceback holds this frame
+        for _, one in waiting:
+            if one is not None:
+                one.cancel()
+        if pool is not None:
+            pool.shutdown()
