@@ -140,6 +140,11 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
     yield "four rows with a leap of 54 years: run", lambda: run(LEAP, leap)
     for n in (200_000, 2_000_000):
         yield f"{n:,} rows of JSON lines: run", lambda n=n: run(SPEC, narrow_jsonl(n), "r.jsonl")
+    yield (
+        "200,000 rows with semicolons and decimal commas: run",
+        lambda: run(SPEC, foreign_csv(200_000)),
+    )
+    yield "200,000 rows, 10,000 labels: run", lambda: run(labelled_spec(10_000), labelled_csv())
     for kind, requirement in FAILURES.items():
         yield (
             f"200,000 rows, failures {kind}: run",
@@ -202,6 +207,23 @@ def keyed_csv(count: int) -> str:
         for t in range(count)
     )
     return "t,p,q,x,ask,ask.id,answer,answer.id\n" + "".join(lines)
+
+
+def foreign_csv(count: int) -> str:
+    """The same as programs write it where numbers have commas."""
+    lines = (f"{t};{int(t % 7 < 3)};{int(t % 11 < 2)};{t % 97},5\n" for t in range(count))
+    return "t;p;q;x\n" + "".join(lines)
+
+
+def labelled_spec(count: int) -> str:
+    """A spec with a signal of so many labels."""
+    labels = ", ".join(f"l{number}" for number in range(count))
+    return f"spec s\nsignal mode : {{{labels}}}\nrequirement R1\n  always mode != l3\n"
+
+
+def labelled_csv() -> str:
+    """Rows of 10,000 labels, of which neighbours differ."""
+    return "t,mode\n" + "".join(f"{t},l{t * 7919 % 10_000}\n" for t in range(200_000))
 
 
 def narrow_jsonl(count: int) -> str:

@@ -48,7 +48,10 @@ _ODD = 4096
 """Cells of a call that are read one by one."""
 
 _LABELS = 2048
-"""Labels of a call that are told apart."""
+"""Labels of a call that are told apart, at first: where there are more, of a later call more."""
+
+_MOST_LABELS = 1 << 16
+"""From here on not."""
 
 _LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r(?!\Z))")
 
@@ -192,6 +195,7 @@ class _Reader:
         no_update = layout.gaps.no_update
         self._absent = None if no_update is None else str(no_update).encode()
         self._row_bytes = 2.0 * len(layout.header)
+        self._labels = max(_LABELS, len(kinds))
 
     def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> _Found:
         """Find rows in a text from a place on, as far as one call can."""
@@ -201,7 +205,7 @@ class _Reader:
         says = np.empty((columns, room), np.uint8)
         lines = np.empty(room, np.int64)
         odd = np.empty((max(_ODD, columns), 4), np.int64)
-        labels = np.empty((max(_LABELS, columns), 3), np.int64)
+        labels = np.empty((self._labels, 3), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
         counts = read(
             text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
@@ -248,6 +252,8 @@ class _Reader:
             raise fault
         if rows:
             self._row_bytes = (at - text.start) / rows
+        if labels == len(found.labels) and labels < _MOST_LABELS:
+            self._labels = 4 * labels
         text.start = at
         text.line += count
         return ended, end

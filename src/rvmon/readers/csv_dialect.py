@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, BinaryIO
 
 from rvmon.errors import TraceError
@@ -99,10 +100,12 @@ class _Converted(io.RawIOBase):
 
     def readinto(self, buffer: Any, /) -> int:
         """Fill the buffer with what comes next; 0 at the end."""
-        while len(self._rest) < len(buffer) and (line := next(self._lines, None)) is not None:
-            self._rest += line.encode()
-        count = min(len(buffer), len(self._rest))
-        buffer[:count], self._rest = self._rest[:count], self._rest[count:]
+        parts, size = [self._rest], len(self._rest)
+        while size < len(buffer) and (line := next(self._lines, None)) is not None:
+            parts.append(line.encode())
+            size += len(parts[-1])
+        found, count = b"".join(parts), min(len(buffer), size)
+        buffer[:count], self._rest = found[:count], found[count:]
         return count
 
 
@@ -178,6 +181,8 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
     The last one has an end if it has one in the text.
     """
     made: Callable[[list[str]], list[str]] | None = None
+    written: list[str] = []
+    writer = csv.writer(SimpleNamespace(write=written.append), lineterminator="\n")
     lines = 0
     ends = Ends(text)
     for number, row in _rows(iter(ends), dialect):
@@ -185,18 +190,21 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
             row, made = _stamp_maker(row, stamps)
         else:
             if dialect.has_commas:
-                row = [_COMMA.sub(r"\1.\2", one) if _COMMA.fullmatch(one) else one for one in row]
+                row = [_with_point(one) if "," in one else one for one in row]
             try:
                 row = made(row)
             except TraceError as error:
                 raise TraceError(f"line {number}: {error}") from None
-        written = io.StringIO()
-        csv.writer(written, lineterminator="\n").writerow(row)
-        plain = written.getvalue()
+        writer.writerow(row)
+        plain = written.pop()
         # The header comes first, whatever stood above it; the others keep their numbers.
         missing = number - lines - plain.count("\n") if lines else 0
         lines += missing + plain.count("\n")
         yield "\n" * missing + (plain if ends.is_there else plain[:-1])
+
+
+def _with_point(cell: str) -> str:
+    return cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell
 
 
 def _rows(lines: Iterator[str], dialect: Dialect) -> Iterator[tuple[int, list[str]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rvmon.diagnostics import Span
 from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.check.ctl import checked_goal, checked_property
 from rvmon.spec.check.expressions import Checker
@@ -149,9 +150,10 @@ class _Types:
 
     def _fresh(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
         labels = tuple(label.text for label in syntax.labels)
-        for number, label in enumerate(syntax.labels):
-            if label.text in labels[:number]:
-                first = syntax.labels[labels.index(label.text)].span
+        firsts: dict[str, Span] = {}
+        for label in syntax.labels:
+            first = firsts.setdefault(label.text, label.span)
+            if first is not label.span:
                 self._findings.add(name_rules.double(label.text, "label", label.span, first))
         try:
             unit = parse_unit(syntax.unit)
