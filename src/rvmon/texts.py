@@ -12,7 +12,7 @@ import re
 import stat
 import sys
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -213,13 +213,23 @@ def percent_text(part: float, whole: float) -> str:
     return "> 99 %" if rounded == 100 else f"{rounded} %"
 
 
-def counted(count: int, noun: str) -> str:
+def counted(count: int, noun: str, plural: str = "") -> str:
     """A number of things.
 
-    >>> counted(1, "test"), counted(2000, "test")
-    ('1 test', '2,000 tests')
+    >>> counted(1, "test"), counted(2000, "test"), counted(2, "class", "classes")
+    ('1 test', '2,000 tests', '2 classes')
     """
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+    return f"{count:,} {noun if count == 1 else plural or noun + 's'}"
+
+
+def listed(names: Sequence[str], word: str) -> str:
+    """Names as a sentence has them; at least one.
+
+    >>> listed(["a", "b", "c"], "and"), listed(["a"], "or")
+    ('a, b and c', 'a')
+    """
+    *rest, last = names
+    return f"{', '.join(rest)} {word} {last}" if rest else last
 
 
 def share_text(share: float) -> str:

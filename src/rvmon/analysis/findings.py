@@ -16,6 +16,7 @@ from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Una
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
 from rvmon.spec.print import format_duration
 from rvmon.spec.rules import Rule, finding
+from rvmon.texts import listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +137,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
 def _implied(spec: CheckedSpec, found: Implication) -> Diagnostic:
     return finding(
         IMPLIED,
-        f"{found.implied} fails only where {_listed(found.by, 'or')} fails: it adds nothing",
+        f"{found.implied} fails only where {listed(found.by, 'or')} fails: it adds nothing",
         *_places(spec, found.implied, *found.by),
         fix=f"drop {found.implied}, or look whether it was meant otherwise",
     )
@@ -150,7 +151,7 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
         fix = "let it hold for a shorter time, or define what a second trigger means"
     else:
         both = "both" if len(conflict.ids) == 2 else "all"
-        named = _listed(conflict.ids, "and")
+        named = listed(conflict.ids, "and")
         later = ", ".join(_later(conflict))
         when = f", {later}" if later else " at one instant"
         message = f"{named} cannot {both} hold once they are triggered{when}"
@@ -204,11 +205,6 @@ def _later(conflict: Conflict) -> Iterator[str]:
     for name, offset in zip(conflict.ids, conflict.offsets, strict=True):
         if offset:
             yield f"{name} {format_duration(offset)} after {conflict.ids[0]}"
-
-
-def _listed(names: Sequence[str], word: str) -> str:
-    *rest, last = names
-    return f"{', '.join(rest)} {word} {last}" if rest else last
 
 
 def _places(spec: CheckedSpec, *names: str) -> Iterator[Label]:

@@ -22,6 +22,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print import format_formula
+from rvmon.texts import listed
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_instant
 
@@ -126,7 +127,7 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
     unknown = any(hold(seen[part].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
-    return f"{_listed(miss.missing)} {lacking} {while_}"
+    return f"{_either(miss.missing)} {lacking} {while_}"
 
 
 def _apart(
@@ -151,7 +152,7 @@ def _apart(
             word = "never occurred"
         groups.setdefault(word, []).append(part)
     for word, own in groups.items():
-        yield f"{_listed(own)} {word}"
+        yield f"{_either(own)} {word}"
     signals = {part.name for part in parts if isinstance(part, SignalAtom)}
     for name in sorted(valueless.keys() - signals):
         yield f"`{name}` {valueless[name]}"
@@ -167,6 +168,5 @@ def _without_values(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> 
     )
 
 
-def _listed(parts: Sequence[Formula]) -> str:
-    texts = [f"`{format_formula(part)}`" for part in parts]
-    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} or {texts[-1]}"
+def _either(parts: Sequence[Formula]) -> str:
+    return listed([f"`{format_formula(part)}`" for part in parts], "or")

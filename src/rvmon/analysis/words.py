@@ -37,6 +37,7 @@ from rvmon.spec.checked.formula import Literal as NumericLiteral
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.spec.print import format_duration, format_numeric
+from rvmon.texts import counted, listed
 
 _PROBED = {
     Probe.KNOWN: ("is known", "is not known"),
@@ -131,7 +132,7 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return f"{name} {verb} {length}"
         case Binary(op=BinaryOp.AND | BinaryOp.OR as op):
             word = "and" if (op is BinaryOp.AND) is positive else "or"
-            return _listed([_clause(part, positive) for part in _chain(formula, op)], word)
+            return listed([_clause(part, positive) for part in _chain(formula, op)], word)
         case Unary() | Binary():
             return _by_entry(formula, positive)
         case Amount():
@@ -152,7 +153,7 @@ def _amount(formula: Amount, positive: bool) -> str:
     back = back if of.window is None else f"in the last {format_duration(of.window)}"
     back = back if of.most is None else f"at the last {of.most} updates"
     clauses = [_clause(one, True) for one in chosen] or ["time passes"]
-    what = clauses[0] if len(clauses) == 1 else f"({_listed(clauses, 'and')})"
+    what = clauses[0] if len(clauses) == 1 else f"({listed(clauses, 'and')})"
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
     if isinstance(least, int) and of.value is None:
@@ -257,12 +258,6 @@ def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
     return [formula]
 
 
-def _listed(parts: list[str], word: str) -> str:
-    if len(parts) == 2:
-        return f"{parts[0]} {word} {parts[1]}"
-    return f"{', '.join(parts[:-1])} {word} {parts[-1]}"
-
-
 def _clause(formula: Formula, positive: bool) -> str:
     """A formula inside another: in brackets unless it is a plain statement."""
     text = in_words(formula, positive=positive)
@@ -299,9 +294,9 @@ def _judge(compiled: CompiledRequirement, automaton: Automaton | None, *, chaine
             return f"{kind}: its automaton would step each open attempt by itself"
         return f"{kind}: as an automaton it would have {compiled.refusal}"
     return (
-        f"automaton of {_counted(len(automaton.locations), 'location')}, "
-        f"{_counted(automaton.clocks, 'clock')}, "
-        f"{_counted(automaton.classes, 'class', 'classes')} of inputs"
+        f"automaton of {counted(len(automaton.locations), 'location')}, "
+        f"{counted(automaton.clocks, 'clock')}, "
+        f"{counted(automaton.classes, 'class', 'classes')} of inputs"
     )
 
 
@@ -319,7 +314,7 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
         return f"where its parts are known to hold or not, a stretch per change, {span}"
     if compiled.in_runs(automaton):
         return "20 bytes per open attempt, in runs: those that wait alike take one step together"
-    stamps = f", {_counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
+    stamps = f", {counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
     return f"per open attempt its location{stamps}"
 
 
@@ -336,7 +331,3 @@ def _past(compiled: CompiledRequirement) -> str:
     if len(bounds) < len(since):
         return "over all that was"
     return f"over the last {format_duration(sum(bounds) if len(bounds) > 1 else bounds[0])} at most"
-
-
-def _counted(count: int, noun: str, plural: str = "") -> str:
-    return f"{count} {noun if count == 1 else plural or noun + 's'}"

@@ -12,6 +12,7 @@ from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import duration
 from rvmon.cli.reading import add_time
 from rvmon.errors import TraceError, UnknownNameError
+from rvmon.texts import counted
 
 if TYPE_CHECKING:
     from rvmon.timed.conformance.conform import Allowed, Conformance
@@ -117,8 +118,8 @@ def _compare(
     end = length if arguments.until is None else ticks_of_seconds(arguments.until)
     later = sum(action.t > end for action in actions)
     if later:
-        what = "1 later action is" if later == 1 else f"{later} later actions are"
-        warn(f"{path}: {what} not looked at, because of --until")
+        what = "is" if later == 1 else "are"
+        warn(f"{path}: {counted(later, 'later action')} {what} not looked at, because of --until")
     actions = [action for action in actions if action.t <= end]
     return conform(
         network,
@@ -146,7 +147,7 @@ def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozense
 
 
 def _print(path: str, answer: Conformance) -> None:
-    count = f"{answer.explained} action{'' if answer.explained == 1 else 's'} explained"
+    count = f"{counted(answer.explained, 'action')} explained"
     divergence = answer.divergence
     if divergence is None:
         word = f"not decided: {answer.undecided}" if answer.undecided else "conforms"

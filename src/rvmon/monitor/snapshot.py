@@ -9,15 +9,15 @@ from __future__ import annotations
 import hashlib
 import json
 from base64 import b64decode, b64encode
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
-from enum import Enum
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rvmon import native
 from rvmon.errors import SnapshotError
 from rvmon.monitor.planned import PlannedCore
+from rvmon.spec.checked.plain_data import told_apart
 from rvmon.verdict import LAW
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _KIND = b"rvmon snapshot 3"
 
-_LEFT_OUT = ("span", "source", "text", "title", "doc")
+_LEFT_OUT = ("text", "title", "doc")
 """Fields of a specification that do not change what is judged."""
 
 
@@ -155,28 +155,4 @@ def digest_of(compiled: CompiledSpec) -> str:
 
 def digest(checked: CheckedSpec) -> str:
     """A hash of what a specification judges; its layout and its comments are no part of it."""
-    return hashlib.sha256("\n".join(_fingerprint(checked)).encode()).hexdigest()
-
-
-def _fingerprint(value: Any) -> Iterator[str]:
-    """A specification in a form that is the same in every process."""
-    if is_dataclass(value):
-        yield type(value).__name__
-        for field in fields(value):
-            if field.name not in _LEFT_OUT:
-                yield from _fingerprint(getattr(value, field.name))
-    elif isinstance(value, Enum):
-        yield f"{type(value).__name__}.{value.name}"
-    elif isinstance(value, Mapping):
-        yield f"{{{len(value)}"
-        for key, one in value.items():
-            yield repr(key)
-            yield from _fingerprint(one)
-    elif isinstance(value, tuple | list):
-        yield f"[{len(value)}"
-        for one in value:
-            yield from _fingerprint(one)
-    elif isinstance(value, frozenset):
-        yield from sorted(repr(one) for one in value)
-    else:
-        yield repr(value)
+    return hashlib.sha256(told_apart(checked, without=_LEFT_OUT).encode()).hexdigest()

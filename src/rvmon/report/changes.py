@@ -43,9 +43,7 @@ class Course(Sequence[tuple[int, Scalar]]):
         times, values, hidden = self._columns
         if isinstance(place, slice):
             return Course(times[place], values[place], hidden[place])
-        value = values[place]
-        known: Scalar = value.item() if hasattr(value, "item") else value
-        return int(times[place]), None if hidden[place] else known
+        return int(times[place]), None if hidden[place] else _plain(values[place])
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and tuple(self) == tuple(other)

@@ -279,6 +279,11 @@ def _letter(verdict: Verdict | None) -> str:
     return "–" if verdict is None else verdict.value
 
 
+_OF_TEST = (
+    "name campaign strategy recording seed system verdicts expected ending error seconds when"
+)
+
+
 def coverage_data(summary: Summary) -> dict[str, Any]:
     """All that is known, as objects that JSON has."""
     coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
@@ -289,18 +294,7 @@ def coverage_data(summary: Summary) -> dict[str, Any]:
         "illegal": _item_names(summary, summary.illegal),
         "tests": [
             {
-                "name": record.name,
-                "campaign": record.campaign,
-                "strategy": record.strategy,
-                "recording": record.recording,
-                "seed": record.seed,
-                "system": record.system,
-                "verdicts": record.verdicts,
-                "expected": record.expected,
-                "ending": record.ending,
-                "error": record.error,
-                "seconds": record.seconds,
-                "when": record.when,
+                **{name: getattr(record, name) for name in _OF_TEST.split()},
                 "added": _item_names(summary, step.added),
                 "share": step.share,
                 "only_by_it": _item_names(summary, only),

@@ -4,7 +4,7 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.plan import plan
-from rvmon.errors import UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 
 
 def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec):
@@ -60,3 +60,14 @@ def test_a_strategy_that_fails_is_told(campaign, made, told):
     """By its name, with the cause."""
     with pytest.raises(cdv.TestError, match=told):
         plan(campaign(test=cdv.Test, strategies={"s": made}))
+
+
+def test_what_judges_a_robot_is_read_once(campaign, spec):
+    """Whoever asks for it, or for its coverage, gets the same; a robot without any is refused."""
+    made = campaign(robots={"toy": cdv.Robot(object, spec), "bare": cdv.Robot(object, None)})
+    first = made.requirements_of("toy")
+    spec.unlink()
+    assert made.requirements == {"toy": first}
+    assert made.robots["toy"].coverages[0].spec is first.checked
+    with pytest.raises(RvmonError, match="name some by --spec"):
+        made.requirements_of("bare")

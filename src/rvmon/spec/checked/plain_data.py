@@ -6,7 +6,7 @@ Nothing but the classes of a checked specification is made of it, and nothing is
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache, partial
@@ -117,20 +117,25 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
     return made
 
 
-def told_apart(spec: specification.CheckedSpec) -> str:
+def told_apart(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
     """A text that two specifications share if they are equal but for where things stand in files.
 
     It is the same in all processes.
+
+    Args:
+        spec: the specification.
+        without: names of attributes that are passed over.
     """
-    return json.dumps(spec, default=_parts, separators=(",", ":"))
+    return json.dumps(spec, default=partial(_parts, without), separators=(",", ":"))
 
 
-def _parts(value: Any) -> Any:
+def _parts(without: Collection[str], value: Any) -> Any:
     """What something is made of, for a JSON text: one level, which is gone when it is written."""
     own: Any = type(value)
     names = _attributes(own)
     if names is not None:
-        parts = map(partial(getattr, value), names)
+        wanted = [name for name in names if name not in without] if without else names
+        parts = map(partial(getattr, value), wanted)
         return {own.__name__: [None if type(one) in (Source, Span) else one for one in parts]}
     if own is frozenset:
         return sorted(value)

@@ -8,6 +8,7 @@ from math import prod
 from typing import Any, Protocol
 
 from rvmon.diagnostics import Label, Span
+from rvmon.texts import counted
 from rvmon.timed.language import syntax
 from rvmon.timed.model.expressions import Expression, Slot, Variable
 from rvmon.timed.model.operators import BaseType
@@ -166,8 +167,8 @@ def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> N
     """Refuse too few or too many arguments."""
     count = len(parameters)
     if count != len(arguments):
-        message = f"`{name}` takes {count} argument{'' if count == 1 else 's'}"
-        raise model_error("TA015", f"{message}, {len(arguments)} given", span)
+        message = f"`{name}` takes {counted(count, 'argument')}, {len(arguments)} given"
+        raise model_error("TA015", message, span)
 
 
 def claim(name: str, span: Span, scope: Scope) -> None:
