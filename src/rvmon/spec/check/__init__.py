@@ -20,7 +20,7 @@ from rvmon.spec.checked.specification import (
     Type,
 )
 from rvmon.spec.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
-from rvmon.spec.rules import Findings, Refusal, Reported
+from rvmon.spec.rules import Findings
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
@@ -50,16 +50,16 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     if spec.time is not None and spec.time.period is not None:
         period = _positive(checker, spec.time.period, "the period")
     if spec.delay is not None:
-        delay = _duration(checker, spec.delay.delay)
+        delay = checker.collected(checker.duration, spec.delay.delay, EVERYWHERE)
     requirements: dict[str, Requirement] = {}
     goals: dict[str, Cover] = {}
     for name, item in spec.requirements.items():
         check_clauses(checker, item)
         if isinstance(item.body, CoverMonitor):
-            goal = checked_goal(checker, item, item.body.span)
+            goal = checker.collected(checked_goal, checker, item, item.body.span)
             goals.update({} if goal is None else {name: goal})
             continue
-        requirement = checked_requirement(checker, item)
+        requirement = checker.collected(checked_requirement, checker, item)
         if requirement is not None:
             requirements[name] = requirement
     check_unused(checker, spec)
@@ -78,10 +78,11 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         for name, syntax in spec.coverpoints.items()
         if (point := checked_coverpoint(checker, syntax))
     }
+    written = spec.coverpoints
     crosses = {
         name: cross
         for name, syntax in spec.crosses.items()
-        if (cross := checked_cross(checker, syntax, coverpoints, spec.coverpoints))
+        if (cross := checker.collected(checked_cross, checker, syntax, coverpoints, written))
     }
     return CheckedSpec(
         spec.header.name.text if spec.header else "spec",
@@ -170,20 +171,10 @@ def _with_staleness(checker: Checker, signal: Signal, limit: Expression) -> Sign
 
 
 def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
-    ticks = _duration(checker, expression)
+    ticks = checker.collected(checker.duration, expression, EVERYWHERE)
     if ticks == 0:
         checker.report(time_rules.not_positive(expression.span, what))
     return ticks
-
-
-def _duration(checker: Checker, expression: Expression) -> int | None:
-    try:
-        return checker.duration(expression, EVERYWHERE)
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-    except Reported:
-        pass
-    return None
 
 
 def check_unused(checker: Checker, spec: ResolvedSpec) -> None:

@@ -58,23 +58,19 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
         if value is None:
             return None
     first: dict[str, items.BinSyntax] = {}
-    bins: list[Bin] = []
-    wrong = False
-    for syntax in item.bins:
+
+    def made(syntax: items.BinSyntax) -> Bin:
         earlier = first.setdefault(syntax.name.text, syntax)
-        try:
-            if earlier is not syntax:
-                places = syntax.name.span, earlier.name.span
-                raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
-            formula = present(_bin_formula(checker, item.expression, value, syntax))
-            if _is_empty(formula, value):
-                checker.report(rules.empty_bin(syntax.span))
-            bins.append(Bin(syntax.name.text, formula, syntax.kind, syntax.span))
-        except Refusal as refusal:
-            checker.report(refusal.finding)
-            wrong = True
-        except Reported:
-            wrong = True
+        if earlier is not syntax:
+            places = syntax.name.span, earlier.name.span
+            raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
+        formula = present(_bin_formula(checker, item.expression, value, syntax))
+        if _is_empty(formula, value):
+            checker.report(rules.empty_bin(syntax.span))
+        return Bin(syntax.name.text, formula, syntax.kind, syntax.span)
+
+    bins = [one for syntax in item.bins if (one := checker.collected(made, syntax)) is not None]
+    wrong = len(bins) < len(item.bins)
     found = _clauses(checker, item.clauses)
     for clause in item.clauses:
         if isinstance(clause, items.UnwantedClause):
@@ -90,40 +86,38 @@ def checked_cross(
     item: items.CrossItem,
     points: Mapping[str, Coverpoint],
     declared: Mapping[str, items.CoverpointItem],
-) -> Cross | None:
-    """Check a cross; `None` if it is wrong, and then that is reported."""
+) -> Cross:
+    """Check a cross.
+
+    Raises:
+        Refusal: it is wrong.
+        Reported: it is wrong, and that is recorded.
+    """
     names = [point.text for point in item.points]
-    try:
-        for number, point in enumerate(item.points):
-            if point.text in names[:number]:
-                raise Refusal(rules.same_point(point.span, point.text))
-            if point.text not in declared:
-                raise Refusal(rules.no_coverpoint(point.span, point.text, list(declared)))
-            if point.text not in points:
-                raise Reported
-        bins = [[bin_.name for bin_ in points[name].bins] for name in names]
-        combinations = prod(map(len, bins))
-        if combinations > rules.MOST_COMBINATIONS:
-            raise Refusal(rules.too_many_combinations(item.span, combinations))
-        checker.effort.spend(combinations * len(item.clauses), item.span)
-        unwanted = {
-            kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
-            for kind in (BinKind.IGNORE, BinKind.ILLEGAL)
-        }
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-        return None
-    except Reported:
-        return None
+    for number, point in enumerate(item.points):
+        if point.text in names[:number]:
+            raise Refusal(rules.same_point(point.span, point.text))
+        if point.text not in declared:
+            raise Refusal(rules.no_coverpoint(point.span, point.text, list(declared)))
+        if point.text not in points:
+            raise Reported
+    bins = [[bin_.name for bin_ in points[name].bins] for name in names]
+    combinations = prod(map(len, bins))
+    if combinations > rules.MOST_COMBINATIONS:
+        raise Refusal(rules.too_many_combinations(item.span, combinations))
+    checker.effort.spend(combinations * len(item.clauses), item.span)
+    unwanted = {
+        kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
+        for kind in (BinKind.IGNORE, BinKind.ILLEGAL)
+    }
     found = _clauses(checker, item.clauses)
     if found is None:
-        return None
+        raise Reported
     upon, goal, weight = found
     if upon is None:
         sampled = [one for name in names if (one := points[name].upon) is not None]
         if not all(_alike(one, sampled[0]) for one in sampled):
-            checker.report(rules.sampled_apart(item.span))
-            return None
+            raise Refusal(rules.sampled_apart(item.span))
         upon = sampled[0] if sampled else None
     ignored, illegal = unwanted[BinKind.IGNORE], unwanted[BinKind.ILLEGAL]
     return Cross(item.name.text, tuple(names), ignored, illegal, upon, goal, weight, item.span)
@@ -295,11 +289,7 @@ def _clauses(
         match clause:
             case items.SampledClause(trigger=trigger):
                 upon = checker.top(trigger, EVERYWHERE)
-                try:
-                    upon = None if upon is None else present(upon)
-                except Refusal as refusal:
-                    checker.report(refusal.finding)
-                    upon = None
+                upon = None if upon is None else checker.collected(present, upon)
                 if upon is None:
                     return None
             case items.GoalClause(count=count):

@@ -217,15 +217,9 @@ def checked_property(
         if close and "." not in part.text:
             checker.report(rules.foreign_name(part.span, part.text, close))
     names = frozenset(part.text for part in foreign)
-    try:
-        formula = _state(checker, expression, names)
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-        return None
-    except Reported:
-        return None
+    formula = checker.collected(_state, checker, expression, names)
     span = expression.span
-    return Property(name, span.text, formula, span)
+    return None if formula is None else Property(name, span.text, formula, span)
 
 
 def _foreign(checker: Checker, expression: expressions.Expression) -> list[expressions.Name]:
@@ -336,18 +330,17 @@ def property_of(checker: Checker, item: RequirementItem) -> Property | None:
     return None
 
 
-def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover | None:
-    """Check what is monitored as a cover goal; `None` if it is wrong, and then that is reported."""
-    try:
-        for clause in item.clauses:
-            if not isinstance(clause, PropertyClause | TextClause | TagsClause):
-                raise Refusal(rules.not_of_a_goal(clause.span))
-        ctl = property_of(checker, item)
-        if ctl is None:
-            raise Refusal(rules.no_goal(span))
-        return Cover(item.name.text, shown_form(ctl, span, checker.table.time), item.span, ctl)
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-    except Reported:
-        pass
-    return None
+def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover:
+    """Check what is monitored as a cover goal.
+
+    Raises:
+        Refusal: it is wrong.
+        Reported: it is wrong, and that is recorded.
+    """
+    for clause in item.clauses:
+        if not isinstance(clause, PropertyClause | TextClause | TagsClause):
+            raise Refusal(rules.not_of_a_goal(clause.span))
+    ctl = property_of(checker, item)
+    if ctl is None:
+        raise Refusal(rules.no_goal(span))
+    return Cover(item.name.text, shown_form(ctl, span, checker.table.time), item.span, ctl)

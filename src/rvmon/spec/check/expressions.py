@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import assert_never
+from collections.abc import Callable, Sequence
+from typing import ParamSpec, TypeVar, assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.spec.check.bounds import bound_of, bounded_infix, bounded_prefix
@@ -67,6 +67,9 @@ from rvmon.spec.syntax.size_limits import Cost, Effort
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 NOW = "now"
 """What is said of the time since the first instant; a name that is declared goes before."""
 
@@ -99,8 +102,12 @@ class Checker:
     def top(self, expression: Expression, scope: Scope) -> Formula | None:
         """A whole formula, or `None` if it is wrong."""
         self.effort.begin()
+        return self.collected(self.formula, expression, scope)
+
+    def collected(self, make: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
+        """What is made of something, or `None` if that is refused, and then it is recorded."""
         try:
-            return self.formula(expression, scope)
+            return make(*args, **kwargs)
         except Refusal as refusal:
             self.report(refusal.finding)
         except Reported:

@@ -90,24 +90,23 @@ Parts = tuple[Mode, Formula, Formula]
 """Mode, trigger and consequent."""
 
 
-def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
-    """Check a requirement; `None` if it is wrong, and then that is reported."""
+def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
+    """Check a requirement.
+
+    Raises:
+        Refusal: it is wrong.
+        Reported: it is wrong, and that is recorded.
+    """
     policy = _policy(checker, item)
     share = _run_share(checker, item)
-    try:
-        for_each, outer = _instances(checker, item)
-        captures, inner = _captures(checker, item, outer)
-        ctl = property_of(checker, item)
-        trigger = AtTrigger()
-        parts = _parts(checker, item, outer, replace(inner, trigger=trigger), ctl)
-        mode, when, consequent = _scoped(checker, item, outer, parts)
-        if for_each is not None:
-            _refuse_fields_in_sums((when, consequent), item.span)
-    except Refusal as refusal:
-        checker.report(refusal.finding)
-        return None
-    except Reported:
-        return None
+    for_each, outer = _instances(checker, item)
+    captures, inner = _captures(checker, item, outer)
+    ctl = property_of(checker, item)
+    trigger = AtTrigger()
+    parts = _parts(checker, item, outer, replace(inner, trigger=trigger), ctl)
+    mode, when, consequent = _scoped(checker, item, outer, parts)
+    if for_each is not None:
+        _refuse_fields_in_sums((when, consequent), item.span)
     _warn_of_traps(checker, item, parts, captures)
     texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
     scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
