@@ -115,6 +115,19 @@ def test_the_terminal_fits_two_screens(capsys):
     ]
 
 
+def test_directed_tests_say_which_others_failed(demo):
+    """A column for the paper's requirements; of the many others those that are to be looked at."""
+    page = (demo / "report.html").read_text()
+    section = page[page.index("<h2>Correct robot: directed tests</h2>") :]
+    heads = re.findall(r"<th>(.*?)</th>", section[: section.index("</thead>")])
+    others = "others that failed, or are open"
+    assert heads == ["test", "purpose", "planted fault", "R1", "R2", "R3", "R4", "R5", others]
+    row = section[section.index(">mutant-hurries<") :].partition("</tr>")[0]
+    assert 'T14 <a href="runs/correct-mutant-hurries.html#T14">F' in row
+    released = section[section.index(">released<") :].partition("</tr>")[0]
+    assert "T1" not in released
+
+
 def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
     """To the protocol and the readings; the smallest test finds the fault again."""
     test = demo / "tests/mutant-releases-late.json"
