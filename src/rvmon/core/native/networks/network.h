@@ -1,10 +1,28 @@
-/* Networks as judges: what their files share. */
+/* Delay networks: judge what has no automaton (nests of bounded windows, mostly).
+ *
+ * A network has a node per operator of the formula. Each knows at which *positions* it is TRUE and at
+ * which it is FALSE, as sets of ranges; what it does not know yet depends on letters or time to come.
+ * A step tells how far time (`now`) and letters (`last`) have come, and each node derives from its
+ * operands' *news*, the ranges that the step made known, its own. One network serves all attempts of a
+ * judge: an attempt is a position, decided when the root is known there. A step costs what it makes
+ * known, in ranges, not in positions.
+ *
+ * Knowledge is a function of (now, last) alone. So a step can be undone, and the first instant at
+ * which something became known is found by smaller steps (network_search.c).
+ *
+ * Positions: with a clock (gap > 0) instant / gap, so ticks with gap 1; where only samples are
+ * positions the numbers of samples, from 0. From the first unknown letter on there are two networks,
+ * `readings`: the unknown taken for the worse and for the better.
+ *
+ * Source: Basin, Klaedtke, Zalinescu (2011); docs/explanation/automata.md, section 4. */
 #ifndef RVMON_NETWORK_H
 #define RVMON_NETWORK_H
 
 #include "attempts/attempts.h"
 
 /* ---- network_nodes.c, network_state.c: what is known of a formula */
+
+/* A formula of the plan, with what its network needs of the run. */
 typedef struct {
     const plan *plan;
     const form_plan *form;
@@ -30,7 +48,7 @@ void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
 void prune(const form *f, network *w, int64_t position);
 
-/* ---- network_search.c: the first instant at which something new of a formula can be known, or before */
+/* ---- network_search.c: a lower bound of the instant at which something new of a formula is known */
 int64_t earliest_change(const form *f, networks *net, int32_t reading);
 
 /* ---- network_judge.c: attempts that a network judges */
@@ -43,7 +61,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
 void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
 
-/* A judge with its network. */
+/* A judge with its networks. */
 typedef struct {
     run *r;
     judge *j;
@@ -58,14 +76,14 @@ static inline bool is_spoilt(const judging *g)
     return g->f.monitor->spoilt;
 }
 
-/* How many networks there are at present. */
+/* How many readings there are at present. */
 static inline int32_t readings(const judging *g)
 {
     return g->net->parted ? 2 : 1;
 }
 
-/* Whether nothing more is asked of a judge: memory was short, what its networks hold may be torn, or
- * there are none. */
+/* Whether a judge has to be left alone: memory was short, so that its networks are missing, or hold
+ * half a step. */
 static inline bool is_given_up(judging *g)
 {
     if ((g->net == NULL) || is_spoilt(g)) {
@@ -81,6 +99,7 @@ static inline attempt *attempt_of(const judging *g, int32_t at)
     return attempt_at(g->r->home, at);
 }
 
+/* The position at which an attempt began; networks keep it in place of a clock. */
 static inline int64_t position_of(const attempt *x)
 {
     return x->clocks[0];
@@ -119,7 +138,7 @@ bool judge_attempt(judging *g, int32_t at, int64_t t);
 int64_t decided_position(const judging *g);
 void judge_news(judging *g, int64_t t);
 
-/* Ranges of positions, in order, none touching another. */
+/* ---- network_state.c: sets of positions as ranges, sorted, with gaps between them */
 int32_t range_from(const ranges *r, int64_t position);
 int32_t range_around(const ranges *r, int64_t position);
 int64_t last_up_to(const ranges *r, int64_t position);

@@ -1,14 +1,17 @@
-/* Attempts that a delay network judges: each is a position of it, and the network is shared by all
- * attempts of a judge. From the first unknown letter on there are two, the unknown taken for the worse
- * and for the better. */
+/* A judge whose formula is a delay network (network.h): letters, time, attempts, the end.
+ *
+ * Where a letter stays (gap > 0) the network is not stepped at each position. The judge is due at a
+ * lower bound of its next decision (earliest_change); when that comes, one step runs ahead as if the
+ * letter stayed, the exact instant of the next decision is searched, and the step is undone until that
+ * instant or another letter comes. */
 #include "networks/network.h"
 
 #include <string.h>
 
-/* A letter is taken to stay so many times as long as it has: what would be decided then is looked up
- * once, and not at each position until it is another one. */
+/* How far to look ahead: a letter is expected to stay so many times as long as it has so far. So the
+ * number of searches is logarithmic in how long it does, at little cost where it changes soon. */
 #define STAYS 16
-/* Letters after which what nobody can ask for is dropped. */
+/* Letters between two prunings, whose cost they share. */
 #define TIDY_EVERY 8
 
 bool is_networked(const run *r, int32_t index)
@@ -45,7 +48,7 @@ judging judging_of(run *r, int32_t index)
     return g;
 }
 
-/* The networks of a form, made when they are used first; NULL: memory is short. */
+/* New networks for a formula; NULL: memory is short. A judge has them made at its first letter. */
 networks *made_networks(const form *f)
 {
     const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
@@ -68,7 +71,7 @@ networks *made_networks(const form *f)
     return made;
 }
 
-/* Whether the letter that stays is another for the better than for the worse. */
+/* Whether some leaf of the letter is unknown: true for the better only. */
 static bool parts(const judging *g)
 {
     int32_t i;
@@ -80,7 +83,8 @@ static bool parts(const judging *g)
     return false;
 }
 
-/* Tidy up now and then. The networks may still have to be told of the letter up to here. */
+/* Prune now and then, and go back to one reading where both agree. Letters up to `position` may still
+ * be to be stepped. */
 static void prune_sometimes(judging *g, int64_t position)
 {
     const int32_t at = g->j->first;
@@ -99,7 +103,7 @@ static void prune_sometimes(judging *g, int64_t position)
     }
 }
 
-/* The instant from `now` on before which nothing is decided if the letter stays. */
+/* The instant, `now` or later, before which nothing is decided if the letter stays. */
 int64_t earliest(const judging *g, int64_t now)
 {
     int64_t found = NEVER;
@@ -110,7 +114,7 @@ int64_t earliest(const judging *g, int64_t now)
     return (found > now) ? found : now;
 }
 
-/* How far a letter is looked ahead for. */
+/* Up to which instant to look ahead. */
 static int64_t ahead_of(const judging *g, int64_t now)
 {
     const int64_t stayed = now - g->j->position;
@@ -120,8 +124,8 @@ static int64_t ahead_of(const judging *g, int64_t now)
     return (stayed < LIMIT / (2 * STAYS)) ? least(now + STAYS * stayed, LIMIT - 1) : LIMIT - 1;
 }
 
-/* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
- * `until`; the networks stay where they are. */
+/* Set a judge due at the next instant up to `until` at which an attempt is decided if the letter stays,
+ * else behind `until`. The networks are not changed. */
 static void foresee(judging *g, int64_t until)
 {
     const int64_t decided = step_to_decision(g, until, last_at(g, until));
@@ -129,8 +133,8 @@ static void foresee(judging *g, int64_t until)
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
 
-/* Have a judge that may decide something by `now` due at the instant at which it does, if the letter
- * stays. */
+/* The same for a judge that is due by `now`: its exact instant matters where a failure starts another
+ * attempt (clock.c). */
 void network_foresee(run *r, int32_t index, int64_t now)
 {
     judging g = judging_of(r, index);
@@ -139,11 +143,11 @@ void network_foresee(run *r, int32_t index, int64_t now)
     }
 }
 
-/* Let time come to `now`, and the letter to positions up to `last`; attempts are decided meanwhile. If the
- * letter is known up to `now` it is looked ahead for until later. */
+/* Let time come to `now`, with the letter as it is for positions up to `last`, and decide attempts on
+ * the way, each at its instant. If letters are known up to `now`, look ahead to `until` at once. */
 static void pass(judging *g, int64_t now, int64_t last, int64_t until)
 {
-    const bool complete = last == last_at(g, now); /* else the position there is still to come */
+    const bool complete = last == last_at(g, now); /* else the letter at `now` is still to be read */
     if ((g->f.gap > 0) && complete) {
         const int64_t due = earliest(g, now);
         if (due > now) {
@@ -164,6 +168,7 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
     set_due(g, NEVER);
 }
 
+/* Let time come to `now`; `is_position`: the letter stays up to there, else it is unknown at `now`. */
 void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
@@ -173,8 +178,9 @@ void network_pass(run *r, int32_t index, int64_t now, bool is_position)
     }
 }
 
-/* Leave what is decided by `until` to the visit that follows: it finds when that was. It does not where
- * an attempt may begin meanwhile, as the one of the episode that runs fails. */
+/* Put off what is decided by `until` to the visit behind it, which finds the instants all the same: a
+ * search less. Not where a failure may start another attempt of the running episode before that. `lag`
+ * remembers how long before the new due instant something may have been decided. */
 void network_put_off(run *r, int32_t index, int64_t until)
 {
     judge *j = &r->judges[index];
@@ -186,7 +192,8 @@ void network_put_off(run *r, int32_t index, int64_t until)
     }
 }
 
-/* Take the letters; tells whether they are others. */
+/* Read the leaves of a form into `next_leaf`; returns whether they differ from `leaf`. `parted` is set
+ * if one is unknown. */
 bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
 {
     bool changed = false;
@@ -204,14 +211,14 @@ bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
     return changed;
 }
 
-/* Have the letters that were read stay. */
+/* From here on the letter is the one that was read. */
 static void adopt_next_letter(judging *g)
 {
     (void)memcpy(g->net->leaf, g->net->next_leaf, (size_t)g->f.form->leaves);
     g->net->turn = NEVER;
 }
 
-/* Come to the position at `t`, at which the truths are. */
+/* Visit the position at `t`, whose truths the nodes have. */
 static void come_to(judging *g, int64_t t)
 {
     network *w = &g->net->readings[0];
@@ -253,7 +260,7 @@ static void come_to(judging *g, int64_t t)
     g->net->turn = position;
     learn_all(g, t, position);
     if ((due_of(g) - g->j->lag < t) && (decided_position(g) < NEVER)) {
-        /* See first what was decided by the letter that was. */
+        /* Something may have been decided before `t`, by the letter of before: undo, and find that. */
         unlearn_all(g);
         g->net->turn = NEVER;
         pass(g, t - 1, position - 1, t - 1);
@@ -277,7 +284,7 @@ void network_come_to(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Let an attempt begin at the position at `t`, at which the letter is. */
+/* Start an attempt at `t`, whose letter was read; false: it is decided. */
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judging g = judging_of(r, index);
@@ -293,18 +300,20 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
     return judge_attempt(&g, at, t);
 }
 
-/* Apply the rule for the end of a trace, when time has come to `reached`. */
+/* The trace ends at `end`, and time has come to `reached`: a last step decides what time alone does,
+ * and a further one of the worse reading applies the rule for the end (`closed`). */
 void network_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     judging g = judging_of(r, index);
     if ((g.j->first >= 0) && !is_given_up(&g)) {
         learn_all(&g, reached, last_at(&g, end));
-        judge_news(&g, reached); /* who stays open for good */
+        judge_news(&g, reached); /* before the rule for the end, which decides no attempt */
         g.net->readings[0].closed = end;
         learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
     }
 }
 
+/* Whether an open attempt is TRUE by the rule for the end of the trace; after network_close(). */
 bool network_outlasts(run *r, int32_t index, const attempt *x)
 {
     const judging g = judging_of(r, index);

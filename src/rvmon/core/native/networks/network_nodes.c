@@ -1,18 +1,24 @@
-/* What is known of each part of a formula at each position.
+/* Nodes of a delay network (network.h): one update function per operator, and the step over all.
  *
- * A step says how far time and letters have come; each node takes from its operands what is new of
- * them. What is known depends on that alone, not on the steps that led there: so a step can be taken
- * back, and when something was known first is found by smaller steps. */
+ * Operators come in dual pairs, told apart by `turned`: `and`, G, and the dual of `until` have it. So
+ * `turned ^ 1` is the value that one operand, or one position of a window, decides alone, and `turned`
+ * the value that needs all of them.
+ *
+ * An update function is called once per step, operands first, and has to add exactly what this step
+ * made known: from news of the operands, and, where time or new positions matter, from the stretch
+ * between `was_now` and `now`, or `was_last` and `last`. Ranges that were known already are skipped by
+ * add_known(). */
 #include "networks/network.h"
 
-/* The instant of a clock's position, within the bounds of time. */
+/* The instant of a clock's position, clamped to +-LIMIT. */
 static int64_t ticks_of(int64_t position, int64_t step)
 {
     const int64_t most = positions_within(step);
     return (position >= most) ? LIMIT : ((position <= -most) ? -LIMIT : position * step);
 }
 
-/* Where positions are samples they count from 0, and these are kept by instant. */
+/* The instant of a position. Of a sample it is looked up; behind the last one each later position is a
+ * tick further, as early as it can be; samples that were dropped are long ago. */
 int64_t instant_of(const form *f, const network *w, int64_t position)
 {
     int64_t t = -LIMIT;
@@ -23,12 +29,12 @@ int64_t instant_of(const form *f, const network *w, int64_t position)
     } else if (position >= w->oldest) {
         t = w->samples.at[w->samples.first + (int32_t)(position - w->oldest)].last;
     } else {
-        /* Long ago. */
+        /* Dropped: -LIMIT. */
     }
     return t;
 }
 
-/* The last position not behind an instant. */
+/* The last position at or before an instant. */
 int64_t position_by(const form *f, const network *w, int64_t t)
 {
     if (f->gap > 0) {
@@ -37,7 +43,8 @@ int64_t position_by(const form *f, const network *w, int64_t t)
     return w->oldest + (range_from(&w->samples, t + 1) - w->samples.first) - 1;
 }
 
-/* The first position so far behind another, or the last one that is not farther. */
+/* The first position at least `distance` behind another (before it if negative): ticks, or positions of
+ * a clock. up_to(): the last position at most so far behind. */
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance)
 {
     return (f->gap > 0) ? moved(position, distance)
@@ -50,19 +57,21 @@ int64_t up_to(const form *f, const network *w, int64_t position, int64_t distanc
                      : position_by(f, w, moved(instant_of(f, w, position), distance));
 }
 
+/* Whether a node is known to have a value at a position. */
 bool knows(const operator_state *o, uint8_t value, int64_t position)
 {
     return range_around(&o->known[value], position) >= 0;
 }
 
-/* Take it that a node has a value at some positions, of which some may be known. */
+/* Add [first, last] to what a node knows to have a value, and to its news, except for positions that it
+ * knows already, or that nobody asks for (before `base`). */
 void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
 {
     ranges *known = &o->known[value];
     ranges *news = &o->news[value];
     int64_t at = (first > o->base) ? first : o->base;
     if ((at <= last) && (known->first < known->end) && (known->at[known->end - 1].last + 1 == at)) {
-        known->at[known->end - 1].last = last; /* as mostly */
+        known->at[known->end - 1].last = last; /* the usual case: extend the last range */
         ranges_put(f->monitor, news, news->end, at, last);
         return;
     }
@@ -82,9 +91,9 @@ void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, i
     }
 }
 
-/* Tell of those of some positions at which all operands of a junction have a value. */
-static void add_where_all(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
-                 const range *on)
+/* Add the positions of a range at which all operands of a junction have a value. */
+static void add_where_all(const form *f, const network *w, const operator_plan *n, operator_state *o,
+                          uint8_t value, const range *on)
 {
     const int32_t *operands = LIST(f->plan, n->operands);
     int64_t at = on->first;
@@ -109,6 +118,7 @@ static void add_where_all(const form *f, const network *w, const operator_plan *
     }
 }
 
+/* JUNCTION: `and`, `or` of any number of operands. */
 static void update_junction(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const int32_t *operands = LIST(f->plan, n->operands);
@@ -129,14 +139,15 @@ static void update_junction(const form *f, const network *w, const operator_plan
     }
 }
 
-/* Tell of the windows, from one to another, that have one of some positions. */
-static void add_windows_with(const form *f, const network *w, const operator_plan *n, operator_state *o, const range *found,
-                   int64_t first, int64_t last)
+/* Add the positions in [first, last] whose window has one of the positions `found`, at which the
+ * operand has the value that decides alone. */
+static void add_windows_with(const form *f, const network *w, const operator_plan *n,
+                             operator_state *o, const range *found, int64_t first, int64_t last)
 {
     const uint8_t some = (uint8_t)(n->turned ^ 1);
-    /* A window in which no tick of a clock lies has none of them. */
+    /* low > high: no tick of the clock lies in the window, so it has none of them. */
     int64_t position = (n->low <= n->high) ? found->first : found->last + 1;
-    /* Those of samples may lie apart. */
+    /* Samples may be further apart than a window is wide: then not all positions between are in one. */
     const int64_t step = (f->gap > 0) ? found->last - found->first + 1 : 1;
     while (position <= found->last) {
         const int64_t start = from_on(f, w, position, -n->high);
@@ -146,10 +157,11 @@ static void add_windows_with(const form *f, const network *w, const operator_pla
     }
 }
 
-/* Tell of the windows, from one to another, of which all positions have a value; none comes to lie in
- * them any more. */
-static void add_windows_filled(const form *f, const network *w, const operator_plan *n, operator_state *o, int64_t begin,
-                    int64_t last)
+/* Add the positions in [begin, last] at whose window, which is complete, the operand has the value that
+ * needs all positions; an empty window has it. Goes from window to window, or jumps over those that one
+ * position without the value is in. */
+static void add_windows_filled(const form *f, const network *w, const operator_plan *n,
+                               operator_state *o, int64_t begin, int64_t last)
 {
     const ranges *known = &w->nodes[n->left].known[n->turned];
     int64_t at = (begin > o->base) ? begin : o->base;
@@ -171,12 +183,12 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
                 until = (known->at[i].last >= w->last)
                     ? last : up_to(f, w, known->at[i].last + 1, -n->high - 1);
             } else if ((f->gap > 0) || ((n->low <= 0) && (n->high >= 0))) {
-                /* None is empty: the next one begins behind the last that is not known. */
+                /* No window is empty: go to the first one that begins behind what is not known. */
                 i += begun ? 1 : 0;
                 until = from_on(f, w, (i < known->end) ? known->at[i].first - 1 : w->last,
                                 1 - n->low) - 1;
             } else {
-                /* The next one. */
+                /* Windows between samples may be empty: try the next one. */
             }
         }
         if (all) {
@@ -186,7 +198,8 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
     }
 }
 
-/* A window: some position decides, or all do together. */
+/* WINDOW: F or G over [low, high], of the future (`over` >= 0: ticks until it is complete) or the past.
+ * `front`: the last position whose window is complete now, `before`: at the last step. */
 static void update_window(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
@@ -199,10 +212,10 @@ static void update_window(const form *f, const network *w, const operator_plan *
         add_windows_with(f, w, n, o, &news->at[i], w->first, w->last);
     }
     if (past && (w->was_last < w->last)) {
-        /* What was known before is in the windows of positions that have come. */
+        /* The past: windows of new positions also reach back to what was known before. */
         const ranges *known = &operand->known[(uint8_t)(n->turned ^ 1)];
         const int64_t begin = from_on(f, w, w->was_last + 1, n->low);
-        /* What is taken of a `since` before the first position is in none. */
+        /* Before the first position there are none, though a `since` below says something of them. */
         const int64_t first = (begin > w->first) ? begin : w->first;
         const int64_t last = up_to(f, w, w->last, n->high);
         for (i = range_from(known, first); (i < known->end) && (known->at[i].first <= last); i++) {
@@ -220,12 +233,14 @@ static void update_window(const form *f, const network *w, const operator_plan *
     add_windows_filled(f, w, n, o, before + 1, front);
 }
 
-/* Tell of the positions that stand at one of some others, so far ahead or back. */
-static void add_shifted(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
-                  const range *found)
+/* Add the positions whose shifted position is in `found`. Of samples the shift goes to the first one at
+ * least `low` ahead, or the last one at least -low back. */
+static void add_shifted(const form *f, const network *w, const operator_plan *n, operator_state *o,
+                        uint8_t value, const range *found)
 {
     if (n->low >= 0) {
-        add_known(f, o, value, from_on(f, w, found->first - 1, 1 - n->low), up_to(f, w, found->last, -n->low));
+        add_known(f, o, value, from_on(f, w, found->first - 1, 1 - n->low),
+                  up_to(f, w, found->last, -n->low));
     } else {
         const bool ends = (f->gap == 0) && (found->last >= w->last);
         add_known(f, o, value, from_on(f, w, found->first, -n->low),
@@ -233,6 +248,8 @@ static void add_shifted(const form *f, const network *w, const operator_plan *n,
     }
 }
 
+/* SHIFT: the operand so far ahead, or back. One that the end of the trace cuts off counts as TRUE if
+ * `kept`. */
 static void update_shift(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
@@ -258,8 +275,8 @@ static void update_shift(const form *f, const network *w, const operator_plan *n
     }
 }
 
-/* Let time come to `now`, and the letters of `reading` to the positions up to `last`: from `turn` on
- * it is the next one. */
+/* One step of a reading: time comes to `now`, and letters are known for positions up to `last`. Leaves
+ * have the letter `leaf` up to the position before `turn`, and `next_leaf` from there on. */
 void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last)
 {
     network *w = &net->readings[reading];
@@ -289,7 +306,7 @@ void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t l
     }
 }
 
-/* Take the last step back. */
+/* Undo the last step, by its news. Only one step can be undone. */
 void unlearn(const form *f, network *w)
 {
     int32_t i;

@@ -1,10 +1,15 @@
-/* When something was decided by what a network knows: what is known depends on time and letters alone, so
- * a step is taken back and smaller ones are tried. */
+/* When a network decides attempts: the exact first instant, and a bound before which it cannot.
+ *
+ * A step may jump over many instants at each of which attempts were decided. What is known depends on
+ * (now, last) alone and only grows, so the step is undone, and the first instant at which an attempt
+ * is decided is searched by halving, with guesses first, which mostly hit. The bound (earliest_change)
+ * says how long no search is needed at all. */
 #include "networks/network.h"
 
-/* Instants that are tried at most before a search halves what is left. */
+/* Guesses per search; then it halves, so that a bad guess costs a bounded number of steps. */
 #define GUESSES 16
 
+/* One step of all readings; undone by unlearn_all(). */
 void learn_all(judging *g, int64_t now, int64_t last)
 {
     int32_t i;
@@ -21,16 +26,18 @@ void unlearn_all(judging *g)
     }
 }
 
-/* The last position of which the letter is known behind an instant. */
+/* The last position whose letter is known at an instant, if letters are read up to it. */
 int64_t last_at(const judging *g, int64_t t)
 {
     return (g->f.gap > 0) ? floored(t, g->f.step) : g->net->readings[0].last;
 }
 
-/* Guess when it was that a position of the formula became known, or what made it so, by `high`; what
- * is likely comes last.
+/* Guess the instant at which `position` of the root became known, by a step to `high`; guesses into
+ * `found`, the likeliest last. Returns how many.
  *
- * What is new of a node goes up to a front, which moves with time, or did so till now. */
+ * What a step makes known of a node is mostly a range that grew with time, up to a front: then a
+ * position became known as long before `high` as it lies before the front. Or a window was complete:
+ * then it did so as the window was over. */
 static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *found)
 {
     const int32_t operators = g->f.form->operators.count;
@@ -63,8 +70,9 @@ static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *
     return count;
 }
 
-/* Let time come to `now`, and the letter to positions up to `last`; but not behind the first instant
- * at which an attempt is decided. Returns that; NEVER: none is. */
+/* Step to (now, last), but no further than the first instant at which an attempt is decided. Returns
+ * that instant, NEVER: none is. Invariant of the search: nothing is decided at `low`, something is at
+ * `high`. `lag`: decisions may have been put off from so long before the judge was due. */
 int64_t step_to_decision(judging *g, int64_t now, int64_t last)
 {
     int64_t found[GUESSES];
@@ -77,7 +85,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
     learn_all(g, now, last);
     one = decided_position(g);
     if ((one == NEVER) || is_spoilt(g)) {
-        return NEVER; /* what did not fit is not known: nothing is found by steps */
+        return NEVER; /* memory was short: knowledge is incomplete, and steps do not add up */
     }
     if (high - low > 1) {
         count = guess(g, one, high, found);
@@ -104,7 +112,7 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
             if (count == GUESSES) {
                 count--;
             }
-            found[count] = high - 1; /* it may be exact */
+            found[count] = high - 1; /* is the last guess exact? then this one ends the search */
             count++;
         }
     }
@@ -115,19 +123,20 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
     return is_spoilt(g) ? NEVER : high;
 }
 
-/* How soon something new can become known of a formula if its letter stays: what cannot be decided before
- * is not looked for. It need not be so soon; that nothing is known sooner is certain.
+/* ---- a lower bound: if the letter stays, nothing new of the root is known before earliest_change()
  *
- * What is new of an operator lies from its `base` on, the first position that is not known. */
+ * Per operator and value, `earliest` bounds when news of that value can come; it is computed operands
+ * first, O(operators). News concern positions from `base` on, the first that is not known. */
 
-/* Whether a value is known somewhere from a position on. */
+/* Whether a value is known at some position at or behind another. */
 static bool has_from(const operator_state *o, uint8_t value, int64_t position)
 {
     const ranges *known = &o->known[value];
     return (known->first < known->end) && (known->at[known->end - 1].last >= position);
 }
 
-/* The first instant at which an operator can be known to have a value somewhere from a position on. */
+/* When an operator can have a value somewhere from a position on: now, if it is known to; else when
+ * there can be news. */
 static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
 {
     return has_from(o, value, position) ? now : o->earliest[value];
@@ -156,14 +165,13 @@ static void earliest_of_window(const form *f, network *w, const operator_plan *n
     const int64_t over = moved(instant_of(f, w, o->base), n->over);
     o->earliest[all] = (over > w->now) ? over : w->now;
     o->earliest[all ^ 1U] = operand->earliest[all ^ 1U];
-    if ((f->gap == 1) && (n->low <= n->high)) { /* none is empty */
+    if ((f->gap == 1) && (n->low <= n->high)) { /* no window is empty: the operand has to be known */
         const int64_t met = earliest_from(operand, all, moved(o->base, n->low), w->now);
         o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
     }
 }
 
-/* `left until right`: what is new of it comes of something new on its right, or leads to what was met
- * there; where it fails both have to. */
+/* `left until right` becomes yes only where right is (or was); it becomes no only where both are. */
 static void earliest_of_until(network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *left = &w->nodes[n->left];
@@ -187,7 +195,7 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
         o->earliest[0] = w->now;
         o->earliest[1] = w->now;
         if (n->kind == OP_LEAF) {
-            const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U;
+            const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U; /* the letter stays */
             o->earliest[other] = NEVER;
         } else if (n->kind == OP_JUNCTION) {
             earliest_of_junction(f, w, n, o);
@@ -199,16 +207,16 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
         } else if (n->kind == OP_UNTIL) {
             earliest_of_until(w, n, o);
         } else {
-            /* What looks back is not followed. */
+            /* Operators of the past: news may come at once. */
         }
     }
     return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
 }
 
-/* What becomes of attempts by what a network knows; each is a position of it. */
+/* ---- attempts: each is a position of the root */
 
-/* What becomes of an attempt by what is known; false if it is decided. None is once memory was short:
- * what then became known may be wrong. */
+/* Decide an attempt by what is known, at `t`; false: it is decided. Nothing is once memory was short,
+ * as knowledge may be wrong then. */
 bool judge_attempt(judging *g, int32_t at, int64_t t)
 {
     attempt *x = attempt_of(g, at);
@@ -236,7 +244,7 @@ bool judge_attempt(judging *g, int32_t at, int64_t t)
     return true;
 }
 
-/* The oldest attempt whose position is not before one; -1: there is none. */
+/* The oldest attempt at or behind a position; -1: none. */
 static int32_t attempt_from(const judging *g, int64_t position)
 {
     int32_t at = g->j->first;
@@ -249,7 +257,8 @@ static int32_t attempt_from(const judging *g, int64_t position)
     return at;
 }
 
-/* The position of an attempt that what became known of a formula decides; NEVER: of none. */
+/* The position of an attempt that the last step decided; NEVER: none. A pass needs the worse reading to
+ * be TRUE, a failure the better one to be FALSE. */
 int64_t decided_position(const judging *g)
 {
     uint8_t value;
@@ -267,7 +276,7 @@ int64_t decided_position(const judging *g)
     return NEVER;
 }
 
-/* The first position from one on at which something became known of a formula; NEVER: there is none. */
+/* The first position at or behind another at which the last step made the root known; NEVER: none. */
 static int64_t next_new(const judging *g, int64_t position)
 {
     int64_t found = NEVER;
@@ -285,7 +294,8 @@ static int64_t next_new(const judging *g, int64_t position)
     return found;
 }
 
-/* Judge the attempts of which something became known, at `t`. */
+/* Decide the attempts at positions that the last step made known, at `t`. They are in the order of their
+ * positions; those before the next position with news are passed over. */
 void judge_news(judging *g, int64_t t)
 {
     int64_t asked = -NEVER;

@@ -1,11 +1,12 @@
-/* A network as a whole: begun, copied, compared, tidied up. */
+/* A network as a whole: reset, copied, compared, pruned, described for rv_situation(); and sets of
+ * positions as ranges. */
 #include "basics.h"
 #include "networks/network.h"
 #include "results/results.h"
 
 #include <string.h>
 
-/* Begin at a position, of which nothing is known yet. */
+/* Begin at a position, whose letter is still to be read. */
 void reset_network(const form *f, network *w, int64_t t, int64_t position)
 {
     int32_t i;
@@ -16,7 +17,7 @@ void reset_network(const form *f, network *w, int64_t t, int64_t position)
         ranges_empty(&o->known[1]);
         o->base = position;
         o->swept = position;
-        if (n->kind == OP_SINCE) { /* before there was a position nothing was met */
+        if (n->kind == OP_SINCE) { /* before the first position a `since` is false, its dual true */
             ranges *none = &o->known[n->turned];
             ranges_put(f->monitor, none, 0, -LIMIT, position - 1);
         }
@@ -49,7 +50,7 @@ void copy_network(const form *f, network *made, const network *w)
     made->closed = w->closed;
 }
 
-/* Whether two networks know the same. */
+/* Whether two networks know the same: from here on one reading is enough. */
 bool networks_agree(const form *f, const network *one, const network *other)
 {
     bool found = true;
@@ -63,7 +64,8 @@ bool networks_agree(const form *f, const network *one, const network *other)
     return found;
 }
 
-/* The first position from one on of which a node is not known. */
+/* The first position at or behind another at which a node has no known value. Ranges of the two values
+ * alternate, so each is skipped in turn. */
 static int64_t open_from(const operator_state *o, int64_t position)
 {
     int64_t at = position;
@@ -78,7 +80,8 @@ static int64_t open_from(const operator_state *o, int64_t position)
     return at;
 }
 
-/* The first position from one on at which the operands do not only lead on. */
+/* The first position at or behind another at which `until` is not simply what it is at the next one:
+ * left is yes and right is no up to there. Nobody has to keep the operands before it. */
 static int64_t leads_to(const network *w, const operator_plan *n, int64_t position)
 {
     const ranges *stays = &w->nodes[n->left].known[n->turned ^ 1];
@@ -95,12 +98,15 @@ static int64_t leads_to(const network *w, const operator_plan *n, int64_t positi
     return at;
 }
 
+/* A parent asks for positions from here on. */
 static void want(operator_state *o, int64_t position)
 {
     o->wanted = least(o->wanted, position);
 }
 
-/* Drop what nobody can ask for: attempts wait from `position` on. */
+/* Drop what nobody can ask for any more, given that open attempts are at `position` or behind. From the
+ * root down each node says from which position on it needs its operands: its `base`, the first that it
+ * does not know itself, moved by its window. */
 void prune(const form *f, network *w, int64_t position)
 {
     int64_t first = position;
@@ -114,7 +120,7 @@ void prune(const form *f, network *w, int64_t position)
         const operator_plan *n = &f->nodes[i];
         operator_state *o = &w->nodes[i];
         int64_t kept = o->wanted;
-        if (n->kind == OP_SINCE) { /* what it was leads on, wanted or not */
+        if (n->kind == OP_SINCE) { /* it needs its last value to go on, whether or not a parent does */
             o->base = open_from(o, o->base);
             o->swept = o->base;
             kept = least(kept, o->base - 1);
@@ -151,7 +157,8 @@ void prune(const form *f, network *w, int64_t position)
     }
 }
 
-/* What the networks of a judge know that somebody may still ask for. */
+/* Write what the networks of a judge know and may still be asked for, relative to now: equal words mean
+ * equal decisions from here on. */
 void put_networks(situation *s, run *r, int32_t index)
 {
     const form f = form_of(r, index);
@@ -189,9 +196,9 @@ void put_networks(situation *s, run *r, int32_t index)
     }
 }
 
-/* Ranges of positions, in order, none touching another. */
+/* ---- sets of positions: ranges, sorted, with gaps between them; those before `first` are dropped */
 
-/* The first range that ends at a position or behind it. */
+/* The index of the first range that ends at or behind a position; `end`: none. */
 int32_t range_from(const ranges *r, int64_t position)
 {
     int32_t low = r->first;
@@ -199,11 +206,11 @@ int32_t range_from(const ranges *r, int64_t position)
     if (left == 0) {
         return low;
     }
-    if ((left > 1) && (r->at[r->end - 2].last < position)) { /* as mostly */
+    if ((left > 1) && (r->at[r->end - 2].last < position)) { /* the usual case: the last range */
         low = r->end - 1;
         left = 1;
     }
-    while (left > 1) { /* which half is next nobody can foretell: no branch */
+    while (left > 1) { /* a conditional move: a branch here would be mispredicted half the time */
         const int32_t half = left / 2;
         low += (r->at[low + half - 1].last < position) ? half : 0;
         left -= half;
@@ -211,14 +218,14 @@ int32_t range_from(const ranges *r, int64_t position)
     return low + ((r->at[low].last < position) ? 1 : 0);
 }
 
-/* The range that holds a position; -1: none does. */
+/* The index of the range that holds a position; -1: none. */
 int32_t range_around(const ranges *r, int64_t position)
 {
     const int32_t i = range_from(r, position);
     return ((i < r->end) && (r->at[i].first <= position)) ? i : -1;
 }
 
-/* The last position in them that is not behind one; less than all if there is none. */
+/* The last position of the set at or before another; -NEVER: none. */
 int64_t last_up_to(const ranges *r, int64_t position)
 {
     const int32_t i = range_from(r, position);
@@ -228,12 +235,12 @@ int64_t last_up_to(const ranges *r, int64_t position)
     } else if (i > r->first) {
         found = r->at[i - 1].last;
     } else {
-        /* They are all behind it. */
+        /* All ranges lie behind it. */
     }
     return found;
 }
 
-/* Make a list larger; false if memory is short. */
+/* Make room; false: memory is short. */
 static bool widen(rv_monitor *m, ranges *r)
 {
     range *made = enlarged(m, r->at, &r->room, (int64_t)r->room + 1, sizeof *made);
@@ -244,7 +251,8 @@ static bool widen(rv_monitor *m, ranges *r)
     return true;
 }
 
-/* Open a place for a range; returns where it is now, -1 if there is no room. */
+/* Open a slot before range `place`; returns its index, which changes where dropped ranges are
+ * reclaimed, or -1: memory is short. */
 static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
 {
     int32_t i = place;
@@ -257,7 +265,7 @@ static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
         } else if (!widen(m, r)) {
             return -1;
         } else {
-            /* There is room now. */
+            /* Widened. */
         }
     }
     if (i < r->end) {
@@ -269,7 +277,7 @@ static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
 
 void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t last)
 {
-    const bool behind = (place == r->end) && (place < r->room); /* as mostly */
+    const bool behind = (place == r->end) && (place < r->room); /* the usual case: append */
     const int32_t i = behind ? place : opened(m, r, place);
     r->end += behind ? 1 : 0;
     if (i >= 0) {
@@ -278,13 +286,14 @@ void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t 
     }
 }
 
+/* Remove a range. */
 static void take_out(ranges *r, int32_t i)
 {
     (void)memmove(&r->at[i], &r->at[i + 1], (size_t)(r->end - i - 1) * sizeof *r->at);
     r->end--;
 }
 
-/* Add positions that lie in no range; `i` is the first range behind them. */
+/* Add positions that are in no range, merged with neighbours; `i`: the first range behind them. */
 void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t last)
 {
     const bool left = (i > r->first) && (r->at[i - 1].last + 1 == first);
@@ -301,12 +310,12 @@ void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t l
     }
 }
 
-/* Take out positions that lie in one range. */
+/* Remove positions, all of which are in one range. */
 void ranges_cut(rv_monitor *m, ranges *r, int64_t first, int64_t last)
 {
     const int32_t i = range_around(r, first);
     if (i < 0) {
-        return; /* there was no room for them */
+        return; /* they were never added: memory was short */
     }
     if (r->at[i].first == first) {
         if (r->at[i].last == last) {
@@ -323,7 +332,7 @@ void ranges_cut(rv_monitor *m, ranges *r, int64_t first, int64_t last)
     }
 }
 
-/* Drop the ranges that lie wholly before a position. */
+/* Drop the ranges that end before a position. */
 void ranges_drop(ranges *r, int64_t before)
 {
     while ((r->first < r->end) && (r->at[r->first].last < before)) {

@@ -1,7 +1,12 @@
-/* What becomes known of `until` and `since` without bounds, which reach as far as their left side. */
+/* `until` and `since` without bounds, in a delay network: what becomes known of them reaches as far as
+ * their left side does. Each rule starts from news of one operand, so a step costs the ranges that it
+ * makes known. `yes` is the value of the whole where `right` has it, `no` the other one; of the duals
+ * (release, trigger) the same is said with the values swapped. */
 #include "networks/network.h"
 
-/* `left until right`; of the dual, all is said of the other values. */
+/* `left until right` at p: yes if right is, or if left is yes at p and the whole is at p + 1; no if
+ * right is no, and left is no or the whole is at p + 1. The four loops follow these from news of right
+ * (yes), left (yes), right (no), left (no). */
 void update_until(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const uint8_t yes = (uint8_t)(n->turned ^ 1);
@@ -44,7 +49,7 @@ void update_until(const form *f, const network *w, const operator_plan *n, opera
         }
     }
     if ((w->closed < NEVER) && (n->kept != 0)) {
-        /* Behind the end nothing is missed any more. */
+        /* The end of the trace: what a release requires "for ever" counts as true (`kept`). */
         j = range_around(&right->known[no], w->last);
         add_known(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
         if (o->swept > w->last) {
@@ -52,18 +57,18 @@ void update_until(const form *f, const network *w, const operator_plan *n, opera
         }
     }
     if (o->swept > o->base) {
-        /* What lies before only leads there. */
+        /* From `base` to `swept` the operands only pass on the value at `swept` (network_state.c). */
         if (knows(o, yes, o->swept)) {
             add_known(f, o, yes, o->base, o->swept - 1);
         } else if (knows(o, no, o->swept)) {
             add_known(f, o, no, o->base, o->swept - 1);
         } else {
-            /* It is open. */
+            /* Not known there either. */
         }
     }
 }
 
-/* `left since right`: its mirror image. */
+/* `left since right`: the mirror image, towards the past. */
 void update_since(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const uint8_t yes = (uint8_t)(n->turned ^ 1);
