@@ -225,25 +225,36 @@ class TruthValues:
         origin: the first instant of the run, ticks.
         gap: ticks between two positions; `None` if only samples are positions.
         begun: for an instance of `for each`, its first position; `None`: all positions count.
-        values: by proposition, its truth value.
-        since: by proposition, the position since which it has had this value.
-        before: by proposition and value, the last position at which it had another value.
+        truths: of the propositions.
+        words: of them, as the core noted them: of each since when it has this truth, and when it
+            was last another than FALSE, and than TRUE; `NEVER` if it was not.
+        places: by proposition the place of its truth, and of its words.
         at_trigger: by text, the truth value of what the requirement reads at the trigger.
     """
 
     origin: int
     gap: int | None
     begun: int | None
-    values: Mapping[State, int]
-    since: Mapping[State, int]
-    before: Mapping[tuple[State, int], int | None]
+    truths: Sequence[int]
+    words: Sequence[int]
+    places: Mapping[State, tuple[int, int]]
     at_trigger: Mapping[str, int]
+
+    def since(self, proposition: State) -> int:
+        """The position since which a proposition has had its truth value."""
+        return self.words[self.places[proposition][1]]
 
     def last_with(self, proposition: State, value: int, t: int) -> int | None:
         """The last position up to `t`, not before the present one, with a value."""
-        is_now = self.values[proposition] == value
-        return t if is_now else self.before[proposition, value]
+        place, at = self.places[proposition]
+        if self.truths[place] == value:
+            return t
+        before = self.words[at + (1 if value == FALSE else 2)]
+        return None if before == NEVER else before
 
+
+NEVER = -(1 << 63)
+"""Stands for an instant that there was not."""
 
 Part = str | Place | Turned | AfterTrigger | LastWith
 
@@ -275,7 +286,7 @@ def rendered(
                 ticks = one.ticks(decided, start)
                 return format_ticks(ticks) if base is Base.AGE else told(ticks)
             case Turned(proposition=proposition, seen=seen):
-                since = flow.since[proposition]
+                since = flow.since(proposition)
                 was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
                 verb = "became" if start < since == decided and not was_so else "was"
                 long = f" (since {told(since)})" if since < decided else ""

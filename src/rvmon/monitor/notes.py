@@ -9,10 +9,10 @@ from struct import Struct, unpack_from
 from typing import Any
 
 from rvmon.logic.automaton import Token
-from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
+from rvmon.logic.state_formula import UNKNOWN
 from rvmon.logic.state_graph import names_of
 from rvmon.monitor.automaton_reasons import MachineRuns, Reasons, explained
-from rvmon.monitor.cause import TruthValues
+from rvmon.monitor.cause import NEVER, TruthValues
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.explanation import (
@@ -38,7 +38,6 @@ _DECIDED, _OPEN, _NOTHING = 0, 1, 2
 _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
 _HEAD = 7
 """Words of a note before those of the leaves."""
-_NEVER = -(1 << 63)
 _NOT_YET = (1 << 63) - 1
 _SPAN = (1 << 31) - 1
 _IN_WORD = 32
@@ -141,8 +140,13 @@ class Told:
         self.compiled = compiled
         self._gap = gap
         self._texts = tuple(text for _, text in compiled.leaves)
-        self._propositions = compiled.alphabet.propositions
         self._leaf_words = words_for(len(self._texts))
+        propositions = compiled.alphabet.propositions
+        self._first = 2 + self._leaf_words + words_for(len(propositions))
+        self._places = {
+            state: (place, self._first + 3 * place) for place, state in enumerate(propositions)
+        }
+        self._thens: dict[tuple[int, ...], Mapping[str, int]] = {}
 
     @cached_property
     def _reasons(self) -> Reasons:
@@ -155,25 +159,25 @@ class Told:
         self, note: Note, origin: int
     ) -> tuple[tuple[int, ...], tuple[int, ...], TruthValues]:
         """The leaves, the propositions, and how these were."""
-        words, propositions = note.state, self._propositions
+        words, texts = note.state, self._texts
         at = 2 + self._leaf_words
-        leaves = truths(words[2:at], len(self._texts))
-        end = at + words_for(len(propositions))
-        values = truths(words[at:end], len(propositions))
-        at = end
-        since: dict[State, int] = {}
-        before: dict[tuple[State, int], int | None] = {}
-        for state in propositions:
-            since[state] = words[at]
-            before[state, FALSE], before[state, TRUE] = map(_instant, words[at + 1 : at + 3])
-            at += 3
-        held = dict(zip(propositions, values, strict=True))
-        then = dict(zip(self._texts, self._then(note), strict=True))
+        leaves = truths(words[2:at], len(texts))
+        values = truths(words[at : self._first], len(self._places))
+        then = self._at_trigger(self._then(note))
+        begun = _instant(words[1])
+        places = self._places
         return (
             leaves,
             values,
-            TruthValues(*(origin, self._gap, _instant(words[1]), held, since, before), then),
+            TruthValues(origin, self._gap, begun, values, words, places, then),
         )
+
+    def _at_trigger(self, then: tuple[int, ...]) -> Mapping[str, int]:
+        """By text the truth at the trigger; most attempts have it in common."""
+        found = self._thens.get(then)
+        if found is None:
+            found = self._thens[then] = dict(zip(self._texts, then, strict=True))
+        return found
 
     def _letter(self, values: Sequence[int], *, passed: bool) -> int:
         """The letter of the reading that decided."""
@@ -240,7 +244,7 @@ class Told:
     def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
         leaves: Sequence[int] = ()
-        if words[4] != _NEVER:
+        if words[4] != NEVER:
             leaves = truths(words[at : at + self._leaf_words], len(self._texts))
             at += self._leaf_words
         runs = self._networks if flags & _NETWORK else self._machines
@@ -296,7 +300,7 @@ class Told:
             until = None if words[at + 2] == _NOT_YET else words[at + 2]
             signal = spec.signals.get(name)
             bound = 0 if signal is None else signal.stale_after or 0
-            since = 0 if words[at + 1] == _NEVER else words[at + 1]
+            since = 0 if words[at + 1] == NEVER else words[at + 1]
             found.append(Outage(name, why, since, until, bound))
         return found
 
@@ -304,7 +308,7 @@ class Told:
         self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[Outage]
     ) -> Doubt | None:
         """What left an attempt open; `None`: nothing has."""
-        if position == _NEVER:
+        if position == NEVER:
             return None
         lost = {
             one.name: one
@@ -335,7 +339,7 @@ def _replaced(why: Explanation, reason: str) -> Explanation:
 
 
 def _instant(word: int) -> int | None:
-    return None if word == _NEVER else word
+    return None if word == NEVER else word
 
 
 def _token(words: Sequence[int], at: int, width: int) -> tuple[Token, int]:

@@ -225,7 +225,7 @@ class Words:
                 window = (t, None)  # open ones share one clock; the first may have been released
         at: tuple[int, ...] = ()
         if cause.literal is not None:
-            at = (flow.since[cause.literal.proposition],)
+            at = (flow.since(cause.literal.proposition),)
         first, last = (0, 0) if span is None else (span.start, span.end)
         return Blame(self.text(node), first, last, window, at)
 
