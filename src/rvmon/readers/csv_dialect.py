@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import re
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import datetime
+from itertools import islice
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, BinaryIO
@@ -16,7 +18,7 @@ from typing import Any, BinaryIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
-from rvmon.readers.places import Ends, opened
+from rvmon.readers.places import opened
 from rvmon.readers.values import shorten
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
@@ -30,6 +32,9 @@ _MOST_ABOVE = 30
 
 _SOME = 10
 """Rows that have to agree."""
+
+_TOGETHER = 4096
+"""Lines that are taken at once."""
 
 _SEPARATORS: tuple[str, ...] = (",", ";", "\t", "|", "")
 """The empty one stands for blanks, as many as there are."""
@@ -178,14 +183,17 @@ def _cells(line: str, separator: str) -> list[str]:
 def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None) -> Iterator[str]:
     """The lines of a text as plain CSV has them; where comments stood they are empty.
 
-    The last one has an end if it has one in the text.
+    The last one has an end if it has one in the text. As long as no line needs a closer look,
+    many are taken at once.
     """
     made: Callable[[list[str]], list[str]] | None = None
     written: list[str] = []
     writer = csv.writer(SimpleNamespace(write=written.append), lineterminator="\n")
-    lines = 0
-    ends = Ends(text)
-    for number, row in _rows(iter(ends), dialect):
+    lines = taken = 0
+    source = _Lines(text)
+    for counted, row in _rows(source, dialect):
+        number = counted + taken
+        is_header = made is None
         if made is None:
             row, made = _stamp_maker(row, stamps)
         else:
@@ -200,7 +208,68 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
         # The header comes first, whatever stood above it; the others keep their numbers.
         missing = number - lines - plain.count("\n") if lines else 0
         lines += missing + plain.count("\n")
-        yield "\n" * missing + (plain if ends.is_there else plain[:-1])
+        yield "\n" * missing + (plain if source.is_ended else plain[:-1])
+        if is_header and made is _unchanged and dialect.separator:
+            yield "\n" * (number - lines)
+            lines = number
+            while (many := source.ahead()) and (found := _as_plain("".join(many), dialect)):
+                source.take()
+                taken += len(many)
+                lines += len(many)
+                yield found
+
+
+class _Lines:
+    """Lines, of which some are looked at before they are taken.
+
+    Attributes:
+        is_ended: whether the last one has its end that was taken by itself.
+    """
+
+    def __init__(self, lines: Iterator[str]) -> None:
+        self._lines = lines
+        self._seen: deque[str] = deque()
+        self.is_ended = True
+
+    def __iter__(self) -> Iterator[str]:
+        return self
+
+    def __next__(self) -> str:
+        line = self._seen.popleft() if self._seen else next(self._lines)
+        self.is_ended = line.endswith(("\n", "\r"))
+        return line
+
+    def ahead(self) -> Sequence[str]:
+        """Some of the next lines."""
+        self._seen += islice(self._lines, _TOGETHER - len(self._seen))
+        return tuple(self._seen)
+
+    def take(self) -> None:
+        """Take those that were looked at."""
+        self._seen.clear()
+
+
+def _as_plain(text: str, dialect: Dialect) -> str | None:
+    """Some lines as plain CSV has them; `None`: one has to be looked at by itself."""
+    separator = dialect.separator
+    if '"' in text or (dialect.above and _COMMENT.search(text)):
+        return None
+    found = f"\n{text}"
+    if f"\n{separator}" in found:  # perhaps there is nothing in its cells
+        return None
+    if dialect.has_commas:
+        end = re.escape(separator) + r"\r\n"
+        comma = rf"([{end}][+-]?\d*),(?=\d+(?:[eE][+-]?\d+)?(?![^{end}]))"
+        parts = re.split(comma, found, flags=re.ASCII)
+        parts[1::2] = [f"{whole}." for whole in parts[1::2]]
+        found = "".join(parts)
+    if separator != "," and "," in found:
+        return None
+    return found[1:].replace(separator, ",")
+
+
+def _unchanged(row: list[str]) -> list[str]:
+    return row
 
 
 def _with_point(cell: str) -> str:
@@ -234,11 +303,11 @@ def _stamp_maker(
     What stands last in a row stands last there, too: it may be half of what it was.
     """
     if stamps is None or not ("+" in stamps.column or stamps.pattern):
-        return header, lambda row: row
+        return header, _unchanged
     parts = [stamps.column] if stamps.column in header else stamps.column.split("+")
     missing = [part for part in parts if part not in header]
     if missing or (not stamps.pattern and len(parts) != 2):
-        return header, lambda row: row  # whoever looks for the column says that it is missing
+        return header, _unchanged  # whoever looks for the column says that it is missing
     places = [header.index(part) for part in parts]
     is_last = len(header) - 1 in places
 

@@ -7,6 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TraceError
+from rvmon.readers import csv_dialect
 from rvmon.readers.csv_dialect import PLAIN, dialect_of
 
 SPEC = """
@@ -179,3 +180,32 @@ def test_packed_text_has_dialects_too(tmp_path):
     spec = rvmon.loads(SPEC)
     found = spec.evaluate(tmp_path / "other.csv.gz")
     assert found.attempts == spec.evaluate(tmp_path / "plain.csv").attempts
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_lines_that_are_taken_together_say_the_same(seed, tmp_path, monkeypatch):
+    """Whatever needs a closer look, wherever: samples, and the line of what is wrong."""
+    rng = random.Random(seed)
+    remark = rng.choice(["", "# by a tool\n"])
+    lines = [f"{remark}t;speed;mode;stop\n"]
+    odd = ['{};"1,5";busy;\n', "{};1,5;b,usy;\n", "\n", ";;;\n", "# {}\n", "{};x;;\n", "{};1,5;\n"]
+    for t in range(60):
+        line = rng.choice(odd) if rng.random() < 0.03 else "{},5;-{},25;idle;1\r\n"
+        lines.append(line.format(t, t))
+    path = tmp_path / "a.csv"
+    path.write_text("".join(lines)[: rng.choice([None, -2])], newline="")
+    found = []
+    for together in (0, 1, 7, 4096):
+        monkeypatch.setattr(csv_dialect, "_TOGETHER", together)
+        found.append(told(rvmon.loads(SPEC).recording(path)))
+    assert found == [found[0]] * 4
+
+
+def told(recording):
+    """The samples of a recording, or what is wrong with it behind some."""
+    found = []
+    try:
+        found.extend((one.t, dict(one.values)) for one in recording)
+    except TraceError as error:
+        found.append(str(error))
+    return found
