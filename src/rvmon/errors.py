@@ -18,6 +18,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rvmon.texts import shown
@@ -121,6 +123,38 @@ EXTRAS = {
     "scipy": "h5",
 }
 """The extra of rvmon that brings a package."""
+
+
+@contextmanager
+def needed(what: str, package: str) -> Iterator[None]:
+    """Within it something is imported; its arguments are those of `not_installed`.
+
+    Raises:
+        RvmonError: the package is not there.
+
+    >>> with needed("this", "nowhere"):
+    ...     import nowhere
+    Traceback (most recent call last):
+        ...
+    rvmon.errors.RvmonError: this needs nowhere, which is not installed: pip install nowhere
+    """
+    try:
+        yield
+    except ImportError:
+        raise not_installed(what, package) from None
+
+
+@contextmanager
+def writing(path: object) -> Iterator[None]:
+    """Within it a file that a person named is written.
+
+    Raises:
+        RvmonError: it cannot be; the message says why.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def not_installed(what: str, package: str) -> RvmonError:

@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 import msgspec
 
 from rvmon.diagnostics import Source
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, writing
 from rvmon.files import beside
 from rvmon.spec.rules import Findings
 from rvmon.spec.syntax.imports import load_files
@@ -94,7 +94,7 @@ def write_case(out: str, case: Case) -> None:
     Raises:
         RvmonError: a file cannot be read or written, or a name in it leads out of the reproducer.
     """
-    try:
+    with writing(out):
         names: dict[str, str] = {}
         files: list[tuple[str, Path]] = []
         for part, main, others in _parts(case):
@@ -111,8 +111,6 @@ def write_case(out: str, case: Case) -> None:
                     packed.write(path, name)
             with opened_case(str(made)) as again:
                 _expect_inside(again)
-    except OSError as error:
-        raise RvmonError(f"cannot write {out}: {error.strerror or error}") from None
 
 
 def _parts(case: Case) -> Iterator[tuple[str, str, list[str]]]:

@@ -8,7 +8,7 @@ from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
 
 from rvmon.adapters.messages import CLOCK, MessageFeed
-from rvmon.errors import RvmonError, not_installed
+from rvmon.errors import RvmonError, needed
 from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import ros_topic, ros_types
 
@@ -56,10 +56,8 @@ class DdsSource:
         definitions: Mapping[str, str] | None = None,
         verdicts: str | None = None,
     ) -> None:
-        try:
+        with needed("DDS", "cyclonedds"):
             import cyclonedds  # noqa: F401 - says what to install
-        except ImportError:
-            raise not_installed("DDS", "cyclonedds") from None
         self._feed = feed
         self._domain = domain
         self._definitions = tuple(sorted((definitions or {}).items()))

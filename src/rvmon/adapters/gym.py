@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, SupportsFloat, TypeVar
 
-from rvmon.errors import RvmonError, not_installed
+from rvmon.errors import RvmonError, needed
 
-try:
+with needed("an environment", "gymnasium"):
     import gymnasium
-except ImportError:
-    raise not_installed("an environment", "gymnasium") from None
 
 if TYPE_CHECKING:
     from rvmon.monitor.robustness import Measured

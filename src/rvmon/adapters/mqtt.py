@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from rvmon.adapters.json_objects import JsonObjects, decoded_object
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import RvmonError, TraceError, needed
 from rvmon.live.robot import Judgement
 
 _log = logging.getLogger("rvmon.live.input")
@@ -100,11 +100,9 @@ class MqttSource:
     def __init__(
         self, objects: JsonObjects, address: Address, *, verdicts: str | None = None
     ) -> None:
-        try:
+        with needed("MQTT", "paho-mqtt"):
             from paho.mqtt.client import Client
             from paho.mqtt.enums import CallbackAPIVersion
-        except ImportError:
-            raise not_installed("MQTT", "paho-mqtt") from None
         self._objects = objects
         self._address = address
         self._verdicts = verdicts

@@ -32,7 +32,7 @@ from rvmon.coverage import (
     count_of,
     group_of,
 )
-from rvmon.errors import RvmonError, not_installed
+from rvmon.errors import RvmonError, needed
 
 if TYPE_CHECKING:
     from coverage import Coverage
@@ -176,10 +176,8 @@ def _paths(code: Code) -> list[str]:
 
 def _coverage(code: Code) -> Coverage:
     """A fresh measurement of the files, kept in memory, whatever the user's settings."""
-    try:
+    with needed("a campaign that measures code", "coverage"):
         from coverage import Coverage
-    except ImportError:
-        raise not_installed("a campaign that measures code", "coverage") from None
     paths = _paths(code)
     meter = Coverage(data_file=None, config_file=False, include=paths, branch=code.branches)
     meter.set_option("run:core", "ctrace")  # the newer core knows no contexts

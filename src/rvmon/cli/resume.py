@@ -12,7 +12,7 @@ import msgspec
 
 from rvmon.cli.judging import Judged, Options
 from rvmon.coverage import Hit
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, writing
 from rvmon.execute import journal
 from rvmon.readers.messages.forms import databases_beside, form_of_folder
 from rvmon.session import Spec
@@ -65,10 +65,8 @@ class Unfinished(journal.Journal):
             return
         hits = {group: dict(items) for group, items in one.hits.items()}
         entry = _Entry(trace, stamp, one.report.to_json(), one.missing, hits, one.seconds)
-        try:
+        with writing(self.path):
             self.keep(entry)
-        except OSError as error:
-            raise _cannot_write(self.path, error) from None
 
 
 def unfinished(
@@ -100,13 +98,11 @@ def unfinished(
     heading = _heading(spec, options, reading)
     stamps = {trace: _stamp(trace) for trace in traces}
     known: dict[str, Judged] = {}
-    try:
+    with writing(path):
         for one in shards:
             known |= _judged_before(_entries(one, heading), stamps, is_moved=True)
         entries = _entries(path, heading) if resume else []
         journal.begin(path, [heading, *map(msgspec.json.encode, entries)])
-    except OSError as error:
-        raise _cannot_write(path, error) from None
     return Unfinished(path, shards, stamps, known | _judged_before(entries, stamps))
 
 
@@ -166,7 +162,3 @@ def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
     binding = pickle.dumps(spec.schema.binding).hex()  # its file may be another one since
     return journal.checksum(to_plain(spec.checked), [*reading, binding], asdict(options)).encode()
-
-
-def _cannot_write(path: Path, error: OSError) -> RvmonError:
-    return RvmonError(f"cannot write {path}: {error.strerror or error}")

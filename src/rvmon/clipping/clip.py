@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.clipping.piece import Copied, Piece, stamp_number, stamp_text
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import RvmonError, TraceError, writing
 from rvmon.files import beside
 from rvmon.readers.csv_rows import Layout
 from rvmon.readers.messages.forms import FORMATS, MESSAGE_FORMATS
@@ -84,18 +84,15 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
         RvmonError: a package is not installed, or the piece cannot be written.
         TraceError: the recording cannot be read up to the end of the piece, or has nothing in it.
     """
-    try:
-        with beside(out) as made:
-            try:
-                copied = _written(path, piece, made)
-            except TraceError as error:
-                message = str(error)
-                raise TraceError(message if path in message else f"{path}: {message}") from None
-            if not copied.count:
-                between = f"{format_stamp(piece.start)} and {format_stamp(piece.stop)}"
-                raise TraceError(f"{path}: there is nothing between {between}")
-    except OSError as error:
-        raise RvmonError(f"cannot write {out}: {error.strerror or error}") from None
+    with writing(out), beside(out) as made:
+        try:
+            copied = _written(path, piece, made)
+        except TraceError as error:
+            message = str(error)
+            raise TraceError(message if path in message else f"{path}: {message}") from None
+        if not copied.count:
+            between = f"{format_stamp(piece.start)} and {format_stamp(piece.stop)}"
+            raise TraceError(f"{path}: there is nothing between {between}")
     return copied
 
 

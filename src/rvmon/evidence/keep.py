@@ -20,7 +20,7 @@ import msgspec
 
 import rvmon
 from rvmon.coverage import Hits, Model, count_of, merged, share
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, writing
 from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
 from rvmon.files import files_within, write_whole
 from rvmon.reproducer import (
@@ -268,10 +268,8 @@ def write_evidence(
     verdicts = csv_bytes(rows)
     derived = derived_entries(about, specs, rows_by_item(verdicts))
     about_text = msgspec.json.format(msgspec.json.encode(about))
-    try:
+    with writing(path):
         write_whole(path, pack({**entries, **derived, ABOUT: about_text, VERDICTS: verdicts}))
-    except OSError as error:
-        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def derived_entries(

@@ -21,7 +21,7 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from rvmon.errors import RvmonError, WorkerLostError, not_installed
+from rvmon.errors import RvmonError, WorkerLostError, needed
 from rvmon.execute import Ended
 from rvmon.execute.worker import answer, packed_error
 from rvmon.files import contents
@@ -64,11 +64,9 @@ def execute_on_dask(
             task cannot be pickled.
         Exception: what `begin` or a task raised.
     """
-    try:
+    with needed("Dask", "distributed"):
         import cloudpickle
         from distributed import Client
-    except ImportError:
-        raise not_installed("Dask", "distributed") from None
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:

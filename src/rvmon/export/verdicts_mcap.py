@@ -17,7 +17,7 @@ from typing import Any
 
 import msgspec
 
-from rvmon.errors import RvmonError, not_installed
+from rvmon.errors import RvmonError, not_installed, writing
 from rvmon.export.foxglove_layout import (
     ATTEMPTS,
     SCENE,
@@ -114,12 +114,10 @@ def write_verdicts(
     if scene is not None:
         schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
     layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
-    try:
+    with writing(path):
         with beside(path) as place:
             _write(place, schemas, messages)
         write_whole(layout_path(path), msgspec.json.format(msgspec.json.encode(layout)))
-    except OSError as error:
-        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def _state_schemas(report: Report) -> dict[str, tuple[str, Mapping[str, str]]]:

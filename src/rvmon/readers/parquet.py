@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.columns import rows_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
@@ -34,11 +34,9 @@ def parquet_file(path: str | Path) -> Any:
         RvmonError: there is no pyarrow.
         TraceError: it is no Parquet file, or a damaged one.
     """
-    try:
+    with needed("Parquet", "pyarrow"):
         import pyarrow
         import pyarrow.parquet
-    except ImportError:
-        raise not_installed("Parquet", "pyarrow") from None
     try:
         return pyarrow.parquet.ParquetFile(path, page_checksum_verification=True)
     except MemoryError:  # of Arrow, too: the file may be as it should be

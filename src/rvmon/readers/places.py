@@ -12,7 +12,7 @@ from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, BinaryIO, TextIO
 
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import RvmonError, TraceError, needed
 from rvmon.readers.values import first_line
 from rvmon.texts import cannot_read
 
@@ -162,10 +162,8 @@ def _zstd() -> Any:
     try:
         from compression import zstd  # of Python from 3.14 on
     except ImportError:
-        try:
+        with needed("Zstandard", "backports.zstd"):
             from backports import zstd
-        except ImportError:
-            raise not_installed("Zstandard", "backports.zstd") from None
     return zstd
 
 
@@ -235,10 +233,8 @@ def matching_addresses(pattern: str) -> list[str]:
 
 
 def _system(address: str) -> tuple[Any, str]:
-    try:
+    with needed("an address", "fsspec"):
         from fsspec.core import url_to_fs
-    except ImportError:
-        raise not_installed("an address", "fsspec") from None
     system, inner = url_to_fs(address)
     return system, str(inner)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 
 
 def columns_by_name(table: Any) -> dict[str, Any] | None:
@@ -53,11 +53,9 @@ def _frame_columns(frame: Any) -> dict[str, Any]:
 def _imported(table: Any) -> Any:
     """An Arrow table of what gives itself out as one."""
     kind = type(table).__name__
-    try:
+    with needed(kind, "pyarrow"):
         import pyarrow
         from pyarrow.interchange import from_dataframe
-    except ImportError:
-        raise not_installed(kind, "pyarrow") from None
     try:
         return (
             pyarrow.table(table) if hasattr(table, "__arrow_c_stream__") else from_dataframe(table)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, writing
 from rvmon.files import write_whole
 
 
@@ -46,7 +46,5 @@ def write_file(path: str | Path, text: str) -> None:
     Raises:
         RvmonError: it cannot be written; the message says why.
     """
-    try:
+    with writing(path):
         write_whole(path, text)
-    except OSError as error:
-        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple, get_args, get_type_hints
 
-from rvmon.errors import not_installed
+from rvmon.errors import needed
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report_json import encoded, seconds
 
@@ -97,10 +97,8 @@ def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow
     Raises:
         RvmonError: pyarrow is needed.
     """
-    try:
+    with needed("this table", "pyarrow"):
         import pyarrow
-    except ImportError:
-        raise not_installed("this table", "pyarrow") from None
     types = {
         str: pyarrow.string(),
         int: pyarrow.int64(),
@@ -121,10 +119,8 @@ def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
     Raises:
         RvmonError: pandas is needed.
     """
-    try:
+    with needed("this table", "pandas"):
         import pandas
-    except ImportError:
-        raise not_installed("this table", "pandas") from None
     import pyarrow
 
     whole = {pyarrow.int64(): pandas.Int64Dtype()}
@@ -138,10 +134,8 @@ def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
     Raises:
         RvmonError: polars is needed.
     """
-    try:
+    with needed("this table", "polars"):
         import polars
-    except ImportError:
-        raise not_installed("this table", "polars") from None
     frame = polars.from_arrow(table)
     assert isinstance(frame, polars.DataFrame), "as a table is no column"
     return frame

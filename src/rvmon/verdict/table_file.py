@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import RvmonError, TraceError, needed, not_installed, writing
 from rvmon.files import write_whole
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
@@ -53,10 +53,8 @@ def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[s
     'a.csv,R1,,,NT,,false,,,,,,,,,'
     """
     written, _ = _form(path)
-    try:
+    with writing(path):
         write_whole(path, written(rows, about))
-    except OSError as error:
-        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) -> bytes:
@@ -184,10 +182,8 @@ def _read_csv(path: str) -> Iterator[Iterable[Any]]:
 
 
 def _read_parquet(path: str) -> Iterator[Iterable[Any]]:
-    try:
+    with needed("this table", "pyarrow"):
         from pyarrow import ArrowException, parquet
-    except ImportError:
-        raise not_installed("this table", "pyarrow") from None
     try:
         table = parquet.read_table(path, columns=list(_KEPT))
     except ArrowException as error:

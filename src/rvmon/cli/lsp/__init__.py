@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 
-from rvmon.errors import not_installed
+from rvmon.errors import needed
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -24,10 +24,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
     """Serve until the editor ends it, and return the exit code."""
-    try:
+    with needed("the language server", "pygls"):
         from rvmon.cli.lsp.server import Server
-    except ImportError:
-        raise not_installed("the language server", "pygls") from None
     for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor
         signal.signal(ending, lambda *_: os._exit(130))
     # Standard output is the protocol's alone: what anything else prints there goes to the log.

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.columns import ticks_of_column
 from rvmon.readers.messages.columns import (
     ColumnMessages,
@@ -89,10 +89,8 @@ def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
 
 def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
     """The groups of an HDF5 file; those of MATLAB have their axes the other way round."""
-    try:
+    with needed("HDF5", "h5py"):
         import h5py
-    except ImportError:
-        raise not_installed("HDF5", "h5py") from None
     with errors_as_damage(_FORM):
         file = h5py.File(path, "r")
 
@@ -120,10 +118,8 @@ def _read(dataset: Any, turned: bool) -> Any:
 
 def _matrices(path: Path) -> _Tree:
     """The variables of a MATLAB file before version 7.3."""
-    try:
+    with needed("a file of MATLAB", "scipy"):
         from scipy.io import loadmat
-    except ImportError:
-        raise not_installed("a file of MATLAB", "scipy") from None
     with errors_as_damage(_FORM):
         content = loadmat(path, simplify_cells=True)
 

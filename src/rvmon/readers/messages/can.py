@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.columns import path_of
 from rvmon.readers.messages.forms import DATABASES, databases_beside
 from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
@@ -233,10 +233,8 @@ def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
     Raises:
         RvmonError: what reads it is not installed.
     """
-    try:
+    with needed("a log of CAN", "python-can"):
         from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
-    except ImportError:
-        raise not_installed("a log of CAN", "python-can") from None
 
     class Objects(BLFReader):
         """Objects of BLF, of which the library passes over those that say that some were lost."""
@@ -280,10 +278,8 @@ def _opening(path: Path) -> dict[str, Any]:
 
 def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
     """The messages of all databases by identifier; those of J1939 by their group as well."""
-    try:
+    with needed("a database of CAN", "cantools"):
         from cantools import database
-    except ImportError:
-        raise not_installed("a database of CAN", "cantools") from None
     logging.getLogger("cantools").setLevel(logging.CRITICAL)
     texts = {name: text for name, text in definitions.items() if name.lower().endswith(DATABASES)}
     beside = databases_beside(path)

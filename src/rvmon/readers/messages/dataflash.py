@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.columns import ColumnMessages, Columns, ColumnTopic, leaves_of
 from rvmon.readers.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
@@ -63,10 +63,8 @@ def dataflash_messages(path: Path) -> ColumnMessages:
         TraceError: it is no such log, or a damaged one.
         OSError: it cannot be opened.
     """
-    try:
+    with needed("DataFlash", "pymavlink"):
         from pymavlink.DFReader import DFReader_binary
-    except ImportError:
-        raise not_installed("DataFlash", "pymavlink") from None
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
             raise TraceError("is no DataFlash log: it begins otherwise")

@@ -14,7 +14,7 @@ from zlib import crc32
 
 import msgspec
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.jsonl_rows import decoded
 from rvmon.readers.messages.flatbuffer import FlatBuffers
 from rvmon.readers.messages.ros import BagMessages, refuse_fewer, ros_topic
@@ -91,10 +91,8 @@ def mcap_reader(file: BinaryIO) -> Any:
     Raises:
         RvmonError: it is not installed.
     """
-    try:
+    with needed("MCAP", "mcap"):
         from mcap.reader import make_reader
-    except ImportError:
-        raise not_installed("MCAP", "mcap") from None
     return make_reader(file, validate_crcs=True)
 
 
@@ -222,10 +220,8 @@ def _json(data: bytes) -> Any:
 
 
 def _cbor() -> Decode:
-    try:
+    with needed("a message of CBOR", "cbor2"):
         from cbor2 import CBORDecodeError, loads
-    except ImportError:
-        raise not_installed("a message of CBOR", "cbor2") from None
 
     def decode(data: bytes) -> Any:
         try:
@@ -296,10 +292,8 @@ def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind]]:
 
 
 def _protobuf(schema: Any) -> Decode:
-    try:
+    with needed("a message of Protocol Buffers", "mcap-protobuf-support"):
         from mcap_protobuf.decoder import DecoderFactory
-    except ImportError:
-        raise not_installed("a message of Protocol Buffers", "mcap-protobuf-support") from None
     decode = DecoderFactory().decoder_for("protobuf", schema)
     assert decode is not None, "it is of this encoding"
     return decode

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.columns import ticks_of_column
 from rvmon.readers.messages.columns import (
     ColumnMessages,
@@ -46,10 +46,8 @@ def open_measurement(path: Path) -> Any:
         TraceError: it is no such file, or a damaged one.
         OSError: it cannot be opened.
     """
-    try:
+    with needed("MDF", "asammdf"):
         from asammdf import MDF
-    except ImportError:
-        raise not_installed("MDF", "asammdf") from None
     with open(path, "rb") as file:
         if not file.read(8).startswith((b"MDF", b"UnFinMF")):
             raise TraceError("is no MDF file: it begins otherwise")

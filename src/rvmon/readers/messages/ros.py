@@ -8,7 +8,7 @@ from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.comments import comments_of
 from rvmon.readers.messages.meaning import plain_type
 from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
@@ -121,10 +121,8 @@ def refuse_fewer(found: int, counted: int) -> None:
 @cache
 def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
     """What opens bags, by their form."""
-    try:
+    with needed("a bag", "rosbags"):
         from rosbags import rosbag1, rosbag2
-    except ImportError:
-        raise not_installed("a bag", "rosbags") from None
 
     def ros2_reader(path: Path) -> Any:
         _refuse_unclosed(path)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.topic import Message, Topic
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
@@ -45,11 +45,9 @@ class TelemetryMessages:
     """
 
     def __init__(self, path: Path) -> None:
-        try:
+        with needed("telemetry of MAVLink", "pymavlink"):
             from pymavlink.dialects.v10 import ardupilotmega as first
             from pymavlink.dialects.v20 import ardupilotmega
-        except ImportError:
-            raise not_installed("telemetry of MAVLink", "pymavlink") from None
         self._dialect, self._first = ardupilotmega, first
         self._data = path.read_bytes()
         self.outages: list[Outage] = []

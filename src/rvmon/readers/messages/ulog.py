@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from rvmon.errors import TraceError, not_installed
+from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.columns import ColumnMessages, ColumnTopic, joined, leaves_of
 from rvmon.readers.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
@@ -55,10 +55,8 @@ def ulog_messages(path: Path) -> ColumnMessages:
         TraceError: it is no such log, or a damaged one.
         OSError: it cannot be opened.
     """
-    try:
+    with needed("ULog", "pyulog"):
         from pyulog import ULog
-    except ImportError:
-        raise not_installed("ULog", "pyulog") from None
     with open(path, "rb") as file, redirect_stdout(StringIO()):
         watched = _Watched(file)
         with errors_as_damage("ULog"):
