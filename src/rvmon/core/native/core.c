@@ -97,14 +97,14 @@ static bool begin_run(rv_monitor *m)
     int32_t i;
     m->record_count = 0;
     m->captured_count = 0;
-    m->laid_count = 0;
+    m->undecidable_count = 0;
     forget_notes(m, 0, 0);
     m->sorted = 0;
     m->began = RV_NO_TIME;
     m->last = RV_NO_TIME;
     m->after = -LIMIT;
     m->reached = RV_NO_TIME;
-    m->heard = RV_NO_TIME;
+    m->outage_at = RV_NO_TIME;
     m->losing_count = 0;
     m->dense_until = RV_NO_TIME;
     m->dense_end = RV_NO_TIME;
@@ -293,7 +293,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
 void settle_margins(rv_monitor *m, int64_t t)
 {
     int32_t i;
-    for (i = 0; (m->shapes != NULL) && !m->hurries && (i < m->plan.part_count); i++) {
+    for (i = 0; (m->shapes != NULL) && !m->defers_margins && (i < m->plan.part_count); i++) {
         margins_settle(&m->homes[i], t);
     }
 }

@@ -52,7 +52,7 @@ typedef struct {
     uint32_t doubt_number;
     uint8_t verdict;
     uint8_t decision;
-} turn;
+} captured_attempt;
 
 /* Inclusive ranges of positions, disjoint and ascending. */
 typedef rv_range range;
@@ -297,7 +297,7 @@ typedef struct {
 typedef struct {
     rv_hit *hits;              /* by item */
     int32_t *current_items;    /* the current items of each group, from its first item on */
-    uint8_t *stands;           /* by item, whether it is current */
+    uint8_t *is_current;       /* by item, whether it is current */
     covered *groups;
     int32_t *groups_called;
     int32_t *called;           /* watches whose groups evaluate the next position */

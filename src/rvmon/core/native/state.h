@@ -149,8 +149,8 @@ struct run {
     int64_t opens_at;          /* no attempt starts before; NEVER: none ever */
     int64_t cut;               /* from then on the captured values are not known any more */
     int64_t occurred;          /* first occurrence of the key of this instance */
-    uint32_t rank;             /* of its instance, by first occurrence, from 1; 0: root, or unknown key
-                                */
+    uint32_t rank;             /* of its instance, by first occurrence, from 1; 0: root, or unknown
+                                * key */
     int32_t key;               /* index of that key in the home's keys */
     int32_t judged;            /* the judge of its one attempt, with captured values */
     int32_t starters;          /* judges whose attempts start here, as a bit set */
@@ -284,12 +284,12 @@ struct home {
     int32_t run_room;
     int32_t touched_count;
     char *pool;                /* attempts */
-    attempt *lone;             /* scratch: a queued attempt in the form of one in the pool */
+    attempt *scratch_attempt;  /* scratch: a queued attempt in the form of one in the pool */
     unknown_stretch *unknowns; /* when signals were unknown, for notes; NULL: no notes */
     int32_t *unknown_of;       /* by signal, its latest entry there; -1: dropped */
     int32_t unknown_count;
     int32_t unknown_room;
-    turn *turns;               /* by attempt, if values are captured */
+    captured_attempt *captured_attempts; /* by attempt, if values are captured */
     size_t stride;             /* bytes of an attempt with its clocks */
     int32_t capacity;          /* of `pool`, in attempts */
     int32_t used;              /* slots of `pool` ever used */
@@ -306,14 +306,14 @@ struct home {
     uint32_t failed;
     uint32_t inconclusive;
     rv_number *room;           /* scratch: values captured again, to compare them */
-    rv_number *nothing;        /* by signal: all unknown, for captures in an outage; NULL as yet */
+    rv_number *unknown_values; /* by signal: all unknown, for captures in an outage; NULL as yet */
     int32_t sure[2];           /* attempts to be numbered, that became sure: first and last */
     int32_t doubtful[2];       /* the same of those in doubt */
     int32_t done[2];           /* attempts to be reported */
     past_update *past;         /* stored samples */
     int32_t past_count;
     int32_t past_room;
-    int32_t given;             /* updates of `past` that were judged already */
+    int32_t past_judged;       /* updates of `past` that were judged already */
     rv_update *held;           /* scratch: a stored sample as updates */
     int32_t held_room;
     key *keys;                 /* keys ever seen, but the oldest closed ones */
@@ -365,7 +365,7 @@ struct rv_monitor {
     int32_t settled_spans;
     int64_t *kept_of;          /* scratch: records by requirement and verdict; NULL: all are kept */
     int64_t keep;              /* records kept of each */
-    int64_t laid_count;        /* undecidable attempts since the last trim */
+    int64_t undecidable_count; /* undecidable attempts since the last trim */
     int64_t trim_at;           /* rv_trim acts beyond this many records and undecidable attempts */
     uint32_t epoch;            /* of notes: states written in another epoch are not shared */
     before_decision before;    /* of the attempt at hand */
@@ -382,15 +382,15 @@ struct rv_monitor {
     int32_t losing_count;
     int64_t dense_until;       /* last tick that may be a position; NEVER: open; RV_NO_TIME: none */
     int64_t dense_end;         /* the last tick of the latest outage */
-    int64_t heard;             /* when an outage last began or ended; RV_NO_TIME: never */
+    int64_t outage_at;         /* when an outage last began or ended; RV_NO_TIME: never */
     bool measures_positions;
-    bool hurries;              /* rows are judged in bulk, so margins may be settled later */
+    bool defers_margins;       /* rows are judged in bulk, so margins may be settled later */
     bool is_alone;             /* there is one part, without captured values */
     bool finished;
     bool spoilt;
     bool keeps_notes;
-    bool tells_open;           /* notes of open attempts are being written */
-    bool told_open;            /* notes of open attempts stand behind those of records */
+    bool writes_open_notes;    /* notes of open attempts are being written */
+    bool has_open_notes;       /* notes of open attempts stand behind those of records */
 };
 
 #endif

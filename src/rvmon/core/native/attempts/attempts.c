@@ -35,11 +35,11 @@ bool grow_pool(home *h, int64_t wanted)
     int32_t same = h->capacity;
     char *pool;
     if (h->part->plan->captured > 0) {
-        turn *turns = enlarged(m, h->turns, &same, wanted, sizeof *turns);
+        captured_attempt *turns = enlarged(m, h->captured_attempts, &same, wanted, sizeof *turns);
         if (turns == NULL) {
             return false;
         }
-        h->turns = turns;
+        h->captured_attempts = turns;
     }
     pool = enlarged(m, h->pool, &capacity, wanted, h->stride);
     if (pool == NULL) {
@@ -78,7 +78,7 @@ void number_attempt(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
     if (r->part->plan->captured > 0) {
-        note_turn(r, at, t);
+        queue_numbering(r, at, t);
     } else {
         judge *j = &r->judges[index];
         j->count += x->sure ? 1U : 0U;
@@ -151,13 +151,13 @@ void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decisi
               int64_t note)
 {
     if (r->part->plan->captured > 0) {
-        turn *own = &r->home->turns[at];
+        captured_attempt *own = &r->home->captured_attempts[at];
         own->verdict = verdict;
         own->decision = decision;
         own->decided = t;
         own->note = note;
         own->rule = index;
-        note_done(r, at);
+        queue_report(r, at);
     } else {
         report(r, index, attempt_at(r->home, at), attempt_at(r->home, at)->number, verdict, decision,
                t, note);
@@ -185,7 +185,7 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
     }
     if (passed ? x->cannot_pass : !x->sure) {
         conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t,
-                 (r->truth_log != NULL) ? note_nothing(r, index, x) : -1);
+                 (r->truth_log != NULL) ? note_inconclusive(r, index, x) : -1);
     } else {
         const bool noted = (r->truth_log != NULL) && x->sure; /* in doubt and met: not reported */
         conclude(r, index, at, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX,
@@ -236,7 +236,7 @@ void add_undecidable(run *r, int32_t index, int32_t at)
     judge *j = &r->judges[index];
     attempt_at(r->home, at)->next = j->undecidable;
     j->undecidable = at;
-    r->home->monitor->laid_count++;
+    r->home->monitor->undecidable_count++;
     if (r->truth_log != NULL) {
         note_undecidable(r, index, attempt_at(r->home, at)->triggered);
     }
@@ -273,7 +273,7 @@ uint32_t reported_number(const run *r, int32_t at)
 {
     const attempt *x = attempt_at(r->home, at);
     const bool apart = r->part->plan->captured > 0;
-    return (apart && !x->sure) ? r->home->turns[at].doubt_number : x->number;
+    return (apart && !x->sure) ? r->home->captured_attempts[at].doubt_number : x->number;
 }
 
 /* Report an attempt that is open at `end`, the last instant of the trace; time has come to `reached`.

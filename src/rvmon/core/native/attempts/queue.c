@@ -56,7 +56,7 @@ void clear_queue(judge *j)
  * `due` is in the past, so that it is driven when it is put into the pool. */
 static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t location)
 {
-    attempt *x = r->home->lone;
+    attempt *x = r->home->scratch_attempt;
     x->triggered = one->triggered;
     x->due = -LIMIT;
     x->number = one->number;

@@ -101,8 +101,8 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     x->sure = is_sure(r, index);
     x->trigger_unknown = !x->sure;
     if (r->part->plan->captured > 0) {
-        (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
-        r->home->turns[at].judge = r;
+        (void)memset(&r->home->captured_attempts[at], 0, sizeof *r->home->captured_attempts);
+        r->home->captured_attempts[at].judge = r;
         x->cannot_pass = r->cut < NEVER;
         j->running = (judged->flags & JUDGE_EPISODIC) != 0;
     }

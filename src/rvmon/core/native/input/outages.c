@@ -355,18 +355,18 @@ static int apply_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t co
     if (code != RV_OK) {
         return code;
     }
-    if ((says == SAYS_FOUND) && (m->heard == RV_NO_TIME)) {
+    if ((says == SAYS_FOUND) && (m->outage_at == RV_NO_TIME)) {
         return RV_OK; /* found, but nothing was ever lost */
     }
     if ((m->plan.header->gap == 0) && !update_losing(m, t, names, count, says)) {
         return RV_NO_MEMORY;
     }
-    if ((m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME)) {
+    if ((m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->outage_at == RV_NO_TIME)) {
         for (i = 0; i < m->plan.part_count; i++) {
             home_begin_blank(&m->homes[i], t);
         }
     }
-    m->heard = (t > m->heard) ? t : m->heard;
+    m->outage_at = (t > m->outage_at) ? t : m->outage_at;
     updates = arena_take(&m->memory, size);
     if (updates == NULL) {
         m->spoilt = true;

@@ -208,7 +208,7 @@ void begin_blank(run *r, int64_t t)
         watch(r, t);
     }
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        const int32_t trigger = followed(r, i);
+        const int32_t trigger = trigger_node(r, i);
         if (needs_every_position(r, i)) {
             visit_judge(r, i, t);
         }
@@ -217,7 +217,7 @@ void begin_blank(run *r, int64_t t)
         }
     }
     if (r->part->plan->captured > 0) {
-        look_after(r, t);
+        check_children(r, t);
     }
 }
 
@@ -229,7 +229,7 @@ void end_blank(run *r, int64_t t)
         r->at.starting = IS_UNKNOWN;
         r->at.begun = t;
     }
-    look_at_all(r);
+    recheck_all(r);
 }
 
 /* Judge the running episode from `t` on: it was parked among the undecidable attempts, as what it owes

@@ -267,7 +267,7 @@ void apply_update(run *r, int64_t t, const incoming *in)
         const rv_number said = number_said(u);
         take_signal(r, t, in->local, &said);
     } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
-        const int32_t says = concerning(r, u);
+        const int32_t says = says_for_instance(r, u);
         if (says >= 0) {
             take_event(r, in->local, says, u->fields);
         }

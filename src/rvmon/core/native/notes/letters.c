@@ -63,13 +63,13 @@ static void leave_first(rv_monitor *m, noting *n)
     n->pieces--;
     if (piece->pinned == m->pins) {
         if ((piece->next != NULL) && (piece->next->pinned != m->pins)) {
-            drop_told_open(m);  /* may refer to both */
+            drop_open_notes(m);  /* may refer to both */
             piece->next = NULL; /* the next piece may be freed before this one */
         }
         piece->next_left = m->left;
         m->left = piece;
     } else {
-        drop_told_open(m); /* may refer to it */
+        drop_open_notes(m); /* may refer to it */
         drop_piece(m, piece);
     }
 }
@@ -237,7 +237,7 @@ int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
         made->last_count = n->last->count;
         m->span_count++;
     }
-    if (!m->tells_open) { /* notes of open attempts end with the call */
+    if (!m->writes_open_notes) { /* notes of open attempts end with the call */
         pin(m, n, first);
     }
     return m->span_count - 1;

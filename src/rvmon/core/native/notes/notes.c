@@ -60,7 +60,7 @@ bool make_notes(run *r)
         clear_noting(r, i);
     }
     r->truth_log->begun = RV_NO_TIME;
-    stand_at_first(r, RV_NO_TIME);
+    reset_truth_log(r, RV_NO_TIME);
     return true;
 }
 
@@ -118,7 +118,7 @@ void clear_noting(run *r, int32_t index)
 }
 
 /* Reset the history: every node has its truth since the first position, `t`. */
-void stand_at_first(run *r, int64_t t)
+void reset_truth_log(run *r, int64_t t)
 {
     truth_log *s = r->truth_log;
     int32_t i;
@@ -132,7 +132,7 @@ void stand_at_first(run *r, int64_t t)
 }
 
 /* Copy the history to a forked run. */
-void stand_like(run *made, const run *r)
+void copy_truth_log(run *made, const run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->logged; i++) {

@@ -9,8 +9,8 @@
 /* ---- notes.c: history of truths */
 bool make_notes(run *r);
 void clear_noting(run *r, int32_t index);
-void stand_at_first(run *r, int64_t t);
-void stand_like(run *made, const run *r);
+void reset_truth_log(run *r, int64_t t);
+void copy_truth_log(run *made, const run *r);
 void note_node(run *r, int32_t node, uint8_t was, int64_t t);
 void note_trigger(run *r, int32_t index, int64_t t);
 void note_begin(run *r, int32_t index, attempt *x, int64_t t);
@@ -25,12 +25,12 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 void keep_letter(run *r, int32_t index, int64_t t);
 
 /* ---- told.c: writing notes */
-int64_t note_nothing(run *r, int32_t index, const attempt *x);
+int64_t note_inconclusive(run *r, int32_t index, const attempt *x);
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
 int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end);
 void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t *clocks);
 void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t);
-void tell_open(rv_monitor *m, bool begins);
+void bracket_open_notes(rv_monitor *m, bool begins);
 void forget_notes(rv_monitor *m, int64_t words, int32_t spans);
 
 /* Truths are packed two bits each. */
@@ -87,7 +87,7 @@ enum {
 };
 /* Words of a note before those of the leaves. */
 #define NOTE_HEAD 7
-void drop_told_open(rv_monitor *m);
+void drop_open_notes(rv_monitor *m);
 bool begin_keeping(rv_monitor *m, kept_notes *to);
 int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note);
 void give_up_keeping(rv_monitor *m, kept_notes *to);

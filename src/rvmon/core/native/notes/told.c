@@ -36,16 +36,16 @@ static int64_t *further_words(rv_monitor *m, int64_t count)
 }
 
 /* Drop the notes of open attempts, which stand behind those of records. */
-void drop_told_open(rv_monitor *m)
+void drop_open_notes(rv_monitor *m)
 {
-    if (m->told_open && !m->tells_open) {
+    if (m->has_open_notes && !m->writes_open_notes) {
         forget_notes(m, m->settled_notes, m->settled_spans);
     }
 }
 
 /* The index of the state at instant `t`, shared with the last one if nothing changed since; -1: memory
  * is short. */
-static int64_t place_state(run *r, int32_t index, int64_t t)
+static int64_t note_state(run *r, int32_t index, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
     noting *n = r->judges[index].noting;
@@ -57,7 +57,7 @@ static int64_t place_state(run *r, int32_t index, int64_t t)
     int64_t *made;
     int64_t count;
     int32_t i;
-    drop_told_open(m);
+    drop_open_notes(m);
     if (!before && (n->state >= 0) && (n->state_at == r->truth_log->moved_at)
         && (n->epoch == m->epoch)) {
         return n->state;
@@ -107,7 +107,7 @@ static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind,
     const int64_t *then = truths_at(&n->triggers, words, x->triggered);
     int64_t *made;
     int32_t i;
-    drop_told_open(m);
+    drop_open_notes(m);
     made = further_words(m, NOTE_HEAD + words + count);
     if (made == NULL) {
         return -1;
@@ -136,7 +136,7 @@ static void write_token(int64_t *to, int32_t location, const int64_t *clocks, in
     }
 }
 
-int64_t note_nothing(run *r, int32_t index, const attempt *x)
+int64_t note_inconclusive(run *r, int32_t index, const attempt *x)
 {
     return begin_note(r, index, x, NOTE_NOTHING, 0, 0);
 }
@@ -147,7 +147,7 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
     rv_monitor *m = r->home->monitor;
     const bool networked = is_networked(r, index);
     const before_decision *was = &m->before;
-    const int64_t state = place_state(r, index, t);
+    const int64_t state = note_state(r, index, t);
     const int64_t note = begin_note(r, index, x, NOTE_DECIDED, 0, networked ? 0 : 1 + was->width);
     if ((note < 0) || (state < 0)) {
         return -1;
@@ -218,7 +218,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
     const int32_t words = words_for(r->part->judges[index].leaves.count);
     const int32_t most = networked ? 0 : r->part->machines[index].clocks;
     const int64_t until = floored(now - 1, 2);
-    const int64_t state = place_state(r, index, NEVER);
+    const int64_t state = note_state(r, index, NEVER);
     const int64_t *doubt = doubt_of(r, index, x);
     const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
     const int64_t more = words + 2 * ((int64_t)most + 1) + unknowns_count(r, doubted_at);
@@ -262,14 +262,14 @@ void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
     if (words == 0) {
         unpin_letters(m);
     }
-    m->told_open = false;
+    m->has_open_notes = false;
     m->epoch++;
 }
 
 /* Begin to drop all notes but some, which are copied to `to`; false: memory is short. */
 bool begin_keeping(rv_monitor *m, kept_notes *to)
 {
-    drop_told_open(m);
+    drop_open_notes(m);
     to->count = 0;
     to->span_count = 0;
     to->words = arena_take(&m->memory, (size_t)m->note_room * sizeof *to->words);
@@ -338,16 +338,16 @@ void end_keeping(rv_monitor *m, kept_notes *to)
 }
 
 /* Bracket the writing of notes of open attempts, which stand behind those of records. */
-void tell_open(rv_monitor *m, bool begins)
+void bracket_open_notes(rv_monitor *m, bool begins)
 {
     if (begins) {
-        drop_told_open(m);
+        drop_open_notes(m);
         m->settled_notes = m->note_count;
         m->settled_spans = m->span_count;
     }
     m->epoch++; /* states are not shared across the bracket */
-    m->tells_open = begins;
-    m->told_open = true;
+    m->writes_open_notes = begins;
+    m->has_open_notes = true;
 }
 
 /* Whether `count` words at an index are notes. */

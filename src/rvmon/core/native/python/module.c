@@ -1,5 +1,5 @@
-/* rvmon.native._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
- * columns, and gives out attempts. The only file of the core that knows of Python. */
+/* The module rvmon.native._core: the type Monitor, its step functions, and the locking of its
+ * methods. */
 #include "python/module.h"
 
 #ifndef RVMON_SOURCE_HASH
@@ -8,18 +8,18 @@
 
 enum { TAKEN, LEFT, FAILED };
 
-/* Take a sample of plain values that is in order; if it is left nothing happened. No code in Python
- * runs in here, so that no other call of its thread can come in between. */
+/* Convert a sample and give it to the core. LEFT: it takes a closer look, or the core refused it;
+ * nothing happened. FAILED: with an error. No Python code runs in here. */
 static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
 {
     int code = RV_FINISHED;
-    bool laid;
+    bool converted;
     c->busy = true;
     Py_BEGIN_CRITICAL_SECTION(values);
-    laid = lay(&c->in, values, looked);
+    converted = convert_sample(&c->in, values, looked);
     Py_END_CRITICAL_SECTION();
     c->busy = false;
-    if (laid) {
+    if (converted) {
         code = rv_step(c->m, t, c->in.updates, (int32_t)c->in.count);
     }
     if (code == RV_OK) {
@@ -32,7 +32,6 @@ static inline int take(monitor *c, int64_t t, PyObject *values, bool looked)
     return (code == RV_OK) ? TAKEN : (PyErr_Occurred() != NULL) ? FAILED : LEFT;
 }
 
-/* Have Python take a sample. */
 static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssize_t count,
                                PyObject *names)
 {
@@ -62,7 +61,8 @@ static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssi
     return made;
 }
 
-/* Take a sample quickly, and give out what it decided; NULL without an error if it is left. */
+/* Step without Python; returns what was decided. NULL without an error: Python has to look at the
+ * sample. */
 static inline PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
 {
     PyObject *made = NULL;
@@ -91,11 +91,12 @@ static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize
     return looked_closer(c->look_closer_ns, args, count, names);
 }
 
-/* From so many seconds on, 97 days, a nanosecond is less than what the next double is away. */
+/* From 2^23 s (97 days) on neighbouring doubles are more than a nanosecond apart. */
 #define COARSE_FROM 8388608.0
 
-/* The nanoseconds that a float of seconds stands for, as `ticks_of_seconds` has it; false: that is not
- * certain here. The part behind the point is exact, its products nearly. */
+/* The nanoseconds of a float of seconds, as `ticks_of_seconds` has them: of the shortest decimal that
+ * reads as it. false: not certain here. The fraction is exact, products nearly: hence the margin in
+ * `half`. */
 static bool ticks_of_float(double seconds, int64_t *t)
 {
     const int64_t whole = (seconds > -4e9) && (seconds < 4e9) ? (int64_t)seconds : 0;
@@ -113,7 +114,6 @@ static bool ticks_of_float(double seconds, int64_t *t)
     return fabs(part * power - rint(part * power)) <= half * power;
 }
 
-/* The same in seconds. */
 static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t count,
                               PyObject *names)
 {
@@ -129,7 +129,6 @@ static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t 
     return looked_closer(c->look_closer, args, count, names);
 }
 
-/* Calls of one thread at a time: each of these functions as a method. */
 #define METHOD(name)                                            \
     static PyObject *monitor_##name(PyObject *self, PyObject *arg) \
     {                                                           \
@@ -150,7 +149,7 @@ static bool is_free(const monitor *c)
     return !c->busy;
 }
 
-/* judge(t, values, looked): whether the sample was taken, at which Python has looked if it says so. */
+/* judge(t, values, looked): whether the sample was taken; `looked` says that Python has checked it. */
 static PyObject *judge_of(monitor *c, PyObject *args)
 {
     long long t;
@@ -174,11 +173,10 @@ static PyObject *advance_of(monitor *c, PyObject *until)
         return NULL;
     }
     code = rv_advance(c->m, (int64_t)t);
-    /* Time that has come already changes nothing. */
     return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
 }
 
-/* End the run, at an instant or None; gives the last instant, None if there is none. */
+/* finish(t or None): the last instant of the trace, or None. */
 static PyObject *finish_of(monitor *c, PyObject *until)
 {
     int64_t t = RV_NO_TIME;
@@ -192,7 +190,7 @@ static PyObject *finish_of(monitor *c, PyObject *until)
     }
     end = rv_end(c->m, t);
     code = rv_spoilt(c->m) ? RV_NO_MEMORY : rv_finish(c->m, t);
-    /* What comes after it may have been interrupted, and is done again. */
+    /* An interrupted finish may be repeated. */
     return ((code == RV_FINISHED) || is_done(code)) ? instant(end, RV_NO_TIME) : NULL;
 }
 
@@ -206,7 +204,6 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
 
-/* The first sample's instant, the last one's, and the instant that time has come to. */
 static PyObject *times_of(monitor *c, PyObject *unused)
 {
     const rv_times found = rv_times_of(c->m);
@@ -251,7 +248,6 @@ METHOD(hits)
 METHOD(situation)
 METHOD(passages)
 
-/* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
 {
     monitor *c = (monitor *)self;
@@ -265,8 +261,6 @@ static PyObject *monitor_hold(PyObject *self, PyObject *held)
     return Py_NewRef(done ? Py_True : Py_False);
 }
 
-/* The type. */
-
 static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
 {
     Py_VISIT(Py_TYPE(self));
@@ -277,7 +271,7 @@ static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
     return 0;
 }
 
-/* All that is borrowed goes with its owner: nothing but the end can be done any more. */
+/* What is borrowed goes with its owner: no call is possible any more. */
 static int monitor_clear(PyObject *self)
 {
     monitor *c = (monitor *)self;
@@ -296,7 +290,7 @@ static void monitor_dealloc(PyObject *self)
     PyObject_GC_UnTrack(self);
     (void)monitor_clear(self);
     if (c->m != NULL) {
-        (void)rv_reset(c->m); /* pieces give back what hangs on them */
+        (void)rv_reset(c->m); /* releases what pieces hold */
         rv_free(c->m);
     }
     free_dropped(&c->notes);
@@ -364,7 +358,7 @@ static PyType_Spec monitor_spec = {
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
 };
 
-/* memory_of(plan, attempts): the bytes of a block in which a run begins with room for so many. */
+/* memory_of(plan, attempts): bytes of a block in which a run can start with that many attempts. */
 static PyObject *core_memory_of(PyObject *module, PyObject *args)
 {
     const rv_memory heap = {malloc, realloc, free, NULL, 0};

@@ -1,27 +1,36 @@
-/* The binding to Python: what its files share. */
+/* The CPython binding: the types Monitor and Record of rvmon.native._core. Samples come as dictionaries
+ * or columns, attempts go out as objects. It uses the stable ABI only.
+ *
+ * Two rules shape it. No Python code runs between reading a sample and handing it to the core, so that
+ * an interrupt or another thread cannot come in between: what would need Python code is left to a
+ * slower path in Python. And nothing handed out refers to the core's memory, so objects may outlive
+ * their monitor. */
 #ifndef RVMON_MODULE_H
 #define RVMON_MODULE_H
 
 #include "core.h"
 #include "python/python_abi.h"
 
+/* Objects that freed pieces of letters held. The core may free pieces where no Python code may run, so
+ * they are released later (free_dropped). */
 typedef struct {
-    PyObject **dropped;        /* what pieces hung on to that are gone */
+    PyObject **dropped;        /* to be released */
     size_t dropped_count;
     size_t dropped_room;
 } note_cache;
 
-/* The note of an attempt. */
+/* A copy of the note of an attempt. */
 typedef struct {
-    int64_t *words;            /* NULL: there is none; behind them the state of the propositions */
-    PyObject *pieces;          /* letters; NULL: they do not matter */
-    PyObject *last;            /* bytes, of which the first `last_count` words are its last letters */
+    int64_t *words;            /* NULL: there is no note; then the state of the propositions */
+    PyObject *pieces;          /* tuple of the full pieces of letters; NULL: they do not matter */
+    PyObject *last;            /* bytes of the last piece, shared; the first `last_count` words are its
+                                * own */
     int32_t last_count;
     int32_t count;
-    int32_t state_count;       /* 0: nobody asks */
+    int32_t state_count;       /* words of the state; 0: none */
 } note_copy;
 
-/* The fields that are objects; from REASON on those that are worked out late. */
+/* Fields of a record that are objects; those from REASON on are computed when first asked for. */
 enum {
     REQUIREMENT, DECIDED, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
     REQUIRED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
@@ -30,99 +39,102 @@ enum {
 typedef struct {
     PyObject_HEAD
     PyObject *objects[OBJECTS]; /* NULL: not set */
-    PyObject *values;          /* that were captured; NULL: none */
-    note_copy note;            /* from which `details` gives what is not set, unless NOTED is set */
+    PyObject *values;          /* captured values; NULL: none */
+    note_copy note;            /* raw material for `details`, until NOTED is set */
     long long number;
     long long triggered;
-    long long origin;          /* the first instant of the run */
+    long long origin;          /* first sample of the run */
     char in_doubt;
-    bool is_worked_out;        /* whether a field from NOTED on may be set */
+    bool is_worked_out;        /* a field from NOTED on may be set */
 } attempt_record;
 
-/* What the values of a signal or field are. */
+/* Kinds of a signal's or field's values. */
 enum { IS_BOOLEAN, IS_WHOLE, IS_REAL, IS_LABEL };
 
-/* How a signal, an event, a field is read; of events, `words` are fields by name. */
+/* How the values of a signal, event or field are read. */
 typedef struct {
-    PyObject *words;           /* borrowed: a number for each label; NULL: it has none */
-    int32_t kind;              /* of a signal or field */
-    int32_t fields;            /* of an event: so many */
-    int32_t single;            /* of an event: only one occurrence of it can be judged at an instant; of a
-                                * signal: that it is unknown is no update */
+    PyObject *words;           /* borrowed: dict of label numbers, or of an event's field numbers;
+                                * NULL */
+    int32_t kind;              /* IS_BOOLEAN, ..., of a signal or field */
+    int32_t fields;            /* number of fields of an event */
+    int32_t single;            /* event: at most one occurrence per instant; signal: unknown is no
+                                * update */
 } reading;
 
-/* What came of a name or a field: how often it said that it is unknown, and when first. */
+/* Input health of a name or field: how often it was unknown, and when first. */
 typedef struct {
-    int64_t came;              /* the first instant at which a signal was told; RV_NO_TIME: none yet */
+    int64_t came;              /* first update of a signal; RV_NO_TIME: none yet */
     int64_t none_count;
     int64_t none_first;
     int64_t nan_count;
     int64_t nan_first;
 } arrival;
 
-/* A name that came at some place of a sample, and its number. */
+/* Cache: the name that came at this place of the last sample, and its number. Samples mostly bring the
+ * same key objects in the same order, so that a pointer comparison replaces the lookup. */
 typedef struct {
     PyObject *name;
     int32_t number;
-    int32_t kind;              /* of a signal what its values are; -1 of an event */
+    int32_t kind;              /* kind of a signal; -1: an event */
 } seen_name;
 
-/* The names of a monitor, and the sample that is laid out. */
+/* The names of a monitor, and the sample that is being converted. */
 typedef struct {
-    PyObject *numbers;         /* borrowed: of the names that can come */
+    PyObject *numbers;         /* borrowed: dict of name to number */
     int32_t signals;
     int32_t names;             /* signals, then events */
     int32_t all;               /* names, then fields */
-    reading *readings;         /* of all */
+    reading *readings;         /* by name, then field */
     arrival *arrivals;         /* of all */
-    int32_t *first_fields;     /* of events, among those */
-    seen_name *seen;           /* as names came last */
+    int32_t *first_fields;     /* by event, number of its first field */
+    seen_name *seen;           /* by place in a sample */
     rv_update *updates;
     int64_t count;
     int64_t room;
-    rv_number *fields;         /* of all events that occur */
+    rv_number *fields;         /* payloads of the sample */
     int64_t fields_count;
     int64_t fields_room;
-    int64_t fields_most;       /* if each occurs once */
-    int32_t to_come;           /* so many signals were told of in no sample */
-    bool is_odd;               /* whether something is unknown in the sample that is laid out */
+    int64_t fields_most;       /* fields of all events together */
+    int32_t to_come;           /* signals without an update so far */
+    bool is_odd;               /* something in the sample is unknown, or has a payload */
 } intake;
 
 typedef struct {
     PyObject_HEAD
     rv_monitor *m;
-    void *plan;                /* a copy, if Python's bytes are not aligned to 8; else NULL */
-    PyObject *data;            /* the plan in Python's bytes: the core reads it to its end */
+    void *plan;                /* a copy, if `data` is not aligned to 8; else NULL */
+    PyObject *data;            /* the plan, which the core reads for all its life */
     rv_sizes sizes;
-    int64_t given;             /* records that were given out, or are of attempts that stay open */
-    bool held;                 /* whether Python is amid a call */
-    bool busy;                 /* whether this is */
+    int64_t given;             /* records handed out so far, or left open for good */
+    bool held;                 /* Python is in the middle of a call (hold) */
+    bool busy;                 /* C is */
     intake in;
-    int32_t *captured;         /* how many values the attempts of each requirement have */
-    PyObject *owner;           /* what the rest is borrowed from; NULL: the collector took it away */
-    PyObject *look_closer;     /* takes what this does not understand, in seconds */
-    PyObject *look_closer_ns;  /* the same in ticks */
+    int32_t *captured;         /* captured values per attempt, by requirement */
+    PyObject *owner;           /* argument tuple that owns what follows; NULL: collected */
+    PyObject *look_closer;     /* Python's step, for samples that take a closer look */
+    PyObject *look_closer_ns;  /* the same for step_ns */
     PyTypeObject *attempt;     /* derived from Record */
-    PyObject *ids;             /* of requirements */
+    PyObject *ids;             /* names of requirements, by number */
     PyObject *verdicts;
     PyObject *decisions;
-    PyObject *details;         /* gives an attempt its other fields */
-    PyObject *nothing;         /* the tuple of no attempts */
-    PyObject *many;            /* makes a sequence of records that makes attempts as they are read; or None */
+    PyObject *details;         /* computes the late fields of an attempt */
+    PyObject *nothing;         /* an empty tuple, returned by most steps */
+    PyObject *many;            /* makes a lazy sequence of attempts from records, or None */
     note_cache notes;
-    int64_t keep;              /* so many records of each kind are kept; -1: all */
-    struct figures *figures;   /* what figures are made of; NULL: steps give attempts */
+    int64_t keep;              /* rv_keep's number; -1: all are kept */
+    struct figures *figures;   /* how margins are made into objects; NULL: steps return attempts */
 } monitor;
 
-/* So many attempts a call makes itself; of more it gives a sequence that makes each as it is read, so
- * that what a million cost is bounded by what of them is looked at. */
+/* Calls that return more attempts than this return a lazy sequence instead, so that a million decisions
+ * cost what is looked at. */
 enum { MOST_AT_ONCE = 4096 };
 
-/* Records, each with room for as many captured values as any has. They are copies: what is made of
- * them may set off the collector, and that anything, such as steps of this very monitor. */
+/* Copies of records, each with room for the most captured values of any requirement. They have to be
+ * copies: making objects of them may run the garbage collector, and that arbitrary code, even steps of
+ * this monitor. */
 typedef struct {
     monitor *c;
-    rv_record *records;        /* `few` as long as they fit in there */
+    rv_record *records;        /* `few` while they fit */
     rv_number *captured;
     int64_t count;
     int64_t room;
@@ -134,7 +146,7 @@ typedef int (*telling)(rv_monitor *m, int64_t t, const int32_t *names, int32_t c
 
 /* What figures are made of. */
 struct figures {
-    PyObject *owner;           /* what the rest is borrowed from */
+    PyObject *owner;           /* argument tuple that owns what follows */
     PyTypeObject *measured;    /* derived from Figure */
     PyTypeObject *robustness;  /* derived from Bounds */
 };
@@ -164,7 +176,7 @@ bool are_of_figures(const struct figures *f);
 PyObject *figure_of(const struct figures *f, PyObject *requirement, const rv_margin *x);
 
 /* ---- module_intake.c */
-bool lay(intake *in, PyObject *values, bool looked);
+bool convert_sample(intake *in, PyObject *values, bool looked);
 void note_arrivals(intake *in, int64_t t);
 void count_to_come(intake *in);
 void forget_arrivals(intake *in);
@@ -204,11 +216,11 @@ PyObject *stale_of(monitor *c, PyObject *unused);
 /* ---- module_rows.c */
 PyObject *rows_of(monitor *c, PyObject *args);
 
-/* ---- module_open.c: as bytes */
+/* ---- module_open.c: snapshots */
 PyObject *save_of(monitor *c, PyObject *unused);
 PyObject *load_of(monitor *c, PyObject *bytes);
 
-/* ---- module_results.c: beside attempts */
+/* ---- module_results.c: truths, coverage, situations */
 PyObject *instant(int64_t t, int64_t none);
 PyObject *truths_of(monitor *c, PyObject *number);
 PyObject *hits_of(monitor *c, PyObject *unused);

@@ -1,7 +1,7 @@
-/* The monitor as an object of Python, and how module.c gives out its records: as attempts. */
+/* Making attempts of records. */
 #include "python/module.h"
 
-/* Raises what it comes to that the core did not do something. */
+/* Whether a code of the core is RV_OK; else an exception is set. */
 bool is_done(int code)
 {
     if (code == RV_NO_MEMORY) {
@@ -47,7 +47,7 @@ static bool widen_gathering(gathering *g)
     return true;
 }
 
-/* Write down what an attempt captured, if anything; further places are left as they are. */
+/* Copy the captured values of a record, if any; further places of `to` stay as they are. */
 void copy_captured(const monitor *c, const rv_record *record, const rv_number *captured,
                           rv_number *to)
 {
@@ -81,7 +81,7 @@ static PyObject *object_of(const rv_number *number)
     }
 }
 
-/* The values that an attempt captured, as a tuple. */
+/* Captured values as a tuple. */
 static PyObject *values_of(const rv_number *values, int32_t count)
 {
     PyObject *made = PyTuple_New((Py_ssize_t)count);
@@ -123,7 +123,7 @@ static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_nu
     return (PyObject *)made;
 }
 
-/* The attempts that were gathered; what holds them is given back. */
+/* Make attempts of the gathered records, and free the gathering. */
 PyObject *attempts_of(gathering *g)
 {
     PyObject *made = g->failed ? PyErr_NoMemory() : PyTuple_New((Py_ssize_t)g->count);
@@ -145,7 +145,7 @@ PyObject *attempts_of(gathering *g)
     return made;
 }
 
-/* The attempts of which there are records from `first` on: those that are decided, or the others. */
+/* Gather the records from `first` on: the decided ones, or the open ones. */
 void gather_records(const monitor *c, int64_t first, bool open, gathering *g)
 {
     const rv_record *records;
@@ -158,7 +158,7 @@ void gather_records(const monitor *c, int64_t first, bool open, gathering *g)
     }
 }
 
-/* Give out the records up to so many. */
+/* Hand out the records up to `count`. */
 static PyObject *attempts_up_to(monitor *c, int64_t count)
 {
     const int64_t first = c->given;
@@ -179,7 +179,7 @@ static PyObject *attempts_up_to(monitor *c, int64_t count)
     return made;
 }
 
-/* The attempts that were decided since the last time; records that are too many are dropped then. */
+/* Hand out the attempts decided since the last call; then trim, if records are bounded. */
 PyObject *decided_since(monitor *c)
 {
     const rv_record *records;

@@ -1,13 +1,12 @@
-/* How module.c takes samples from Python: dictionaries of plain values become updates.
- *
- * What is not plain (None is; an instance of a subclass, a NumPy scalar, an unknown name is not) is
- * left, before anything is written: Python has a closer look, and gives it back plain or raises. */
+/* Converting samples from Python: a dictionary of plain values becomes updates. Anything else, such as
+ * a subclass, a NumPy scalar or an unknown name, makes `convert_sample` return false before anything is judged:
+ * Python then looks closer, and passes plain values back or raises. */
 #include "python/module.h"
 
-/* Why a field is unknown that its payload lacks. */
+/* Why a field is unknown: the payload lacks it. */
 #define IS_NOT_SAID (-1)
 
-/* The number of a value that is no real one; false if that takes a closer look. */
+/* Convert a value other than a float; false: it takes a closer look. */
 static bool number_of_other(PyObject *value, const reading *as, rv_number *number)
 {
     int beyond = 0;
@@ -37,7 +36,7 @@ static bool number_of_other(PyObject *value, const reading *as, rv_number *numbe
     return beyond == 0;
 }
 
-/* The number of a float. */
+/* Convert a float; NaN is unknown. */
 static inline void take_float(PyObject *value, rv_number *number)
 {
     const double x = PyFloat_AsDouble(value);
@@ -49,7 +48,7 @@ static inline void take_float(PyObject *value, rv_number *number)
     }
 }
 
-/* The number of a value; false if that takes a closer look. */
+/* Convert a value; false: it takes a closer look. */
 static bool number_of(PyObject *value, const reading *as, rv_number *number)
 {
     if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
@@ -59,9 +58,8 @@ static bool number_of(PyObject *value, const reading *as, rv_number *number)
     return number_of_other(value, as, number);
 }
 
-/* The name that came as so manyth; NULL if none can come that is so called.
- *
- * Mostly the same objects come in the same order. */
+/* The name that is at a place of the sample; NULL: not a known name. The cache holds because mostly the
+ * same key objects come in the same order. */
 static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
 {
     PyObject *found = NULL;
@@ -88,7 +86,7 @@ static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
     return seen;
 }
 
-static inline rv_update *further_update(intake *in, int32_t name)
+static inline rv_update *next_update(intake *in, int32_t name)
 {
     rv_update *update = &in->updates[in->count];
     in->count++;
@@ -98,9 +96,9 @@ static inline rv_update *further_update(intake *in, int32_t name)
     return update;
 }
 
-static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value)
+static inline bool convert_signal(intake *in, const seen_name *name, PyObject *value)
 {
-    rv_update *update = further_update(in, name->number);
+    rv_update *update = next_update(in, name->number);
     if ((name->kind == IS_REAL) && PyFloat_CheckExact(value)) {
         take_float(value, &update->value);
     } else if ((name->kind == IS_BOOLEAN) && ((value == Py_True) || (value == Py_False))) {
@@ -113,7 +111,7 @@ static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value
     } else if (!number_of(value, &in->readings[name->number], &update->value)) {
         return false;
     } else {
-        /* It is laid out. */
+        /* It is converted. */
     }
     if (update->value.kind == RV_UNKNOWN) {
         update->says = RV_SAYS_UNKNOWN;
@@ -122,7 +120,7 @@ static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value
     return true;
 }
 
-static bool lay_fields(const intake *in, int32_t name, PyObject *payload, rv_number *fields)
+static bool convert_fields(const intake *in, int32_t name, PyObject *payload, rv_number *fields)
 {
     const reading *event = &in->readings[name];
     const reading *readings = &in->readings[in->names + in->first_fields[name - in->signals]];
@@ -147,7 +145,7 @@ static bool lay_fields(const intake *in, int32_t name, PyObject *payload, rv_num
     return true;
 }
 
-static bool lay_payload(intake *in, int32_t name, PyObject *payload)
+static bool convert_payload(intake *in, int32_t name, PyObject *payload)
 {
     const int32_t count = in->readings[name].fields;
     rv_number *fields = &in->fields[in->fields_count];
@@ -162,14 +160,15 @@ static bool lay_payload(intake *in, int32_t name, PyObject *payload)
         fields[i].kind = RV_UNKNOWN;
         fields[i].as.whole = IS_NOT_SAID;
     }
-    further_update(in, name)->fields = fields;
+    next_update(in, name)->fields = fields;
     Py_BEGIN_CRITICAL_SECTION(payload);
-    done = lay_fields(in, name, payload, fields);
+    done = convert_fields(in, name, payload, fields);
     Py_END_CRITICAL_SECTION();
     return done;
 }
 
-/* Make room for so many occurrences of an event, and one of each name behind them. */
+/* Make room for `count` occurrences of an event and one update of every name after them. Payload
+ * pointers follow when the fields move. */
 static bool make_room(intake *in, int64_t count, int32_t fields)
 {
     const int64_t updates = in->count + count + in->names;
@@ -201,8 +200,9 @@ static bool make_room(intake *in, int64_t count, int32_t fields)
     return true;
 }
 
-/* Lay out an event that occurs several times; false with an error if memory is short. */
-static bool lay_payloads(intake *in, int32_t name, PyObject *payloads, bool looked)
+/* Convert several occurrences of an event; false: it takes a closer look, or with an error, memory is
+ * short. */
+static bool convert_payloads(intake *in, int32_t name, PyObject *payloads, bool looked)
 {
     const Py_ssize_t count = PyTuple_Size(payloads);
     bool done = true;
@@ -215,34 +215,34 @@ static bool lay_payloads(intake *in, int32_t name, PyObject *payloads, bool look
         return false;
     }
     if (count == 0) {
-        further_update(in, name)->says = RV_SAYS_NO;
+        next_update(in, name)->says = RV_SAYS_NO;
     }
     for (i = 0; done && (i < count); i++) {
-        done = lay_payload(in, name, PyTuple_GetItem(payloads, i));
+        done = convert_payload(in, name, PyTuple_GetItem(payloads, i));
     }
     return done;
 }
 
-static bool lay_event(intake *in, int32_t name, PyObject *value, bool looked)
+static bool convert_event(intake *in, int32_t name, PyObject *value, bool looked)
 {
     if (value == Py_True) {
-        (void)further_update(in, name);
+        (void)next_update(in, name);
     } else if (value == Py_False) {
-        further_update(in, name)->says = RV_SAYS_NO;
+        next_update(in, name)->says = RV_SAYS_NO;
     } else if (value == Py_None) {
-        further_update(in, name)->says = RV_SAYS_UNKNOWN;
+        next_update(in, name)->says = RV_SAYS_UNKNOWN;
         in->is_odd = true;
     } else if (PyTuple_CheckExact(value)) {
-        return lay_payloads(in, name, value, looked);
+        return convert_payloads(in, name, value, looked);
     } else {
-        return lay_payload(in, name, value);
+        return convert_payload(in, name, value);
     }
     return true;
 }
 
-/* Lay out a sample; false if it takes a closer look, or with an error if memory is short. No code in
- * Python runs meanwhile. */
-bool lay(intake *in, PyObject *values, bool looked)
+/* Convert a sample; false: it takes a closer look, or with an error, memory is short. No Python code
+ * runs: keys and values are of exact built-in types. */
+bool convert_sample(intake *in, PyObject *values, bool looked)
 {
     PyObject *name;
     PyObject *value;
@@ -254,8 +254,8 @@ bool lay(intake *in, PyObject *values, bool looked)
     for (place = 0; PyDict_Next(values, &at, &name, &value) != 0; place++) {
         const seen_name *seen = name_at(in, name, place);
         if ((seen == NULL)
-            || !((seen->number < in->signals) ? lay_signal(in, seen, value)
-                                              : lay_event(in, seen->number, value, looked))) {
+            || !((seen->number < in->signals) ? convert_signal(in, seen, value)
+                                              : convert_event(in, seen->number, value, looked))) {
             return false;
         }
     }
@@ -271,7 +271,8 @@ static void note_unknown(arrival *a, const rv_number *value, int64_t t)
     (*count)++;
 }
 
-/* Note what the sample brought that was taken at `t`. */
+/* Update input health by the sample taken at `t`. Skipped when everything was known and every signal
+ * has come before. */
 void note_arrivals(intake *in, int64_t t)
 {
     static const rv_number none = {RV_UNKNOWN, {RV_IS_NONE}};
@@ -302,12 +303,12 @@ void note_arrivals(intake *in, int64_t t)
                 }
             }
         } else {
-            /* It has no values. */
+            /* It has no payload. */
         }
     }
 }
 
-/* Count the signals that were told of in no sample. */
+/* Count the signals without an update so far. */
 void count_to_come(intake *in)
 {
     int32_t i;
@@ -317,7 +318,7 @@ void count_to_come(intake *in)
     }
 }
 
-/* Forget what came. */
+/* Reset input health. */
 void forget_arrivals(intake *in)
 {
     int32_t i;
@@ -343,8 +344,8 @@ void free_intake(intake *in)
     (void)memset(in, 0, sizeof *in);
 }
 
-/* Learn how names and fields are read; false with an error. `words` and `kinds` are of signals,
- * events, fields; `single` is of names. */
+/* Set up how names and fields are read; false with an error. `words` and `kinds` are by signal, event,
+ * field; `single` by name. */
 bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyObject *words,
                         PyObject *kinds, PyObject *single)
 {

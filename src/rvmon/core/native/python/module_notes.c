@@ -1,12 +1,10 @@
-/* How module.c gives out notes.
- *
- * What is given out outlives the monitor: nothing of it is the core's memory. An attempt has a copy of
- * its words, which become bytes when someone asks. A piece of letters hangs on to bytes, which attempts
- * share: of a full one they are its letters; of one that grows there is room for all that it can have, and
- * behind that a word says how many are written. An attempt knows how many of them are its own. */
+/* Handing out notes. An attempt copies the words of its note, and makes bytes of them when asked.
+ * Letters are shared: a piece holds a bytes object. For a full piece that is its letters; for one still
+ * growing it has the piece's full capacity, and a last word that counts those written. An attempt knows
+ * how many of them are its own, so later letters may be added without copying. */
 #include "python/module.h"
 
-/* A piece is gone, which may be while other threads of Python run. */
+/* The core freed a piece: remember its object, as this may happen while Python code must not run. */
 void note_dropped(void *user, void *held)
 {
     note_cache *cache = (note_cache *)user;
@@ -14,7 +12,7 @@ void note_dropped(void *user, void *held)
         const size_t room = (cache->dropped_room > 0) ? 2 * cache->dropped_room : 64;
         PyObject **made = realloc(cache->dropped, room * sizeof *made);
         if (made == NULL) {
-            return; /* better than to free it here */
+            return; /* a leak is better than running code here */
         }
         cache->dropped = made;
         cache->dropped_room = room;
@@ -36,7 +34,7 @@ PyObject *bytes_of_words(const int64_t *words, int64_t count)
     return PyBytes_FromStringAndSize((const char *)words, (Py_ssize_t)count * (Py_ssize_t)sizeof *words);
 }
 
-/* The letters of a full piece; it hangs on to them. */
+/* The letters of a full piece, made once. */
 static PyObject *bytes_of_full(rv_piece *piece)
 {
     PyObject **held = (PyObject **)rv_piece_held(piece, 0);
@@ -53,7 +51,7 @@ static PyObject *bytes_of_full(rv_piece *piece)
     return Py_NewRef(*held);
 }
 
-/* Bytes of which the first words are the first ones of a piece, which hangs on to them. */
+/* Bytes that begin with at least `count` words of a growing piece. */
 static PyObject *bytes_from(rv_piece *piece, int32_t count)
 {
     PyObject **held = (PyObject **)rv_piece_held(piece, 0);
@@ -78,7 +76,7 @@ static PyObject *bytes_from(rv_piece *piece, int32_t count)
     return Py_NewRef(*held);
 }
 
-/* The first words of some bytes. */
+/* The first `count` words of some bytes; the bytes themselves if these are all. */
 static PyObject *first_words(PyObject *bytes, int32_t count)
 {
     if (PyBytes_Size(bytes) == (Py_ssize_t)count * (Py_ssize_t)sizeof(int64_t)) {
@@ -87,7 +85,7 @@ static PyObject *first_words(PyObject *bytes, int32_t count)
     return bytes_of_words((const int64_t *)(const void *)PyBytes_AsString(bytes), count);
 }
 
-/* The pieces of a note but for the last one, as a tuple, on which that one hangs. */
+/* The full pieces of a note, as a tuple, which its last piece holds for the next note. */
 static PyObject *pieces_of(const rv_note *note)
 {
     PyObject **held = (PyObject **)rv_piece_held(note->last, 1);
@@ -128,7 +126,7 @@ static PyObject *pieces_of(const rv_note *note)
     return made;
 }
 
-/* The letters of a note: all pieces but for the last one, and that one; both None if there are none. */
+/* The letters of a note: the tuple of full pieces, and the last piece; None twice if it has none. */
 PyObject *letters_of(const rv_note *note)
 {
     PyObject *pieces;
@@ -188,8 +186,8 @@ void free_note(note_copy *note)
     Py_CLEAR(note->last);
 }
 
-/* The values that an attempt captured, or None; with a note (values, note, state, pieces, last
- * piece), None for what there is not. */
+/* The captured values, or None; with a note (values, note, state, pieces, last piece), None for what is
+ * missing. */
 PyObject *noted_with(const note_copy *note, PyObject *values)
 {
     PyObject *words;

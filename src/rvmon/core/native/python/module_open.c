@@ -1,7 +1,7 @@
-/* How module.c makes a monitor: from a plan in bytes, the readings of its names and the type of attempts. */
+/* Making a monitor from a plan, the readings of its names and the attempt type; saving and loading. */
 #include "python/module.h"
 
-/* Open the plan in some bytes; false with an error. */
+/* Open the plan in `data`; false with an error. It is copied only if it is not aligned to 8. */
 static bool open_plan(monitor *c, PyObject *data)
 {
     const rv_memory heap = {malloc, realloc, free, NULL, 0};
@@ -34,7 +34,7 @@ static bool open_plan(monitor *c, PyObject *data)
     return true;
 }
 
-/* Learn how many values each requirement captures; false with an error. */
+/* Look up how many values each requirement captures; false with an error. */
 static bool find_captured(monitor *c)
 {
     int32_t i;
@@ -55,7 +55,7 @@ static bool find_captured(monitor *c)
     return true;
 }
 
-/* Say which names have no source; false with an error. */
+/* Declare names without a source; false with an error. */
 static bool set_absent(const monitor *c, PyObject *absent)
 {
     int32_t i;
@@ -104,9 +104,9 @@ PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
     return NULL;
 }
 
-/* How module.c writes a run down, and takes one up. */
+/* Snapshots. */
 
-/* save(): the run as bytes; what was decided has been given out. */
+/* save(): the run as bytes; decided attempts have been handed out before. */
 PyObject *save_of(monitor *c, PyObject *unused)
 {
     const size_t size = rv_save(c->m, NULL, 0);
@@ -119,7 +119,8 @@ PyObject *save_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* load(bytes): go on as that run; false, and nothing is done, if they are no run of this plan. */
+/* load(bytes): continue that run; false, without effect, if the bytes are not a run of this plan. A new
+ * monitor is loaded and replaces the old one only on success. */
 PyObject *load_of(monitor *c, PyObject *bytes)
 {
     const rv_memory heap = {malloc, realloc, free, NULL, 0};
@@ -142,7 +143,7 @@ PyObject *load_of(monitor *c, PyObject *bytes)
         code = rv_keep(made, c->keep);
     }
     if (code == RV_OK) {
-        (void)rv_reset(c->m); /* pieces give back what hangs on them */
+        (void)rv_reset(c->m); /* releases what pieces hold */
         rv_free(c->m);
         free_dropped(&c->notes);
         c->m = made;

@@ -1,10 +1,11 @@
-/* What module.c makes of a decision: the type Record, which has all fields of an attempt at fixed places.
- * Python's type of attempts derives from it and works out those that nobody has set when someone asks.
+/* The type Record: an attempt with its fields at fixed places. Python's attempt type derives from it
+ * and computes the late fields when they are first asked for.
  *
- * The collector does not look at those that are made here: nothing that they refer to refers to them. */
+ * Records are not tracked by the garbage collector: they refer to nothing that can refer back, and
+ * tracking millions of them would cost more than making them. */
 #include "python/module.h"
 
-/* Whether its type, as each that Python makes, is one that the collector looks at. */
+/* Whether the type has a header for the collector, as every class made in Python has. */
 static bool is_collected(PyTypeObject *type)
 {
     return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
@@ -29,7 +30,7 @@ void free_uncollected(PyObject *self)
     Py_DECREF(type);
 }
 
-/* A record without fields; NULL with an error. */
+/* An empty record, which the collector does not track; NULL with an error. */
 attempt_record *new_record(PyTypeObject *type)
 {
     attempt_record *made = (attempt_record *)new_uncollected(type);
@@ -52,7 +53,7 @@ static void record_dealloc(PyObject *self)
     free_uncollected(self);
 }
 
-/* What was set; or the values that it captured, and behind them the note, if there is one. */
+/* What was set; else the captured values with the note, if there is one. */
 static PyObject *get_noted(PyObject *self, void *unused)
 {
     attempt_record *own = (attempt_record *)self;
@@ -80,7 +81,7 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     return 0;
 }
 
-/* The field at a place, which may be worked out now. */
+/* A late field, computed now if it was not. */
 static PyObject *get_late(PyObject *self, void *place)
 {
     PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
@@ -165,8 +166,8 @@ static bool add_name(PyObject *names, const char *text)
     return done;
 }
 
-/* Add a type to the module, which says of itself what a dataclass that derives from it need not find
- * places for; false with an error. */
+/* Add a type to the module. Its __slots__ list all fields, so that a dataclass deriving from it adds
+ * none of its own; false with an error. */
 bool add_base_type(PyObject *module, const char *name, PyType_Spec *spec, const PyMemberDef *set,
                    const PyGetSetDef *got)
 {

@@ -1,7 +1,7 @@
-/* What module.c says of a run: attempts that are decided or open, records, counts. */
+/* Reading a run from Python: attempts, records, counts, input health, coverage, situations. */
 #include "python/module.h"
 
-/* arrivals(): what came of each name and field, as bytes of `arrival`. */
+/* arrivals(): input health by name and field, as bytes of `arrival`. */
 PyObject *arrivals_of(monitor *c, PyObject *unused)
 {
     (void)unused;
@@ -9,7 +9,7 @@ PyObject *arrivals_of(monitor *c, PyObject *unused)
                                      (Py_ssize_t)c->in.all * (Py_ssize_t)sizeof(arrival));
 }
 
-/* take_arrivals(bytes): go on from those; false, and nothing is done, if they are none of this plan. */
+/* take_arrivals(bytes): restore input health; false if the bytes do not fit the plan. */
 PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
 {
     const Py_ssize_t size = PyBytes_Size(bytes);
@@ -24,7 +24,7 @@ PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
     return Py_NewRef(Py_True);
 }
 
-/* keep(most): the newest records of each requirement and verdict. */
+/* keep(most): keep the newest records of each requirement and verdict. */
 PyObject *keep_of(monitor *c, PyObject *most)
 {
     const long long count = PyLong_AsLongLong(most);
@@ -45,7 +45,7 @@ PyObject *flush_of(monitor *c, PyObject *unused)
     return rv_spoilt(c->m) ? PyErr_NoMemory() : decided_since(c);
 }
 
-/* The attempts that are undecided now, and those that will stay so. */
+/* open(): the attempts that are undecided, including those settled as such at the end. */
 PyObject *open_of(monitor *c, PyObject *unused)
 {
     PyObject *made;
@@ -62,7 +62,7 @@ PyObject *open_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* The letters of all notes of records, as they are numbered there. */
+/* The letter spans that notes refer to, by number. */
 static PyObject *spans_of(const monitor *c)
 {
     PyObject *made = PyList_New(0);
@@ -78,8 +78,8 @@ static PyObject *spans_of(const monitor *c)
     return made;
 }
 
-/* The records from `first` on as bytes, and as many captured values for each of them as any has; the
- * words of all notes, and the letters that they refer to. */
+/* Records from `first` on as bytes, with captured values (`sizes.captured` places each), all note
+ * words, and the letter spans. */
 PyObject *records_from(const monitor *c, int64_t first)
 {
     const rv_record *records;
@@ -117,8 +117,8 @@ PyObject *records_of(monitor *c, PyObject *unused)
     return records_from(c, 0);
 }
 
-/* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
- * ever true or false, and nothing came too late for it. */
+/* counts(): per requirement, attempts failed, passed, open; and whether its trigger was ever known and
+ * nothing came too late. */
 PyObject *counts_of(monitor *c, PyObject *unused)
 {
     PyObject *made = rv_spoilt(c->m) ? PyErr_NoMemory() : PyList_New(0);
@@ -137,7 +137,7 @@ PyObject *counts_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* Of each signal that went stale its number, how often it did, and when first. */
+/* stale(): number, count and first instant of each signal that went stale. */
 PyObject *stale_of(monitor *c, PyObject *unused)
 {
     PyObject *made = PyList_New(0);
@@ -157,14 +157,14 @@ PyObject *stale_of(monitor *c, PyObject *unused)
     return made;
 }
 
-/* What module.c tells of what is kept beside attempts. */
+/* Coverage, truths and situations. */
 
 PyObject *instant(int64_t t, int64_t none)
 {
     return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
 }
 
-/* Where an operator has a value, as bytes. */
+/* The ranges at which an operator has a value, as bytes. */
 static PyObject *known_of(const monitor *c, int32_t number, bool better, bool value)
 {
     const rv_range *found;
@@ -177,7 +177,7 @@ static PyObject *known_of(const monitor *c, int32_t number, bool better, bool va
                                      (Py_ssize_t)count * (Py_ssize_t)sizeof *found);
 }
 
-/* truths(operator): where it is surely true, and where it is surely false. */
+/* truths(operator): ranges where it is surely true, and surely false. */
 PyObject *truths_of(monitor *c, PyObject *number)
 {
     const long long place = PyLong_AsLongLong(number);
@@ -202,7 +202,7 @@ PyObject *truths_of(monitor *c, PyObject *number)
     return Py_BuildValue("NN", is, is_not);
 }
 
-/* hits(): of each item how often it was hit, and when first, as bytes. */
+/* hits(): count and first hit of each item, as bytes. */
 PyObject *hits_of(monitor *c, PyObject *unused)
 {
     int32_t items;
@@ -213,7 +213,7 @@ PyObject *hits_of(monitor *c, PyObject *unused)
                                                        (Py_ssize_t)items * (Py_ssize_t)sizeof *hits);
 }
 
-/* situation(now): how the run stands, as bytes, and the next instant at which time may change that. */
+/* situation(now): the relative state as bytes, and the next instant at which time may change it. */
 PyObject *situation_of(monitor *c, PyObject *at)
 {
     const long long now = PyLong_AsLongLong(at);
@@ -251,8 +251,7 @@ PyObject *situation_of(monitor *c, PyObject *at)
     return made;
 }
 
-/* passages(requirement): how many locations there are, and from each to each how often attempts went, and
- * when first, as bytes. */
+/* passages(requirement): the number of locations, and the moves between them as bytes. */
 PyObject *passages_of(monitor *c, PyObject *requirement)
 {
     const long long number = PyLong_AsLongLong(requirement);

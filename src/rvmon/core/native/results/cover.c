@@ -37,13 +37,13 @@ static bool make_covering(home *h)
     }
     c->hits = arena_take(a, (size_t)(c->items + 1) * sizeof *c->hits);
     c->current_items = arena_take(a, (size_t)(c->items + 1) * sizeof *c->current_items);
-    c->stands = arena_take(a, (size_t)c->items + 1);
+    c->is_current = arena_take(a, (size_t)c->items + 1);
     c->groups = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups);
     c->groups_called = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups_called);
     c->called = arena_take(a, (size_t)p->watches.count * sizeof *c->called);
     c->is_called = arena_take(a, (size_t)p->watches.count);
     c->bins = arena_take(a, (size_t)(most + 1) * sizeof *c->bins);
-    if ((c->hits == NULL) || (c->current_items == NULL) || (c->stands == NULL) || (c->groups == NULL)
+    if ((c->hits == NULL) || (c->current_items == NULL) || (c->is_current == NULL) || (c->groups == NULL)
         || (c->groups_called == NULL) || (c->called == NULL) || (c->is_called == NULL)
         || (c->bins == NULL)) {
         return false;
@@ -62,7 +62,7 @@ bool begin_cover(home *h)
     }
     c = h->covering;
     (void)memset(c->hits, 0, (size_t)c->items * sizeof *c->hits);
-    (void)memset(c->stands, 0, (size_t)c->items);
+    (void)memset(c->is_current, 0, (size_t)c->items);
     (void)memset(c->groups, 0, (size_t)p->groups.count * sizeof *c->groups);
     (void)memset(c->is_called, 0, (size_t)p->watches.count);
     c->called_count = 0;
@@ -111,14 +111,14 @@ static bool may_be_true(const run *r, const group_plan *g, int32_t item)
 
 /* Count an item that is true, unless it is current, i.e. was counted in this stretch. Pulses do not
  * become current. */
-static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
+static void count_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
 {
-    if (c->stands[item] == 0U) {
+    if (c->is_current[item] == 0U) {
         rv_hit *hit = &c->hits[item];
         hit->first = (hit->count == 0) ? t : hit->first;
         hit->count++;
         if (!passes && (g->occasion < 0)) {
-            c->stands[item] = 1;
+            c->is_current[item] = 1;
             c->current_items[g->first + s->current] = item;
             s->current++;
         }
@@ -127,7 +127,7 @@ static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item
 
 /* Count the items that are true: collect the true bins of each axis, then go through all combinations
  * like an odometer. */
-static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
+static void count_items(run *r, const group_plan *g, covered *s, int64_t t)
 {
     covering *c = r->home->covering;
     const int32_t *axes = LIST(PLAN(r), g->axes);
@@ -159,7 +159,7 @@ static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
             item = item * axes[2 * k + 1] + c->bins[at[k]];
             passes = passes || (r->part->watches[axes[2 * k] + c->bins[at[k]]].is_pulse != 0);
         }
-        meet_item(c, g, s, g->first + item, passes, t);
+        count_item(c, g, s, g->first + item, passes, t);
         for (k = count - 1; (k >= 0) && (at[k] + 1 == end[k]); k--) {
             at[k] = begin[k];
         }
@@ -182,7 +182,7 @@ static void drop_items(run *r, const group_plan *g, covered *s)
             items[kept] = items[i];
             kept++;
         } else {
-            c->stands[items[i]] = 0;
+            c->is_current[items[i]] = 0;
         }
     }
     s->current = kept;
@@ -202,7 +202,7 @@ static void look_at_group(run *r, int32_t number, int64_t t)
         drop_items(r, g, s);
     }
     if (looks) {
-        meet_items(r, g, s, t);
+        count_items(r, g, s, t);
     }
 }
 

@@ -143,7 +143,7 @@ typedef struct {
     uint32_t number;
     int32_t requirement;
     int32_t at;
-} lasting;
+} undecidable_entry;
 
 int rv_keep(rv_monitor *m, int64_t most)
 {
@@ -228,10 +228,10 @@ static bool trim_records(rv_monitor *m)
     return true;
 }
 
-static int compare_laid(const void *one, const void *other)
+static int compare_undecidable(const void *one, const void *other)
 {
-    const lasting *a = one;
-    const lasting *b = other;
+    const undecidable_entry *a = one;
+    const undecidable_entry *b = other;
     if (a->requirement != b->requirement) {
         return (a->requirement < b->requirement) ? -1 : 1;
     }
@@ -243,7 +243,7 @@ static int compare_laid(const void *one, const void *other)
 
 /* Collect the undecidable attempts of a part into `to`, unless they belong to a running episode;
  * returns how many. `to` NULL: only count. */
-static int64_t gather_laid(const home *h, lasting *to)
+static int64_t gather_undecidable(const home *h, undecidable_entry *to)
 {
     int64_t count = 0;
     const run *r;
@@ -269,7 +269,7 @@ static int64_t gather_laid(const home *h, lasting *to)
 }
 
 /* Remove the marked attempts of a judge, counting them as inconclusive, which they are for good. */
-static void drop_laid(run *r, int32_t index)
+static void drop_undecidable(run *r, int32_t index)
 {
     home *h = r->home;
     judge *j = &r->judges[index];
@@ -284,7 +284,7 @@ static void drop_laid(run *r, int32_t index)
         *link = attempt_at(h, at)->next;
         if (h->part->plan->captured > 0) {
             h->inconclusive++;
-            h->turns[at].judge = NULL;
+            h->captured_attempts[at].judge = NULL;
             touch_run(r); /* it may be released now */
         } else {
             owner->inconclusive++;
@@ -301,11 +301,11 @@ static void drop_laid(run *r, int32_t index)
 }
 
 /* Drop the oldest undecidable attempts of each requirement of a part; returns how many are left. */
-static int64_t trim_laid(rv_monitor *m, home *h)
+static int64_t trim_undecidable(rv_monitor *m, home *h)
 {
-    const int64_t count = gather_laid(h, NULL);
-    const size_t size = (size_t)count * sizeof(lasting);
-    lasting *all = (count > m->keep) ? arena_take(&m->memory, size) : NULL;
+    const int64_t count = gather_undecidable(h, NULL);
+    const size_t size = (size_t)count * sizeof(undecidable_entry);
+    undecidable_entry *all = (count > m->keep) ? arena_take(&m->memory, size) : NULL;
     int64_t left = count;
     int64_t own = 0;
     int64_t i;
@@ -314,8 +314,8 @@ static int64_t trim_laid(rv_monitor *m, home *h)
     if (all == NULL) {
         return count;
     }
-    (void)gather_laid(h, all);
-    qsort(all, (size_t)count, sizeof *all, compare_laid);
+    (void)gather_undecidable(h, all);
+    qsort(all, (size_t)count, sizeof *all, compare_undecidable);
     for (i = 0; i < count; i++) {
         own = ((i > 0) && (all[i].requirement == all[i - 1].requirement)) ? own + 1 : 0;
         if (own >= m->keep) {
@@ -325,7 +325,7 @@ static int64_t trim_laid(rv_monitor *m, home *h)
     }
     for (r = h->root; r != NULL; r = following(h, r)) {
         for (k = 0; k < h->part->plan->judges.count; k++) {
-            drop_laid(r, k);
+            drop_undecidable(r, k);
         }
     }
     arena_give(&m->memory, all, size);
@@ -341,13 +341,13 @@ bool rv_trim(rv_monitor *m)
     int64_t left = 0;
     int32_t i;
     if ((m->kept_of == NULL) || m->spoilt
-        || (!m->finished && (m->record_count + m->laid_count <= m->trim_at))) {
+        || (!m->finished && (m->record_count + m->undecidable_count <= m->trim_at))) {
         return false;
     }
     for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
-        left += trim_laid(m, &m->homes[i]);
+        left += trim_undecidable(m, &m->homes[i]);
     }
-    m->laid_count = left;
+    m->undecidable_count = left;
     trimmed = trim_records(m);
     m->trim_at = 2 * (m->record_count + left) + PATIENCE;
     return trimmed;

@@ -89,7 +89,7 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user)
     bool more = true;
     int32_t i;
     int32_t k;
-    tell_open(m, true);
+    bracket_open_notes(m, true);
     for (i = 0; more && (i < m->plan.part_count); i++) {
         run *r;
         for (r = m->homes[i].root; more && (r != NULL); r = following(&m->homes[i], r)) {
@@ -98,7 +98,7 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user)
             }
         }
     }
-    tell_open(m, false);
+    bracket_open_notes(m, false);
 }
 
 /* Add the counts of a requirement in a part. A part with captured values counts in its home, as its
@@ -193,7 +193,7 @@ int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first)
  * last tick that has passed for sure. */
 int64_t rv_end(const rv_monitor *m, int64_t t)
 {
-    int64_t end = (m->heard > m->last) ? m->heard : m->last;
+    int64_t end = (m->outage_at > m->last) ? m->outage_at : m->last;
     if (end != RV_NO_TIME) {
         end = (t > end) ? t : end;
         if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {

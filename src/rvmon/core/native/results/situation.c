@@ -154,7 +154,7 @@ static void put_token(situation *s, const machine *a, int32_t location, const in
     }
 }
 
-static void come_next(situation *s, const machine *a, int32_t location, int64_t *clocks)
+static void note_next_cut(situation *s, const machine *a, int32_t location, int64_t *clocks)
 {
     token k;
     if (location > PASSED) {
@@ -178,9 +178,9 @@ static void put_attempt(situation *s, const run *r, int32_t index, attempt *x)
         const machine *a = &r->part->machines[index];
         put_token(s, a, x->location, x->clocks);
         put_token(s, a, x->parted ? x->better : x->location, x->clocks + (x->parted ? width : 0));
-        come_next(s, a, x->location, x->clocks);
+        note_next_cut(s, a, x->location, x->clocks);
         if (x->parted) {
-            come_next(s, a, x->better, x->clocks + width);
+            note_next_cut(s, a, x->better, x->clocks + width);
         }
     }
 }
@@ -198,7 +198,7 @@ static int32_t order_of_words(const int64_t *one, const int64_t *other, int64_t 
 
 /* Sort the records of `width` words from `start` on, drop duplicates, and append how many are left:
  * attempts in equal states are one. By insertion, as there are few. */
-static void sort_told(situation *s, int64_t start, int64_t width)
+static void sort_unique(situation *s, int64_t start, int64_t width)
 {
     int64_t held[PIECE_MOST];
     int64_t *told = s->words + start;
@@ -239,7 +239,7 @@ static void put_queue(situation *s, run *r, int32_t index)
             put_word(s, 1);
             put_token(s, a, q->segments[i].location, clocks);
             put_token(s, a, q->segments[i].location, clocks);
-            come_next(s, a, q->segments[i].location, clocks);
+            note_next_cut(s, a, q->segments[i].location, clocks);
         }
     }
 }
@@ -268,7 +268,7 @@ static void put_judge(situation *s, run *r, int32_t index)
     if (!queue_is_empty(j)) {
         put_queue(s, r, index);
     }
-    sort_told(s, start, width);
+    sort_unique(s, start, width);
 }
 
 /* With a clock: inputs that may be captured at the next tick. */

@@ -258,7 +258,7 @@ static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
 
 /* Whether rows may be passed over at all: not before the first position, not if samples are stored, not
  * with an outage. */
-static bool is_calm(const rv_monitor *m)
+static bool may_pass_rows(const rv_monitor *m)
 {
     int32_t i;
     for (i = 0; i < m->plan.part_count; i++) {
@@ -267,7 +267,7 @@ static bool is_calm(const rv_monitor *m)
             return false;
         }
     }
-    return may_pass_measured(m) && !m->finished && !m->spoilt && (m->heard == RV_NO_TIME)
+    return may_pass_measured(m) && !m->finished && !m->spoilt && (m->outage_at == RV_NO_TIME)
            && (m->dense_until == RV_NO_TIME);
 }
 
@@ -286,7 +286,7 @@ void look_ahead(batch *s, int64_t row)
 {
     const int64_t left = s->count - row;
     int32_t i;
-    if (!is_calm(s->m)) {
+    if (!may_pass_rows(s->m)) {
         return;
     }
     s->together = (left < TOGETHER) ? left : TOGETHER;

@@ -42,11 +42,11 @@ void settle_rows(batch *s, int64_t rows)
 {
     rv_monitor *m = s->m;
     s->unsettled += rows;
-    if (m->hurries && (s->unsettled >= TOGETHER) && !m->spoilt && (m->reached != RV_NO_TIME)) {
+    if (m->defers_margins && (s->unsettled >= TOGETHER) && !m->spoilt && (m->reached != RV_NO_TIME)) {
         s->unsettled = 0;
-        m->hurries = false;
+        m->defers_margins = false;
         settle_margins(m, m->reached);
-        m->hurries = true;
+        m->defers_margins = true;
     }
 }
 

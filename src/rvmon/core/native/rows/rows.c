@@ -38,7 +38,7 @@ static bool has_payload(const column_watch *w, int64_t row)
     return false;
 }
 
-static rv_update *further(laid *made, int32_t name, int32_t says)
+static rv_update *next_update(row_sample *made, int32_t name, int32_t says)
 {
     rv_update *u = &made->updates[made->count];
     made->count++;
@@ -50,7 +50,7 @@ static rv_update *further(laid *made, int32_t name, int32_t says)
 }
 
 /* The update of a signal at one instant: the last value in its rows. */
-static void lay_signal(laid *made, const column_watch *w, int64_t row, int64_t end)
+static void add_signal(row_sample *made, const column_watch *w, int64_t row, int64_t end)
 {
     int64_t i;
     for (i = end - 1; i >= row; i--) {
@@ -58,14 +58,15 @@ static void lay_signal(laid *made, const column_watch *w, int64_t row, int64_t e
             const rv_number value = number_in(w->column, i);
             const bool known = value.kind != RV_UNKNOWN;
             if (known || !w->ignores_nan) {
-                further(made, w->column->name, known ? RV_SAYS_YES : RV_SAYS_UNKNOWN)->value = value;
+                next_update(made, w->column->name, known ? RV_SAYS_YES : RV_SAYS_UNKNOWN)->value
+                    = value;
                 return;
             }
         }
     }
 }
 
-static void lay_payload(laid *made, const column_watch *w, int64_t row)
+static void add_payload(row_sample *made, const column_watch *w, int64_t row)
 {
     rv_number *own = &made->fields[made->field_count];
     int32_t i;
@@ -73,12 +74,12 @@ static void lay_payload(laid *made, const column_watch *w, int64_t row)
         own[i] = number_in(&w->column->fields[i], row);
     }
     made->field_count += w->fields;
-    further(made, w->column->name, RV_SAYS_YES)->fields = own;
+    next_update(made, w->column->name, RV_SAYS_YES)->fields = own;
 }
 
 /* The updates of an event at one instant: one for each payload in its rows. Without a payload, one with
  * the most certain of what they say: YES over UNKNOWN over NO. */
-static void lay_event(laid *made, const column_watch *w, int64_t row, int64_t end)
+static void add_event(row_sample *made, const column_watch *w, int64_t row, int64_t end)
 {
     int32_t most = -1;
     bool carried = false;
@@ -89,16 +90,16 @@ static void lay_event(laid *made, const column_watch *w, int64_t row, int64_t en
             most = (says > most) ? says : most;
             if ((says == RV_SAYS_YES) && has_payload(w, i)) {
                 carried = true;
-                lay_payload(made, w, i);
+                add_payload(made, w, i);
             }
         }
     }
     if ((most >= 0) && !carried) {
-        (void)further(made, w->column->name, most);
+        (void)next_update(made, w->column->name, most);
     }
 }
 
-static void give_room(rv_monitor *m, laid *made, int32_t columns)
+static void free_sample(rv_monitor *m, row_sample *made, int32_t columns)
 {
     if (made->room > 0) {
         const size_t each = (size_t)columns * sizeof *made->updates;
@@ -110,7 +111,7 @@ static void give_room(rv_monitor *m, laid *made, int32_t columns)
 }
 
 /* Make room for a sample of `count` rows; false: memory is short. */
-static bool make_room_for(rv_monitor *m, laid *made, int64_t count, int32_t columns)
+static bool make_room_for(rv_monitor *m, row_sample *made, int64_t count, int32_t columns)
 {
     const size_t each = (size_t)columns * sizeof *made->updates;
     const size_t fields = (size_t)m->plan.header->fields * sizeof *made->fields;
@@ -121,7 +122,7 @@ static bool make_room_for(rv_monitor *m, laid *made, int64_t count, int32_t colu
             m->spoilt = true;
             return false;
         }
-        give_room(m, made, columns);
+        free_sample(m, made, columns);
         made->updates = updates;
         made->fields = numbers;
         made->room = count;
@@ -143,7 +144,7 @@ static int64_t end_of_instant(const batch *s, int64_t row)
  * change something are passed on; the rest is held by turn_from later. */
 static int judge_instant(batch *s, int64_t row, int64_t end)
 {
-    laid *made = &s->laid;
+    row_sample *made = &s->sample;
     const int64_t k = row - s->first;
     const bool known = (k < s->together) && (end == row + 1) && (s->m->shapes == NULL);
     int32_t i;
@@ -158,9 +159,9 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
             continue;
         }
         if (w->is_event) {
-            lay_event(made, w, row, end);
+            add_event(made, w, row, end);
         } else {
-            lay_signal(made, w, row, end);
+            add_signal(made, w, row, end);
         }
     }
     return rv_step(s->m, s->times[row], made->updates, made->count);
@@ -181,7 +182,7 @@ int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column 
         m->spoilt = true;
         status = RV_NO_MEMORY;
     }
-    m->hurries = m->shapes != NULL;
+    m->defers_margins = m->shapes != NULL;
     while ((status == RV_OK) && (row < count)) {
         row = pass_over(&s, row);
         if (row < count) {
@@ -196,8 +197,8 @@ int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column 
         }
     }
     end_rows(&s, row);
-    m->hurries = false;
-    give_room(m, &s.laid, columns_count);
+    m->defers_margins = false;
+    free_sample(m, &s.sample, columns_count);
     *done = row;
     return status;
 }

@@ -52,7 +52,7 @@ typedef struct {
     int64_t room;              /* capacity in rows */
     int32_t count;
     int32_t field_count;
-} laid;
+} row_sample;
 
 typedef struct {
     rv_monitor *m;
@@ -60,7 +60,7 @@ typedef struct {
     int64_t count;
     column_watch *watches;
     int32_t columns;
-    laid laid;
+    row_sample sample;
     int64_t first;             /* the first row examined */
     int64_t together;          /* rows examined; 0: none are */
     int64_t fresh;             /* updates before this row have postponed staleness */

@@ -7,7 +7,7 @@
  *
  * Captured values may become unknown afterwards: while a trigger is in doubt, an attempt may have begun
  * at any of its positions, with other values. The parent run checks that at each of its positions
- * (check after look_after), and from the first difference on (`cut`) nodes LAPSED are TRUE and the
+ * (check after check_children), and from the first difference on (`cut`) nodes LAPSED are TRUE and the
  * attempt cannot pass. */
 #include "formulas/formulas.h"
 #include "input/input.h"
@@ -29,16 +29,16 @@ bool is_idle(const run *r)
 }
 
 /* The instant by which an attempt is ordered among those that became sure, or that are in doubt. */
-static int64_t turn_of(const home *h, int32_t at, bool sure)
+static int64_t order_instant(const home *h, int32_t at, bool sure)
 {
-    return sure ? h->turns[at].became : attempt_at(h, at)->triggered;
+    return sure ? h->captured_attempts[at].became : attempt_at(h, at)->triggered;
 }
 
 /* Whether one attempt is to be numbered before another. */
 static bool is_earlier(const home *h, int32_t at, int32_t other, bool sure)
 {
-    const int64_t t = turn_of(h, at, sure);
-    const int64_t other_t = turn_of(h, other, sure);
+    const int64_t t = order_instant(h, at, sure);
+    const int64_t other_t = order_instant(h, other, sure);
     const int64_t triggered = attempt_at(h, at)->triggered;
     const int64_t other_triggered = attempt_at(h, other)->triggered;
     if (t != other_t) {
@@ -47,22 +47,22 @@ static bool is_earlier(const home *h, int32_t at, int32_t other, bool sure)
     if (triggered != other_triggered) {
         return triggered < other_triggered;
     }
-    return h->turns[at].judge->rank < h->turns[other].judge->rank;
+    return h->captured_attempts[at].judge->rank < h->captured_attempts[other].judge->rank;
 }
 
 static int32_t *link_of(home *h, int32_t at, bool sure)
 {
-    return sure ? &h->turns[at].next_sure : &h->turns[at].next_doubt;
+    return sure ? &h->captured_attempts[at].next_sure : &h->captured_attempts[at].next_doubt;
 }
 
 /* Queue an attempt to be numbered: it became sure at `t`, or began in doubt. */
-void note_turn(run *r, int32_t at, int64_t t)
+void queue_numbering(run *r, int32_t at, int64_t t)
 {
     home *h = r->home;
     const bool sure = attempt_at(h, at)->sure;
     int32_t *ends = sure ? h->sure : h->doubtful;
     if (sure) {
-        h->turns[at].became = t;
+        h->captured_attempts[at].became = t;
     }
     *link_of(h, at, sure) = -1;
     if (ends[1] < 0) {
@@ -126,31 +126,31 @@ static int32_t in_order(home *h, int32_t first, bool sure)
 }
 
 /* Queue an attempt to be reported as decided. */
-void note_done(run *r, int32_t at)
+void queue_report(run *r, int32_t at)
 {
     home *h = r->home;
-    h->turns[at].next_done = -1;
+    h->captured_attempts[at].next_done = -1;
     if (h->done[1] < 0) {
         h->done[0] = at;
     } else {
-        h->turns[h->done[1]].next_done = at;
+        h->captured_attempts[h->done[1]].next_done = at;
     }
     h->done[1] = at;
 }
 
 /* Number the attempts that began or became sure in this call, then report the decided ones and free
  * their slots. */
-void flush_turns(home *h)
+void number_and_report(home *h)
 {
     int32_t at;
-    for (at = in_order(h, h->sure[0], true); at >= 0; at = h->turns[at].next_sure) {
+    for (at = in_order(h, h->sure[0], true); at >= 0; at = h->captured_attempts[at].next_sure) {
         h->count++;
         attempt_at(h, at)->number = h->count;
         margin_numbered(h->monitor, attempt_at(h, at)->record, true, h->count);
     }
-    for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->turns[at].next_doubt) {
+    for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->captured_attempts[at].next_doubt) {
         h->doubts++;
-        h->turns[at].doubt_number = h->doubts;
+        h->captured_attempts[at].doubt_number = h->doubts;
         margin_numbered(h->monitor, attempt_at(h, at)->record, false, h->doubts);
     }
     at = h->done[0];
@@ -158,7 +158,7 @@ void flush_turns(home *h)
     h->doubtful[0] = h->doubtful[1] = -1;
     h->done[0] = h->done[1] = -1;
     while (at >= 0) {
-        turn *own = &h->turns[at];
+        captured_attempt *own = &h->captured_attempts[at];
         const int32_t next = own->next_done;
         report(own->judge, own->rule, attempt_at(h, at), reported_number(own->judge, at), own->verdict,
                own->decision, own->decided, own->note);
@@ -178,8 +178,8 @@ static void capture(run *r, rv_number *values)
     rv_number *own = r->captured;
     rv_number *now = r->value;
     int32_t i;
-    if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
-        r->value = r->home->nothing; /* no signal is known here; windows see to themselves
+    if ((r->home->unknown_values != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
+        r->value = r->home->unknown_values; /* no signal is known here; windows see to themselves
                                       * (left_number) */
     }
     r->captured = values; /* a `let` may use those before it */
@@ -192,7 +192,7 @@ static void capture(run *r, rv_number *values)
 
 /* Whether an attempt may have begun at the parent's position with other values than it captured: the
  * trigger is in doubt there, and evaluating the captures now gives something else. */
-static bool may_be_other(run *r)
+static bool may_capture_other(run *r)
 {
     const judge_plan *j = &r->part->judges[r->judged];
     const part_plan *p = r->part->plan;
@@ -224,13 +224,13 @@ void mark_lapsed(run *r)
 }
 
 /* Check at position `t` of the parent whether the captured values remain known. */
-static void keep_watch(run *r, int64_t t)
+static void check_captured(run *r, int64_t t)
 {
     const uint8_t trigger = r->parent->truth[r->part->judges[0].trigger];
     int32_t at;
     if (is_idle(r) || (trigger == IS_FALSE)) {
         r->blurs = false;
-    } else if (r->blurs && (r->cut == NEVER) && may_be_other(r)) {
+    } else if (r->blurs && (r->cut == NEVER) && may_capture_other(r)) {
         r->cut = t;
         r->at.alarm = least(r->at.alarm, t);
         mark_lapsed(r);
@@ -260,7 +260,7 @@ void adopt(run *parent, run *child)
 }
 
 /* Release the run of an attempt that is over. */
-void let_go(run *r)
+void release_attempt_run(run *r)
 {
     if (r->previous_sibling != NULL) {
         r->previous_sibling->sibling = r->sibling;
@@ -290,7 +290,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     made->opens_at = -LIMIT;
     made->blurs = true;
     capture(r, made->captured);
-    if (watched && may_be_other(made)) {
+    if (watched && may_capture_other(made)) {
         made->cut = t;
     }
     if ((r->part->plan->flags & PART_REPLAYS) != 0) {
@@ -298,7 +298,7 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
         if (made->at.dense) {
             run_pass_dense(made, t);
         } else {
-            through(made, t, false);
+            pass_time(made, t, false);
         }
     } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
         reevaluate_varying(made, t, false);
@@ -310,13 +310,13 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     begin_here(made, index, t, triggered);
     set_alarm(made, next_position(made));
     if (watched) {
-        keep_watch(made, t);
+        check_captured(made, t);
     }
 }
 
 /* Check the captured values of the attempts triggered in this run, at its position `t`; tells in
  * stays_busy whether the next position has to be visited for them. */
-void look_after(run *r, int64_t t)
+void check_children(run *r, int64_t t)
 {
     run *one;
     bool some = false;
@@ -325,7 +325,7 @@ void look_after(run *r, int64_t t)
     for (one = r->first_child; one != NULL; one = one->sibling) {
         if (one->watched) {
             touch_run(one);
-            keep_watch(one, t);
+            check_captured(one, t);
             some = some || one->watched;
             other_next = other_next || (one->watched && (one->cut == NEVER));
         }

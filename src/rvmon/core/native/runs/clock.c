@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Fire the timers of nodes and of signals that go stale, up to `t`. */
-static void ring(run *r, int64_t t)
+static void fire_timers(run *r, int64_t t)
 {
     const int32_t nodes = r->part->plan->timers;
     while (timers_next(&r->wake) <= t) {
@@ -29,7 +29,7 @@ static void ring(run *r, int64_t t)
 
 /* The node by which this run starts attempts of a judge or ends its episodes; -1: neither happens here.
  * With captured values attempts start in one run and are judged in another. */
-int32_t followed(const run *r, int32_t index)
+int32_t trigger_node(const run *r, int32_t index)
 {
     const judge_plan *j = &r->part->judges[index];
     if (r->part->plan->captured == 0) {
@@ -52,7 +52,7 @@ void touch_all(run *r, uint8_t what)
 
 /* Register who has to look at the position at `t` even if no node changes there: repeating pulses,
  * attempts that move at every position, and judges whose timer is due. */
-static void call_up(run *r, int64_t t)
+static void touch_due_judges(run *r, int64_t t)
 {
     int32_t kept = 0;
     int32_t i;
@@ -87,10 +87,10 @@ static void start(run *r, int64_t t)
     r->at.starting = IS_TRUE;
     r->at.origin = t;
     r->at.begun = t;
-    look_at_all(r);
+    recheck_all(r);
 }
 
-void look_at_all(run *r)
+void recheck_all(run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->atoms.count; i++) {
@@ -104,7 +104,7 @@ void look_at_all(run *r)
  * trigger before attempts move, since it ends the obligation from this very position on; new attempts
  * start after existing ones have moved, so that those see each position once; and what failed here
  * restarts at the next position at the earliest. */
-void have_judged(run *r, int64_t t)
+void run_judges(run *r, int64_t t)
 {
     int32_t i;
     r->repeating_count = 0; /* starts below list each judge at most once again */
@@ -130,7 +130,7 @@ void have_judged(run *r, int64_t t)
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
         if ((r->judges[index].touched & TOUCHED_TRIGGER) != 0) {
-            const int32_t trigger = followed(r, index);
+            const int32_t trigger = trigger_node(r, index);
             if ((trigger >= 0) && take_trigger(r, index, r->truth[trigger])) {
                 begin(r, index, t, t);
             }
@@ -183,24 +183,24 @@ void visit(run *r, int64_t t)
     if (t >= r->at.ends_at) {
         end_outages(r, t);
     }
-    ring(r, t); /* first: a stale signal's atoms may become momentary ones */
+    fire_timers(r, t); /* first: a stale signal's atoms may become momentary ones */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
     if (r->opening && (t >= r->opens_at)) {
         r->opening = false;
-        if (!was_swallowed(r, t)) {
+        if (!is_opening_lost(r, t)) {
             touch_all(r, TOUCHED_TRIGGER);
         }
     }
-    call_up(r, t);
+    touch_due_judges(r, t);
     work_out(r, t);
     if ((r->truth_log != NULL) && (r->at.starting == IS_TRUE)) {
-        stand_at_first(r, t);
+        reset_truth_log(r, t);
     }
     r->at.position = t;
     r->at.awaited = NEVER;
-    have_judged(r, t);
+    run_judges(r, t);
     if (r->margins != NULL) {
         margins_visit(r, t); /* before occurrences are forgotten */
     }
@@ -210,7 +210,7 @@ void visit(run *r, int64_t t)
     if (apart) {
         r->over = r->over || r->at.gathered; /* captures may read them until the next position */
         r->at.gathered = false;
-        look_after(r, t);
+        check_children(r, t);
     } else if (r->at.gathered) {
         r->at.gathered = false;
         forget(r);
@@ -235,7 +235,7 @@ void reach(run *r, int64_t t)
 /* Let time pass up to `limit`, visiting the positions on the way at which something can change. If a
  * sample `comes` behind it, networks may leave what they find to that visit. Stops early are for
  * restarts: a failure may be followed at once by an attempt that changes what comes next. */
-void through(run *r, int64_t limit, bool comes)
+void pass_time(run *r, int64_t limit, bool comes)
 {
     const int32_t *index = r->part->networked;
     const int32_t networked = r->part->networked_count;
@@ -280,7 +280,7 @@ void through(run *r, int64_t limit, bool comes)
 void approach(run *r, int64_t t)
 {
     if (t > r->at.alarm) {
-        through(r, t - 1, true);
+        pass_time(r, t - 1, true);
     }
 }
 

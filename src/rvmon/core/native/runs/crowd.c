@@ -93,10 +93,10 @@ void delist(run *r, bool captured)
     } else {
         h->last_root = r->previous;
     }
-    set_aside(h, r);
+    recycle_run(h, r);
 }
 
-void set_aside(home *h, run *r)
+void recycle_run(home *h, run *r)
 {
     int32_t i;
     timers_set(&h->alarms, r->id, NEVER);

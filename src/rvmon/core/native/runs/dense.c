@@ -22,17 +22,17 @@ int64_t last_position(const rv_monitor *m)
 }
 
 /* Whether a judge has to see each tick, one by one. */
-static bool is_slow(const run *r, int32_t index)
+static bool needs_each_tick(const run *r, int32_t index)
 {
     return is_networked(r, index) && !r->judges[index].blind
            && (has_attempts(&r->judges[index]) || needs_every_position(r, index));
 }
 
-static bool goes_slowly(const run *r)
+static bool some_need_each_tick(const run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        if (is_slow(r, i)) {
+        if (needs_each_tick(r, i)) {
             return true;
         }
     }
@@ -46,7 +46,7 @@ static void give_up_networks(run *r)
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
         judge *j = &r->judges[i];
-        if (is_slow(r, i)) {
+        if (needs_each_tick(r, i)) {
             while (j->first >= 0) {
                 attempt *x = attempt_at(r->home, j->first);
                 x->parted = true;
@@ -82,9 +82,9 @@ void run_begin_dense(run *r, int64_t t)
     blank_out(r, t);
     r->at.position = t;
     touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
-    have_judged(r, t);
+    run_judges(r, t);
     if (apart) {
-        look_after(r, t);
+        check_children(r, t);
     }
 }
 
@@ -94,7 +94,7 @@ static int64_t next_tick(const run *r, int64_t limit)
 {
     const int64_t next = r->at.position + 1;
     const int64_t due = timers_next(&r->rules);
-    if ((r->at.position == r->at.dense_from) || (r->failing_count > 0) || goes_slowly(r)) {
+    if ((r->at.position == r->at.dense_from) || (r->failing_count > 0) || some_need_each_tick(r)) {
         return next; /* attempts in doubt; restarts; networks */
     }
     return (due < limit) ? ((due > next) ? due : next) : limit;
@@ -108,7 +108,7 @@ void run_pass_dense(run *r, int64_t limit)
     while ((r->at.position < limit) && !r->home->monitor->spoilt) {
         const bool second = r->at.position == r->at.dense_from;
         int64_t next;
-        if ((r->at.position - r->at.dense_from >= TICKS_MOST) && goes_slowly(r)) {
+        if ((r->at.position - r->at.dense_from >= TICKS_MOST) && some_need_each_tick(r)) {
             give_up_networks(r);
         }
         next = next_tick(r, limit);
@@ -120,7 +120,7 @@ void run_pass_dense(run *r, int64_t limit)
         for (i = 0; !second && (i < judges); i++) {
             if (!is_networked(r, i)) {
                 pass_ticks(r, i, next);
-            } else if (is_slow(r, i)) {
+            } else if (needs_each_tick(r, i)) {
                 touch(r, i, TOUCHED_LETTER);
             } else {
                 /* A network without open attempts. */
@@ -128,9 +128,9 @@ void run_pass_dense(run *r, int64_t limit)
         }
         r->at.before = next - 1;
         r->at.position = next;
-        have_judged(r, next);
+        run_judges(r, next);
         if (second && (r->part->plan->captured > 0)) {
-            look_after(r, next);
+            check_children(r, next);
         }
     }
 }
@@ -175,7 +175,7 @@ static void for_all(home *h, int64_t t, void (*act)(run *r, int64_t t))
 }
 
 /* Store a marker (SAYS_DENSE, SAYS_SPARSE) between the stored samples, for replay. */
-static void keep_word(home *h, int64_t t, int32_t says)
+static void keep_marker(home *h, int64_t t, int32_t says)
 {
     if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
         const int32_t count = h->past_count;
@@ -195,13 +195,13 @@ static void begin_one(run *r, int64_t t)
 }
 
 /* Make the array of unknown values that captures read in an outage; false: memory is short. */
-bool make_nothing(home *h)
+bool make_unknown_values(home *h)
 {
-    if (h->nothing == NULL) {
-        h->nothing = arena_take(&h->monitor->memory,
-                                (size_t)(h->part->plan->signals.count + 1) * sizeof *h->nothing);
+    if (h->unknown_values == NULL) {
+        h->unknown_values = arena_take(&h->monitor->memory,
+                                (size_t)(h->part->plan->signals.count + 1) * sizeof *h->unknown_values);
     }
-    return h->nothing != NULL;
+    return h->unknown_values != NULL;
 }
 
 /* An outage begins at `t` in every part. Until then a position is that of the last sample in any part;
@@ -212,7 +212,7 @@ bool begin_dense(rv_monitor *m, int64_t t)
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
         run *one;
-        if (!make_nothing(h)) {
+        if (!make_unknown_values(h)) {
             m->spoilt = true;
             return false;
         }
@@ -225,7 +225,7 @@ bool begin_dense(rv_monitor *m, int64_t t)
             h->previous = last_position(m);
             open_unknown(h, t);
         }
-        keep_word(h, t, SAYS_DENSE);
+        keep_marker(h, t, SAYS_DENSE);
         for_all(h, t, begin_one);
     }
     m->dense_until = NEVER;
@@ -250,7 +250,7 @@ void end_dense(rv_monitor *m)
     int32_t i;
     for (i = 0; i < m->plan.part_count; i++) {
         for_all(&m->homes[i], m->dense_until, run_end_dense);
-        keep_word(&m->homes[i], m->dense_until, SAYS_SPARSE);
+        keep_marker(&m->homes[i], m->dense_until, SAYS_SPARSE);
     }
     m->dense_end = m->dense_until;
     m->dense_until = RV_NO_TIME;

@@ -16,7 +16,7 @@ static bool is_apart(const home *h)
 
 static void come_through(run *r, int64_t t)
 {
-    through(r, t, false);
+    pass_time(r, t, false);
 }
 
 /* Let time pass up to `limit` in all runs, by alarms in order: so decisions are reported in order. */
@@ -59,18 +59,18 @@ void untouch_all(home *h)
 void rest_all(home *h)
 {
     int32_t i;
-    flush_turns(h);
+    number_and_report(h);
     for (i = 0; i < h->touched_count; i++) {
         if ((h->touched[i]->parent != NULL) && is_idle(h->touched[i])) {
             h->touched[i]->touched_now = false;
-            let_go(h->touched[i]);
+            release_attempt_run(h->touched[i]);
             h->touched[i] = NULL;
         }
     }
     for (i = 0; i < h->touched_count; i++) {
         run *r = h->touched[i];
         if ((r != NULL) && (r->parent == NULL) && (r != h->root)
-            && ((h->part->plan->flags & PART_FORGETS) != 0) && is_over(r)) {
+            && ((h->part->plan->flags & PART_FORGETS) != 0) && equals_root(r)) {
             r->touched_now = false;
             close_instance(r);
             h->touched[i] = NULL;
@@ -100,7 +100,7 @@ static void clear_home(home *h)
     h->doubtful[0] = h->doubtful[1] = -1;
     h->done[0] = h->done[1] = -1;
     h->count = h->doubts = h->passed = h->failed = h->inconclusive = 0;
-    h->given = h->past_count;
+    h->past_judged = h->past_count;
     forget_given(h);
     h->inbox_count = 0;
     h->alarm = NEVER;
@@ -140,9 +140,9 @@ bool home_begin(home *h)
             return false;
         }
         h->last_root = h->root;
-        h->lone = arena_take(&h->monitor->memory, h->stride);
+        h->scratch_attempt = arena_take(&h->monitor->memory, h->stride);
         h->room = arena_take(&h->monitor->memory, (size_t)(p->captured + 1) * sizeof *h->room);
-        if ((h->room == NULL) || (h->lone == NULL)) {
+        if ((h->room == NULL) || (h->scratch_attempt == NULL)) {
             return false;
         }
     }
@@ -168,7 +168,7 @@ bool home_reserve(home *h, int32_t attempts)
         if (made == NULL) {
             return false;
         }
-        set_aside(h, made);
+        recycle_run(h, made);
     }
     return true;
 }
@@ -183,7 +183,7 @@ void home_mark_absent(home *h, bool event, int32_t local)
 
 static void give_inbox(run *r, int64_t t)
 {
-    give(r, t, r->home->inbox, r->home->inbox_count);
+    give_sample(r, t, r->home->inbox, r->home->inbox_count);
 }
 
 /* Judge the sample in the inbox, in a part that captures values. */
@@ -212,7 +212,7 @@ void take_inbox(home *h, int64_t t)
 void home_sample(home *h, int64_t t)
 {
     if (!is_apart(h)) {
-        give(h->root, t, h->inbox, h->inbox_count);
+        give_sample(h->root, t, h->inbox, h->inbox_count);
         h->alarm = h->root->at.alarm;
     } else if (holds_back(h)) {
         hold_back(h, t);
@@ -232,7 +232,7 @@ static void come_to_instant(run *r, int64_t t)
 void home_wait(home *h, int64_t t)
 {
     if (!is_apart(h)) {
-        through(h->root, t - 1, true);
+        pass_time(h->root, t - 1, true);
         reach(h->root, t);
         set_alarm(h->root, next_position(h->root));
         h->alarm = h->root->at.alarm;
@@ -278,7 +278,7 @@ void home_begin_blank(home *h, int64_t t)
     const bool keeps = (h->part->plan->flags & PART_KEEPS_PAST) != 0;
     if (keeps) {
         keep_updates(h, t);
-        h->given = h->past_count;
+        h->past_judged = h->past_count;
         if (h->past_count > 0) {
             h->past[h->past_count - 1].says = SAYS_AHEAD;
         }
@@ -353,7 +353,7 @@ void home_come_to(home *h, int64_t end)
         give_held(h, end);
         pass_all(h, end);
     } else {
-        through(h->root, end, false);
+        pass_time(h->root, end, false);
     }
     for (one = h->root; one != NULL; one = following(h, one)) {
         for (i = 0; i < h->part->plan->judges.count; i++) {
@@ -382,7 +382,7 @@ void home_close(home *h, int64_t end, int64_t reached)
             reach_judge(one, i, reached);
         }
     }
-    flush_turns(h);
+    number_and_report(h);
     for (one = h->root; one != NULL; one = following(h, one)) {
         settle_all(one, end, reached);
     }

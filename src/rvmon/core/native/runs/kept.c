@@ -67,10 +67,10 @@ void keep_updates(home *h, int64_t t)
 void keep_given(home *h, int64_t t)
 {
     if (holds_back(h)) {
-        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* stored already */
+        h->past_judged += (h->inbox_count > 0) ? h->inbox_count : 1; /* stored already */
     } else if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
         keep_updates(h, t);
-        h->given = h->past_count;
+        h->past_judged = h->past_count;
     } else {
         /* No run replays it. */
     }
@@ -94,7 +94,7 @@ void replay(run *r)
             declare_no_source(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
-    while (first < h->given) {
+    while (first < h->past_judged) {
         const int64_t t = h->past[first].t;
         if ((GAP(r) == 0) && r->at.started && !r->at.dense) {
             r->at.position = h->previous;
@@ -127,7 +127,7 @@ void replay(run *r)
                 /* A sample without updates. */
             }
             first++;
-        } while ((first < h->given) && !h->past[first - 1].last);
+        } while ((first < h->past_judged) && !h->past[first - 1].last);
         if (!loss && !amid) {
             arrive(r, t);
         }
@@ -151,19 +151,19 @@ bool holds_back(const home *h)
 /* Drop the stored samples that were judged. */
 void forget_given(home *h)
 {
-    const int32_t left = h->past_count - h->given;
+    const int32_t left = h->past_count - h->past_judged;
     int32_t i;
-    for (i = 0; i < h->given; i++) {
+    for (i = 0; i < h->past_judged; i++) {
         if (h->past[i].fields != NULL) {
             arena_give(&h->monitor->memory, (void *)(uintptr_t)h->past[i].fields,
                        (size_t)h->part->events[h->past[i].local].fields * sizeof(rv_number));
         }
     }
-    if ((h->given > 0) && (left > 0)) {
-        (void)memmove(h->past, &h->past[h->given], (size_t)left * sizeof *h->past);
+    if ((h->past_judged > 0) && (left > 0)) {
+        (void)memmove(h->past, &h->past[h->past_judged], (size_t)left * sizeof *h->past);
     }
     h->past_count = left;
-    h->given = 0;
+    h->past_judged = 0;
 }
 
 /* Put the stored sample that begins at `first` back into the inbox, which was large enough when it
@@ -202,9 +202,9 @@ static bool recall(home *h, int32_t first)
 static void give_until(home *h, int64_t limit, int32_t end)
 {
     const int64_t gap = h->monitor->plan.header->gap;
-    if ((end > h->given) && (tick_from(gap, h->past[end - 1].t) <= limit)) {
-        while ((h->given < end) && recall(h, h->given)) {
-            const past_update *one = &h->past[h->given];
+    if ((end > h->past_judged) && (tick_from(gap, h->past[end - 1].t) <= limit)) {
+        while ((h->past_judged < end) && recall(h, h->past_judged)) {
+            const past_update *one = &h->past[h->past_judged];
             if (one->says > RV_SAYS_YES) {
                 lose_inbox(h, one->t);
             } else {

@@ -33,7 +33,7 @@ static int32_t hash_of_key(const rv_number *value, int32_t room)
 }
 
 /* Put a key into the chain of its hash. */
-static void hang(home *h, int32_t at)
+static void chain_key(home *h, int32_t at)
 {
     const int32_t hash = hash_of_key(&h->keys[at].value, h->key_room);
     h->keys[at].next = h->heads[hash];
@@ -65,7 +65,7 @@ static bool grow_keys(home *h)
         heads[i] = -1;
     }
     for (i = 0; i < h->key_count; i++) {
-        hang(h, i);
+        chain_key(h, i);
     }
     return true;
 }
@@ -112,12 +112,12 @@ static int32_t add_key(home *h, const rv_number *value, int64_t t)
     h->keys[at].occurred = t;
     h->keys[at].open = NULL;
     h->keys[at].rank = h->last_rank;
-    hang(h, at);
+    chain_key(h, at);
     return at;
 }
 
 /* Restore a key from a snapshot; -1: it is there already, or memory is short. */
-int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank)
+int32_t restore_key(home *h, const rv_number *value, int64_t occurred, uint32_t rank)
 {
     const int32_t at = (find_key(h, value) < 0) ? add_key(h, value, occurred) : -1;
     if (at >= 0) {
@@ -163,7 +163,7 @@ void open_at(run *r, int64_t t)
 
 /* Whether an outage hides, at the tick `t`, the occurrence that opened an instance: then its key is not
  * known to have occurred, and the instance waits for the next occurrence. */
-bool was_swallowed(run *r, int64_t t)
+bool is_opening_lost(run *r, int64_t t)
 {
     const part_plan *p = r->part->plan;
     if ((r->rank == 0U) || (r->occurred < r->opens_at)
@@ -176,7 +176,7 @@ bool was_swallowed(run *r, int64_t t)
 }
 
 /* Open an instance whose first occurrence an outage hid: its key occurs, as if first, at `t`. */
-static void open_anew(home *h, int32_t at, int64_t t)
+static void reopen_instance(home *h, int32_t at, int64_t t)
 {
     run *r = h->keys[at].open;
     h->last_rank++;
@@ -220,7 +220,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         }
     } else {
         replay(made);
-        through(made, t - 1, false);
+        pass_time(made, t - 1, false);
     }
     open_at(made, t);
     enlist(made, false);
@@ -251,7 +251,7 @@ void open_instances(home *h, int64_t t)
             if ((at >= 0) && (h->keys[at].open == NULL)) {
                 open_instance(h, at, t, is_known);
             } else if ((at >= 0) && (h->keys[at].open->occurred == NEVER)) {
-                open_anew(h, at, t);
+                reopen_instance(h, at, t);
             } else {
                 /* It exists. */
             }
@@ -277,7 +277,7 @@ void open_unknown(home *h, int64_t t)
 
 /* What an update of the key's event says to this instance, as an RV_SAYS value; -1: it concerns another
  * key. */
-int32_t concerning(const run *r, const rv_update *u)
+int32_t says_for_instance(const run *r, const rv_update *u)
 {
     const rv_number *value;
     if (u->says != RV_SAYS_YES) {
@@ -310,7 +310,7 @@ static bool is_quiet(const run *r)
 /* Whether an instance equals the root in all but what depends on its key, so that one created later
  * would behave the same. Nodes that depend on it (`varying`, ascending) are evaluated at creation
  * anyway. */
-bool is_over(const run *r)
+bool equals_root(const run *r)
 {
     const part_plan *p = r->part->plan;
     const run *root = r->home->root;
@@ -366,7 +366,7 @@ static void forget_oldest(home *h)
     h->free_key = at;
 }
 
-void put_over(home *h, int32_t at)
+void add_closed_key(home *h, int32_t at)
 {
     key *k = &h->keys[at];
     k->open = NULL;
@@ -385,7 +385,7 @@ void put_over(home *h, int32_t at)
 void close_instance(run *r)
 {
     home *h = r->home;
-    put_over(h, r->key);
+    add_closed_key(h, r->key);
     delist(r, false);
     while (h->over_count > MOST_OVER) {
         forget_oldest(h);

@@ -254,7 +254,7 @@ void clear_run(run *r)
     clear_losses(r);
     clear_judges(r);
     if (r->truth_log != NULL) {
-        stand_at_first(r, RV_NO_TIME);
+        reset_truth_log(r, RV_NO_TIME);
         r->truth_log->begun = RV_NO_TIME;
     }
 }
@@ -333,12 +333,12 @@ run *forked(const run *r)
     made->wake.next = r->wake.next;
     made->at = r->at;
     if (!copy_grown(made, r)) {
-        set_aside(h, made);
+        recycle_run(h, made);
         return NULL;
     }
     clear_judges(made);
     if (made->truth_log != NULL) {
-        stand_like(made, r);
+        copy_truth_log(made, r);
     }
     made->parent = r->parent;
     made->opens_at = r->opens_at;
@@ -363,7 +363,7 @@ run *forked(const run *r)
 
 /* Judge a sample in one run. Does nothing if the run was created by this very sample and has taken
  * it already. */
-void give(run *r, int64_t t, const incoming *in, int32_t count)
+void give_sample(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const quick_signal *quick;
     int32_t i;

@@ -26,13 +26,13 @@ void set_alarm(run *r, int64_t position);
 /* ---- clock.c */
 void clear_run(run *r);
 void clear_judges(run *r);
-int32_t followed(const run *r, int32_t index);
-void look_at_all(run *r);
+int32_t trigger_node(const run *r, int32_t index);
+void recheck_all(run *r);
 void touch_all(run *r, uint8_t what);
-void have_judged(run *r, int64_t t);
+void run_judges(run *r, int64_t t);
 void visit(run *r, int64_t t);
 void reach(run *r, int64_t t);
-void through(run *r, int64_t limit, bool comes);
+void pass_time(run *r, int64_t limit, bool comes);
 void approach(run *r, int64_t t);
 void arrive(run *r, int64_t t);
 int64_t next_decision(run *r);
@@ -40,7 +40,7 @@ void settle_all(run *r, int64_t end, int64_t reached);
 bool was_heard(const run *r, int32_t index);
 
 /* ---- dense.c: outages in sampled time */
-bool make_nothing(home *h);
+bool make_unknown_values(home *h);
 bool begin_dense(rv_monitor *m, int64_t t);
 void pass_dense(rv_monitor *m, int64_t limit);
 void end_dense(rv_monitor *m);
@@ -55,8 +55,8 @@ int64_t last_position(const rv_monitor *m);
 /* ---- runs.c: creating and forking runs */
 run *new_run(home *h);
 run *forked(const run *r);
-void set_aside(home *h, run *r);
-void give(run *r, int64_t t, const incoming *in, int32_t count);
+void recycle_run(home *h, run *r);
+void give_sample(run *r, int64_t t, const incoming *in, int32_t count);
 
 /* ---- kept.c: samples stored for replay */
 past_update *keep_one(home *h, int64_t t);
@@ -72,29 +72,29 @@ void forget_given(home *h);
 
 /* ---- captured.c: attempts with captured values */
 bool starts_here(const run *r, int32_t index);
-void note_turn(run *r, int32_t at, int64_t t);
-void note_done(run *r, int32_t at);
-void flush_turns(home *h);
+void queue_numbering(run *r, int32_t at, int64_t t);
+void queue_report(run *r, int32_t at);
+void number_and_report(home *h);
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
-void look_after(run *r, int64_t t);
+void check_children(run *r, int64_t t);
 void mark_lapsed(run *r);
 void forget_last(run *r);
 bool is_idle(const run *r);
-void let_go(run *r);
+void release_attempt_run(run *r);
 void adopt(run *parent, run *child);
 
 /* ---- keys.c: instances of `for each` */
 bool begin_keys(home *h);
-int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank);
-void put_over(home *h, int32_t at);
+int32_t restore_key(home *h, const rv_number *value, int64_t occurred, uint32_t rank);
+void add_closed_key(home *h, int32_t at);
 void open_instances(home *h, int64_t t);
 void open_unknown(home *h, int64_t t);
 void close_instance(run *r);
-bool is_over(const run *r);
+bool equals_root(const run *r);
 run *instance_of(const home *h, const rv_number *value);
 void open_at(run *r, int64_t t);
-bool was_swallowed(run *r, int64_t t);
-int32_t concerning(const run *r, const rv_update *u);
+bool is_opening_lost(run *r, int64_t t);
+int32_t says_for_instance(const run *r, const rv_update *u);
 
 /* ---- crowd.c: the runs of a part, and which of them a call concerns */
 bool register_run(home *h, run *r);

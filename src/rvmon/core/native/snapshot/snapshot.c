@@ -107,12 +107,12 @@ static void carry_times(carrier *c, rv_monitor *m)
     carry_instant_or(c, &m->last, RV_NO_TIME);
     carry_long(c, &m->after, -LIMIT, LIMIT - 1);
     carry_instant_or(c, &m->reached, RV_NO_TIME);
-    carry_instant_or(c, &m->heard, RV_NO_TIME);
+    carry_instant_or(c, &m->outage_at, RV_NO_TIME);
     carry_flag(c, &m->finished);
     carry_bytes(c, m->absent, names, 1);
     carry_bytes(c, m->late, m->plan.header->requirements, 1);
     demand(c, (m->began != RV_NO_TIME) == (m->last != RV_NO_TIME));
-    demand(c, (m->last <= m->reached) && (m->heard <= m->reached) && (m->began <= m->last));
+    demand(c, (m->last <= m->reached) && (m->outage_at <= m->reached) && (m->began <= m->last));
     demand(c, (m->reached == RV_NO_TIME) ? (m->after == -LIMIT) : (m->after >= m->reached - 1));
     demand(c, (m->after <= m->reached) || (m->reached == RV_NO_TIME));
     if (sparse) {
@@ -137,7 +137,7 @@ static void carry_monitor(carrier *c, size_t size, uint64_t hash)
     carry_head(c, size, hash);
     carry_times(c, m);
     carry_stale(c, m);
-    carry_long(c, &m->laid_count, 0, MOST);
+    carry_long(c, &m->undecidable_count, 0, MOST);
     carry_long(c, &m->trim_at, 0, 4 * (int64_t)MOST);
     carry_notes(c, m);
     carry_records(c, m);
@@ -154,7 +154,7 @@ size_t rv_save(rv_monitor *m, void *bytes, size_t size)
     if (m->spoilt || (m->shapes != NULL)) {
         return 0;
     }
-    drop_told_open(m);
+    drop_open_notes(m);
     carry_monitor(&c, 0, 0);
     wanted = c.at;
     if ((bytes != NULL) && (size >= wanted) && !m->spoilt) {

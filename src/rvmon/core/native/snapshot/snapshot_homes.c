@@ -77,7 +77,7 @@ static void carry_past_updates(carrier *c, home *h)
             carry_kept(c, h, one);
         }
     }
-    carry_int(c, &h->given, 0, (int64_t)count + 1);
+    carry_int(c, &h->past_judged, 0, (int64_t)count + 1);
     if (c->reading && !is_lost(c)) {
         demand(c, is_in_turn(h, &longest));
         h->inbox = enlarged(c->m, h->inbox, &h->inbox_room, longest, sizeof *h->inbox);
@@ -102,10 +102,10 @@ static void carry_over(carrier *c, home *h)
         carry_count(c, &one.rank);
         demand(c, one.value.kind != RV_UNKNOWN);
         if (c->reading && !is_lost(c)) {
-            const int32_t made = key_again(h, &one.value, one.occurred, one.rank);
+            const int32_t made = restore_key(h, &one.value, one.occurred, one.rank);
             demand(c, made >= 0);
             if (made >= 0) {
-                put_over(h, made);
+                add_closed_key(h, made);
             }
         }
     }
@@ -135,7 +135,7 @@ static void carry_instance(carrier *c, home *h, run *r)
     }
     carry_run(c, r);
     if (c->reading && !is_lost(c)) {
-        r->key = key_again(h, &r->captured[0], r->occurred, r->rank);
+        r->key = restore_key(h, &r->captured[0], r->occurred, r->rank);
         demand(c, r->key >= 0);
         if (r->key >= 0) {
             h->keys[r->key].open = r;
@@ -267,7 +267,7 @@ void carry_home(carrier *c, home *h)
     if (c->reading && !is_lost(c)) {
         const bool was_dense = (c->m->dense_until != RV_NO_TIME) || (c->m->dense_end != RV_NO_TIME);
         demand(c, c->m->finished || is_caught_up(h));
-        c->m->spoilt = c->m->spoilt || (was_dense && !make_nothing(h));
+        c->m->spoilt = c->m->spoilt || (was_dense && !make_unknown_values(h));
     }
 }
 
@@ -305,8 +305,8 @@ static void carry_group(carrier *c, home *h, int32_t number)
         int32_t *item = &own->current_items[first + i];
         carry_int(c, item, first, behind);
         if (c->reading && !c->refused) {
-            demand(c, own->stands[*item] == 0U);
-            own->stands[*item] = 1;
+            demand(c, own->is_current[*item] == 0U);
+            own->is_current[*item] = 1;
         }
     }
 }

@@ -51,7 +51,7 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
         carry_clocks(c, r, index, x->better, x->clocks + r->part->plan->clocks);
     }
     if (r->part->plan->captured > 0) {
-        carry_count(c, &r->home->turns[at].doubt_number);
+        carry_count(c, &r->home->captured_attempts[at].doubt_number);
     }
     if (c->reading && current) {
         demand(c, (j->current < 0) && runs_on(r, index));
@@ -67,8 +67,8 @@ static int32_t appended(run *r, int32_t *first, int32_t last)
         (void)memset(attempt_at(r->home, at), 0, r->home->stride);
         attempt_at(r->home, at)->next = -1;
         if (r->part->plan->captured > 0) {
-            (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
-            r->home->turns[at].judge = r;
+            (void)memset(&r->home->captured_attempts[at], 0, sizeof *r->home->captured_attempts);
+            r->home->captured_attempts[at].judge = r;
         }
         if (last < 0) {
             *first = at;
@@ -141,7 +141,7 @@ static void carry_counts(carrier *c, judge *j)
 }
 
 /* Whether `wanted` is in the list of undecidable attempts. */
-static bool is_laid_aside(const run *r, int32_t index, int32_t wanted)
+static bool is_undecidable_listed(const run *r, int32_t index, int32_t wanted)
 {
     int32_t at = r->judges[index].undecidable;
     while ((at >= 0) && (at != wanted)) {
@@ -157,7 +157,7 @@ static bool is_driven(const run *r, int32_t index)
     const judge *j = &r->judges[index];
     const int64_t due = r->rules.due[index];
     const bool blank = (r->at.presence != ARE_THERE) && (GAP(r) > 0);
-    if (blank && (j->current >= 0) && !is_laid_aside(r, index, j->current)) {
+    if (blank && (j->current >= 0) && !is_undecidable_listed(r, index, j->current)) {
         return false;
     }
     if (is_chained(r, index) && (j->first >= 0) && (j->chain == NULL)) {
