@@ -133,7 +133,9 @@ void rv_free(rv_monitor *m);
  * many records, instead of growing on demand. RV_NO_MEMORY spoils the run (see rv_step). */
 int rv_reserve(rv_monitor *m, int32_t attempts);
 
-/* Bytes handed out so far: what a block aligned to 16 has to hold for the same calls. */
+/* Bytes handed out so far: what a block aligned to 16 has to hold for the same calls. Measure it in a
+ * block, or after rv_reserve: on a heap, an array that grew beyond 16 KiB was resized and counts once,
+ * while in a block its smaller predecessors stay behind. */
 size_t rv_memory_used(const rv_monitor *m);
 
 /* Start a new run: all attempts, records and values are dropped, memory is kept for reuse, and

@@ -201,7 +201,7 @@ static int32_t order_of_words(const int64_t *one, const int64_t *other, int64_t 
 static void sort_unique(situation *s, int64_t start, int64_t width)
 {
     int64_t held[PIECE_MOST];
-    int64_t *told = s->words + start;
+    int64_t *records = s->words + start;
     int64_t end = s->count - start;
     int64_t kept = 0;
     int64_t i;
@@ -211,13 +211,13 @@ static void sort_unique(situation *s, int64_t start, int64_t width)
     }
     for (i = 0; i < end; i += width) {
         int64_t at = kept;
-        while ((at > 0) && (order_of_words(told + at - width, told + i, width) > 0)) {
+        while ((at > 0) && (order_of_words(records + at - width, records + i, width) > 0)) {
             at -= width;
         }
-        if ((at == 0) || (order_of_words(told + at - width, told + i, width) < 0)) {
-            (void)memcpy(held, told + i, (size_t)width * sizeof *held);
-            (void)memmove(told + at + width, told + at, (size_t)(kept - at) * sizeof *told);
-            (void)memcpy(told + at, held, (size_t)width * sizeof *held);
+        if ((at == 0) || (order_of_words(records + at - width, records + i, width) < 0)) {
+            (void)memcpy(held, records + i, (size_t)width * sizeof *held);
+            (void)memmove(records + at + width, records + at, (size_t)(kept - at) * sizeof *records);
+            (void)memcpy(records + at, held, (size_t)width * sizeof *held);
             kept += width;
         }
     }

@@ -6,9 +6,9 @@
  * one whose instance's key occurred first.
  *
  * Captured values may become unknown afterwards: while a trigger is in doubt, an attempt may have begun
- * at any of its positions, with other values. The parent run checks that at each of its positions
- * (check after check_children), and from the first difference on (`cut`) nodes LAPSED are TRUE and the
- * attempt cannot pass. */
+ * at any of its positions, with other values. The parent checks that at each of its positions
+ * (check_children); from the first difference on (`cut`) LAPSED nodes are TRUE, and the attempt cannot
+ * pass. */
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "networks/network.h"
@@ -179,8 +179,7 @@ static void capture(run *r, rv_number *values)
     rv_number *now = r->value;
     int32_t i;
     if ((r->home->unknown_values != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
-        r->value = r->home->unknown_values; /* no signal is known here; windows see to themselves
-                                      * (left_number) */
+        r->value = r->home->unknown_values; /* in an outage; for windows see left_number */
     }
     r->captured = values; /* a `let` may use those before it */
     for (i = 0; i < captures.count; i++) {

@@ -233,8 +233,8 @@ void reach(run *r, int64_t t)
 }
 
 /* Let time pass up to `limit`, visiting the positions on the way at which something can change. If a
- * sample `comes` behind it, networks may leave what they find to that visit. Stops early are for
- * restarts: a failure may be followed at once by an attempt that changes what comes next. */
+ * sample `comes` behind it, networks may leave what they find to that visit. With restarts it stops at
+ * each due judge: a failure may be followed at once by a new attempt. */
 void pass_time(run *r, int64_t limit, bool comes)
 {
     const int32_t *index = r->part->networked;
@@ -256,7 +256,6 @@ void pass_time(run *r, int64_t limit, bool comes)
         for (i = 0; restarts && (i < networked); i++) {
             network_foresee(r, index[i], until);
         }
-        /* A failure may be followed by another attempt at once. */
         stop = restarts ? least(until, timers_next(&r->rules)) : until;
         if (timers_next(&r->rules) <= stop) {
             const int32_t count = timers_due(&r->rules, stop, r->due_rules);
