@@ -32,6 +32,7 @@ class Recorded:
         samples: instants, and what changed or occurred.
         lines: of each file of the code under test, the statements that ran; where it was measured.
         cpu_s: processor time of this process that it took.
+        seconds: wall time that it took, with judging.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -39,6 +40,7 @@ class Recorded:
     samples: tuple[tuple[int, Values], ...]
     lines: Mapping[str, frozenset[int]]
     cpu_s: float
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,12 @@ def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Tes
             ran = frozenset(map(int, played.hits.get(statements_name(block.name), ())))
             lines[block.path] = lines.get(block.path, frozenset()) | ran
         return Recorded(
-            played.report.verdicts, played.run, tuple(played.samples), lines, played.cpu_s
+            played.report.verdicts,
+            played.run,
+            tuple(played.samples),
+            lines,
+            played.cpu_s,
+            played.seconds,
         )
 
     return play

@@ -120,7 +120,7 @@ HANGS = "it computes without an end: its time, or its memory, was all"
 """Said of both: an endless loop that also collects something may come first to either."""
 
 PATIENCE_S = 60.0
-"""Seconds of wall time, beside those that the suite may compute, until a mutant is ended."""
+"""Seconds of wall time, beside those that the suite may take, until a mutant is ended."""
 
 
 def play_mutants(
@@ -152,7 +152,6 @@ def play_mutants(
     sources = {str(one.path): text_of_file(one.path) for one in mutants}
     tasks = [(one, suite.reaching(one)) for one in mutants]
     found: list[Tried] = []
-    longest = sum(_most_cpu_s(one) for one in suite.recorded.values())
     with closing(
         parallel.execute(
             (task for task in tasks if task[1]),
@@ -160,7 +159,7 @@ def play_mutants(
             jobs=jobs,
             what="mutant",
             instead=_ended,
-            timeout_s=PATIENCE_S + longest,
+            timeout_s=_most_s(suite),
             fresh=True,
         )
     ) as results:
@@ -240,6 +239,18 @@ def _finding(suite: Suite, name: str, was: Recorded, now: Recorded) -> Finding |
 
 def _most_cpu_s(was: Recorded) -> float:
     return LEAST_CPU_S + TIMES_CPU * was.cpu_s
+
+
+def _most_s(suite: Suite) -> float:
+    """Wall time in which a mutant is to have played: it may wait as the code as it is has waited.
+
+    For its own sake, or because others computed: a test hangs by processor time, this is for what
+    waits for ever.
+    """
+    recorded = suite.recorded.values()
+    computed = max(sum(one.cpu_s for one in recorded), LEAST_CPU_S)
+    waited = sum(one.seconds for one in recorded) / computed
+    return PATIENCE_S + max(waited, 1.0) * sum(map(_most_cpu_s, recorded))
 
 
 def _ended(task: _Task, ended: Ended) -> Tried:

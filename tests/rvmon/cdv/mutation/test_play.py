@@ -1,12 +1,16 @@
 """What becomes of mutants: killed and by what, or alive, and nothing of it stays."""
 
 import multiprocessing
+import time
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import pytest
-from tests.rvmon.cdv.mutation.conftest import lift_of
+from tests.rvmon.cdv.mutation.conftest import System, lift_of, rides
 
+from rvmon import cdv
+from rvmon.cdv.mutation import play
 from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.play import plant
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, code_mutants
@@ -69,6 +73,23 @@ def test_what_a_mutant_does_is_its_result(tried, changed, line, how):
     one, other = tried([changed("Lift.ride", "self.note(to)", line), fine])
     assert [found.how for found in one.findings] == [how]
     assert other.killed_by_requirement
+
+
+def test_what_waits_long_does_not_hang(campaign, changed, monkeypatch):
+    """As beside a simulator, or on a machine with much else to do: its tests may take as long."""
+
+    class Waits(System):
+        def play(self, test, observer):
+            time.sleep(0.7)
+            return super().play(test, observer)
+
+    monkeypatch.setattr(play, "PATIENCE_S", 0.0)
+    path = Path(next(iter(campaign.code.constants)))
+    robot = cdv.Robot(lambda: Waits(path), campaign.robots["lift"].spec)
+    suite = record_suite(replace(campaign, robots={"lift": robot}), "lift", rides(1, 1), jobs=1)
+    mutant = changed("Lift.note", "self.noted = to", "self.noted = 0")
+    (one,) = play.play_mutants(suite, [mutant], jobs=1)
+    assert one.findings == ()
 
 
 def test_a_mutant_that_no_test_runs_is_not_played(tried, changed):

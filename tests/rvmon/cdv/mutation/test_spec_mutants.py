@@ -64,7 +64,7 @@ def tried(requirement, *samples, end_s=9):
     for t_ns, values in samples:
         monitor.step_ns(t_ns, values)
     verdicts = monitor.finish_ns(end_s * 10**9).verdicts
-    run = Recorded(verdicts, Run(end_s * 10**9), samples, {}, 0.0)
+    run = Recorded(verdicts, Run(end_s * 10**9), samples, {}, 0.0, 0.0)
     found = try_spec_mutants(spec, spec_mutants(spec.checked), {"one": run})
     return {one.mutant.after: one for one in found}
 
