@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO, TypeVar
 from rvmon.readers import places
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future  # of threads
+    from concurrent.futures import Future, ThreadPoolExecutor
 
 _Read = TypeVar("_Read")
 
@@ -50,10 +50,8 @@ def read_ahead(
         found: are taken in order, some before they are asked for; so is what goes wrong then.
         read: may run in several threads at once.
     """
-    from concurrent.futures import ThreadPoolExecutor
-
-    threads = min(MOST_THREADS, os.cpu_count() or 1)
     pool: ThreadPoolExecutor | None = None
+    threads = 0
     waiting: deque[tuple[bytes, Future[_Read] | None]] = deque()
     fault: Exception | None = None
     is_over = False
@@ -66,7 +64,9 @@ def read_ahead(
                     stretch, fault = None, error
                 is_over = stretch is None
                 if stretch is not None and stretch.endswith(b"\n"):
-                    pool = pool or ThreadPoolExecutor(threads, "rvmon-reads")
+                    if pool is None:  # a small file has no such stretch
+                        threads = min(MOST_THREADS, os.cpu_count() or 1)
+                        pool = _begun(threads)
                     waiting.append((stretch, pool.submit(read, stretch)))
                 elif stretch is not None:
                     waiting.append((stretch, None))
@@ -83,3 +83,9 @@ def read_ahead(
                 one.cancel()
         if pool is not None:
             pool.shutdown()
+
+
+def _begun(threads: int) -> ThreadPoolExecutor:
+    from concurrent.futures import ThreadPoolExecutor
+
+    return ThreadPoolExecutor(threads, "rvmon-reads")
