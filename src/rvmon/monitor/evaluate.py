@@ -190,12 +190,12 @@ class _Run:
         return self._found.margins()
 
 
-_FIGURES = ("low", "high", "kept")
+_COLUMNS = ("t", "low", "high", "kept")
 
 MARGIN = np.dtype(
     [
         ("t", np.int64),
-        *((name, np.float64) for name in _FIGURES),
+        *((name, np.float64) for name in _COLUMNS[1:]),
         *(("requirement", np.int32), ("number", np.uint32)),
         *((name, np.uint8) for name in ("in_doubt", "of_position")),
     ],
@@ -204,14 +204,40 @@ MARGIN = np.dtype(
 """`rv_margin` of `core.h`."""
 
 
+class _Positions:
+    """The figures of positions of a requirement, in arrays with room for more."""
+
+    def __init__(self) -> None:
+        self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
+        self._count = 0
+
+    def add(self, found: NDArray[Any]) -> None:
+        count = self._count + len(found)
+        for own, name in zip(self._arrays, _COLUMNS, strict=True):
+            if count > len(own):
+                own.resize(count + count // 8, refcheck=False)  # nobody else has seen it
+            own[self._count : count] = found[name]
+        self._count = count
+
+    def stream(self) -> Stream:
+        """All of them; nothing can be added behind it."""
+        for own in self._arrays:
+            own.resize(self._count, refcheck=False)
+        return Stream(*self._arrays)
+
+
 class RecordedMargins:
-    """Collects the robustness figures of a run."""
+    """Collects the robustness figures of a run.
+
+    Args:
+        ids: of requirements, by number.
+    """
 
     def __init__(self, ids: Sequence[str]) -> None:
         self._ids = ids
         self._attempts: dict[Key, Robustness] = {}
         self._doubtful: dict[Key, Robustness] = {}
-        self._parts: dict[int, list[Sequence[NDArray[Any]]]] = {}
+        self._positions: dict[int, _Positions] = {}
 
     def add(self, found: bytes) -> None:
         """Add figures, given as bytes of dtype `MARGIN`."""
@@ -224,8 +250,7 @@ class RecordedMargins:
         numbers = np.unique(margins["requirement"]).tolist() if several else [0]
         for number in numbers if len(margins) else ():
             own = margins[margins["requirement"] == number] if several else margins
-            columns = [own[name].copy() for name in ("t", *_FIGURES)]
-            self._parts.setdefault(number, []).append(columns)
+            self._positions.setdefault(number, _Positions()).add(own)
 
     def _add_attempts(self, margins: NDArray[Any]) -> None:
         for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():
@@ -234,8 +259,5 @@ class RecordedMargins:
 
     def margins(self) -> Margins:
         """All figures collected."""
-        streams = {
-            self._ids[number]: Stream(*map(np.concatenate, zip(*parts, strict=True)))
-            for number, parts in self._parts.items()
-        }
+        streams = {self._ids[number]: one.stream() for number, one in self._positions.items()}
         return Margins(self._attempts, self._doubtful, streams)

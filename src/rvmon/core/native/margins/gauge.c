@@ -74,7 +74,8 @@ void gauge_begin_amid(gauging *w, int64_t last)
     for (i = 0; i < s->count; i++) {
         const operator_plan *n = &s->nodes[i];
         margin_node *o = &w->g->nodes[i];
-        if ((n->kind == OP_WINDOW) && (n->low < 0) && room_for_step(w, &o->wedge, o->wedge.first)) {
+        if ((n->kind == OP_WINDOW) && (n->low < 0)
+            && room_for_steps(w, &o->wedge, 1, o->wedge.first)) {
             add_step(&o->wedge, last - n->low, bound_of_anything(w));
         } else {
             o->carried = bound_of_anything(w);
@@ -112,51 +113,73 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
     return done;
 }
 
+/* Tell what a leaf is from some positions on. */
+static void take_leaf(gauging *w, int32_t place, const int64_t *times, int64_t count, const double *values,
+                      double last)
+{
+    margin_steps *s = &w->g->nodes[place].out;
+    const bool first = !w->g->begun;
+    double before = last;
+    int64_t k;
+    if (w->sparse && !w->thin
+        && (has_room(s, count) || room_for_steps(w, s, count, oldest_unread(w, place)))) {
+        margin_step *ring = s->ring;
+        const int64_t mask = s->room - 1;
+        const int64_t end = s->end;
+        for (k = 0; k < count; k++) {
+            ring[(end + k) & mask].at = times[k];
+            ring[(end + k) & mask].value = values[k];
+        }
+        s->end = end + count;
+        return;
+    }
+    for (k = 0; k < count; k++) {
+        if (w->sparse || (values[k] != before) || (first && (k == 0))) {
+            before = values[k];
+            tell_step(w, place, times[k], before);
+        }
+    }
+}
+
 /* Take what the leaves are from some positions on: those of each lie so far apart from those of the next
  * one. */
 void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart)
 {
     const margin_shape *s = w->shape;
-    const bool first = !w->g->begun;
     int32_t i;
-    int64_t k;
-    for (k = 0; w->sparse && (k < count); k++) {
-        note_position(w, times[k]);
+    if (w->sparse) {
+        note_positions(w, times, count);
     }
-    for (i = 0; i < s->plan->measures.count; i++) {
+    for (i = 0; (count > 0) && (i < s->plan->measures.count); i++) {
         const double *own = &values[(int64_t)i * apart];
-        double last = w->g->letter[i];
-        if (s->leaves[i] < 0) {
-            continue; /* it never changes */
+        if (s->leaves[i] >= 0) { /* else it never changes */
+            take_leaf(w, s->leaves[i], times, count, own, w->g->letter[i]);
+            w->g->letter[i] = own[count - 1];
         }
-        for (k = 0; k < count; k++) {
-            if (w->sparse || (own[k] != last) || (first && (k == 0))) {
-                last = own[k];
-                tell_step(w, s->leaves[i], times[k], last);
-            }
-        }
-        w->g->letter[i] = last;
     }
-    w->g->begun = true;
+    w->g->begun = w->g->begun || (count > 0);
 }
 
 /* What is asked for at positions before one has the value that was told last. */
-static void answer(gauging *w, int64_t before)
+static inline void answer(gauging *w, int64_t before)
 {
     gauge *g = w->g;
     measuring *q = w->q;
-    while ((g->answered < q->asks_end) && (ask_at(q, g->answered)->position < before)) {
-        margin_ask *one = ask_at(q, g->answered);
+    const double reported = g->reported;
+    const int64_t end = q->asks_end;
+    int64_t number = g->answered;
+    for (; (number < end) && (ask_at(q, number)->position < before); number++) {
+        margin_ask *one = ask_at(q, number);
         if (w->answers != NULL) {
-            w->answers[g->answered - q->asks_first] = g->reported;
+            w->answers[number - q->asks_first] = reported;
         } else if (w->side == 1) {
-            one->high = g->reported;
+            one->high = reported;
         } else {
-            one->low = g->reported;
-            one->high = q->parted ? one->high : g->reported;
+            one->low = reported;
+            one->high = q->parted ? one->high : reported;
         }
-        g->answered++;
     }
+    g->answered = number;
 }
 
 /* Let the leaves be known up to a position, and answer what is settled. */

@@ -1,5 +1,5 @@
 /* What is worked out and made once: which judges measure what, so that a sample costs what it changes;
- * what a run has where it is measured. */
+ * what a run has where it is measured, and is asked for there. */
 #include "formulas/formulas.h"
 #include "margins/margins.h"
 
@@ -187,5 +187,55 @@ void margins_clear(run *r)
         q->parted = false;
         q->missed = false;
         q->changed_inputs = false;
+    }
+}
+
+/* Make room for so many more positions that are asked for; false: there is none. */
+static bool room_for_asks(rv_monitor *m, measuring *q, int64_t count)
+{
+    margin_ask *made;
+    int64_t room = (q->asks_room > 0) ? q->asks_room : 4;
+    int64_t i;
+    if (q->asks_end - q->asks_first + count <= q->asks_room) {
+        return true;
+    }
+    while (room < q->asks_end - q->asks_first + count) {
+        room *= 2;
+    }
+    made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = q->asks_first; i < q->asks_end; i++) {
+        made[i & (room - 1)] = *ask_at(q, i);
+    }
+    arena_give(&m->memory, q->asks, (size_t)q->asks_room * sizeof *made);
+    q->asks = made;
+    q->asks_room = (int32_t)room;
+    return true;
+}
+
+/* Ask for positions of which the letters are not given yet. */
+void ask_for(run *r, int32_t index, const int64_t *positions, int64_t count, int32_t record)
+{
+    measuring *q = &r->margins[index];
+    const bool first = q->asks_end == q->asks_first;
+    int64_t i;
+    if (!room_for_asks(r->home->monitor, q, count)) {
+        return;
+    }
+    for (i = 0; i < count; i++) {
+        margin_ask *one = ask_at(q, q->asks_end + i);
+        one->position = positions[i];
+        one->low = -INFINITE;
+        one->high = INFINITE;
+        one->record = record;
+    }
+    q->asks_end += count;
+    r->asked += (record != 0) ? 1 : 0;
+    if (first && !awaits_the_end(r, index) && !is_streamed(r, index)) {
+        const int64_t due = sum(positions[0] * step_of(r), shape_of(r, index)->lag);
+        timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
     }
 }

@@ -73,19 +73,27 @@ rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record)
     return made;
 }
 
-/* Room for a figure, where it stays until it is taken; NULL: there is none. */
+/* Make room for so many more figures; false: there is none. */
+bool room_for_figures(rv_monitor *m, int64_t count)
+{
+    margin_results *s = &m->margins;
+    const int64_t wanted = (int64_t)s->found_count + count;
+    if ((wanted > s->found_room) || (wanted > s->owners_room)) {
+        rv_margin *made = enlarged(m, s->found, &s->found_room, wanted, sizeof *made);
+        int32_t *owners = enlarged(m, s->owners, &s->owners_room, wanted, sizeof *owners);
+        s->found = (made != NULL) ? made : s->found;
+        s->owners = (owners != NULL) ? owners : s->owners;
+        return (made != NULL) && (owners != NULL);
+    }
+    return true;
+}
+
+/* The place of another figure, where it stays until it is taken; NULL: there is none. */
 rv_margin *figure_found(rv_monitor *m, int32_t record)
 {
     margin_results *s = &m->margins;
-    if ((s->found_count == s->found_room) || (s->found_count == s->owners_room)) {
-        rv_margin *made = enlarged(m, s->found, &s->found_room, (int64_t)s->found_count + 1, sizeof *made);
-        int32_t *owners =
-            enlarged(m, s->owners, &s->owners_room, (int64_t)s->found_count + 1, sizeof *owners);
-        s->found = (made != NULL) ? made : s->found;
-        s->owners = (owners != NULL) ? owners : s->owners;
-        if ((made == NULL) || (owners == NULL)) {
-            return NULL;
-        }
+    if (!room_for_figures(m, 1)) {
+        return NULL;
     }
     s->owners[s->found_count] = record;
     s->found_count++;

@@ -4,38 +4,40 @@
 
 #include <string.h>
 
-/* Make room for one more step, those from the number `oldest` on being kept; false: there is none. */
-bool room_for_step(gauging *w, margin_steps *s, int64_t oldest)
+/* Make room for so many more steps, those from the number `oldest` on being kept; false: there is none. */
+bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest)
 {
     rv_monitor *m = w->monitor;
     margin_step *made;
+    int64_t room = (s->room > 0) ? s->room : 8;
     int64_t i;
-    int32_t room;
-    if (s->end - s->first < s->room) {
+    if (has_room(s, count)) {
         return true;
     }
     s->first = oldest;
-    if ((s->room > 0) && (s->end - s->first <= s->room / 2)) {
+    while (room / 2 < s->end - s->first + count - 1) {
+        room *= 2; /* few of them are moved often */
+    }
+    if (room <= s->room) {
         return true;
     }
-    room = (s->room > 0) ? 2 * s->room : 8;
     made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
     if (made == NULL) {
         m->spoilt = true;
         s->first = s->end;
-        return s->room > 0;
+        return has_room(s, count);
     }
     for (i = s->first; i < s->end; i++) {
         made[i & (room - 1)] = *step_at(s, i);
     }
     arena_give(&m->memory, s->ring, (size_t)s->room * sizeof *made);
     s->ring = made;
-    s->room = room;
+    s->room = (int32_t)room;
     return true;
 }
 
 /* The first step of a node that one of those that read it has not taken, or nobody wants. */
-static int64_t oldest_unread(const gauging *w, int32_t place)
+int64_t oldest_unread(const gauging *w, int32_t place)
 {
     const margin_shape *shape = w->shape;
     int64_t found = w->g->nodes[place].out.end;
@@ -89,16 +91,17 @@ bool takes_step(gauging *w, int32_t place, int64_t at, double value)
         step_at(s, s->end - 1)->value = value;
         return false;
     }
-    return (s->end - s->first < s->room) || room_for_step(w, s, oldest_unread(w, place));
+    return has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place));
 }
 
-/* Take it that there is a position, where only samples are some. */
-void note_position(gauging *w, int64_t at)
+/* Take it that there are some positions, where only samples are. */
+void note_positions(gauging *w, const int64_t *times, int64_t count)
 {
     margin_steps *s = &w->g->stamps;
     int64_t oldest = s->end;
+    int64_t k;
     int32_t i;
-    if (s->end - s->first == s->room) {
+    if (!has_room(s, count)) {
         for (i = 0; i < w->shape->count; i++) {
             const int32_t kind = w->shape->nodes[i].kind;
             if ((kind == OP_WINDOW) || (kind == OP_SHIFT)
@@ -106,11 +109,13 @@ void note_position(gauging *w, int64_t at)
                 oldest = least(oldest, w->g->nodes[i].positions);
             }
         }
-        if (!room_for_step(w, s, oldest)) {
+        if (!room_for_steps(w, s, count, oldest)) {
             return;
         }
     }
-    add_step(s, at, 0.0);
+    for (k = 0; k < count; k++) {
+        add_step(s, times[k], 0.0);
+    }
 }
 
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s)

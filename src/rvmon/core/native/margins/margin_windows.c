@@ -56,24 +56,52 @@ static void tell_windows(const windowing *x, int64_t stop)
     o->next = at;
 }
 
-/* Take a value into the wedge, of which the last window that holds it is that of `leaves`. */
-static inline void enter_wedge(const windowing *x, int64_t leaves, double value)
+/* The steps of a ring at hand: of a wedge that is used much. */
+typedef struct {
+    margin_step *ring;
+    int64_t mask;              /* -1: there is no room at all */
+    int64_t first;
+    int64_t end;
+} handy_steps;
+
+static inline handy_steps at_hand(const margin_steps *s)
+{
+    const handy_steps made = {s->ring, (int64_t)s->room - 1, s->first, s->end};
+    return made;
+}
+
+static inline void put_back(margin_steps *s, handy_steps now)
+{
+    s->first = now.first;
+    s->end = now.end;
+}
+
+static handy_steps with_room(const windowing *x, handy_steps now)
 {
     margin_steps *wedge = &x->o->wedge;
-    int64_t end = wedge->end;
-    if (x->every) {
-        while ((wedge->first < end) && (step_at(wedge, end - 1)->value >= value)) {
-            end--;
-        }
-    } else {
-        while ((wedge->first < end) && (step_at(wedge, end - 1)->value <= value)) {
-            end--;
-        }
+    put_back(wedge, now);
+    (void)room_for_steps(x->w, wedge, 1, wedge->first);
+    return at_hand(wedge);
+}
+
+/* Take a value into the wedge, of which the last window that holds it is that of `leaves`. */
+static inline handy_steps entered(const windowing *x, handy_steps wedge, int64_t leaves, double value)
+{
+    const double sign = x->every ? -1.0 : 1.0;
+    const double height = sign * value;
+    while ((wedge.first < wedge.end)
+           && (sign * wedge.ring[(wedge.end - 1) & wedge.mask].value <= height)) {
+        wedge.end--;
     }
-    wedge->end = end;
-    if ((end - wedge->first < wedge->room) || room_for_step(x->w, wedge, wedge->first)) {
-        add_step(wedge, leaves, value);
+    if (wedge.end - wedge.first > wedge.mask) {
+        wedge = with_room(x, wedge);
     }
+    if (wedge.mask >= 0) {
+        wedge.ring[wedge.end & wedge.mask].at = leaves;
+        wedge.ring[wedge.end & wedge.mask].value = value;
+        wedge.end++;
+    }
+    return wedge;
 }
 
 /* The next step of the operand that some window up to a position holds; behind the end, nothing. */
@@ -106,43 +134,48 @@ static void slide_along(windowing *x, int64_t until)
         if (wedge->first < wedge->end) {
             step_at(wedge, wedge->end - 1)->at = entry.at - x->low - 1;
         }
-        enter_wedge(x, NEVER, entry.value);
+        put_back(wedge, entered(x, at_hand(wedge), NEVER, entry.value));
     }
     tell_windows(x, until);
 }
 
 /* Take in the values of the operand up to a position. */
-static inline void enter_samples(const windowing *x, int64_t last)
+static inline handy_steps enter_samples(const windowing *x, handy_steps wedge, int64_t last)
 {
-    const margin_step *next;
-    while ((x->from != NULL) && (x->edge->read < x->from->end)) {
-        next = step_at(x->from, x->edge->read);
-        if (next->at > last) {
-            break;
-        }
-        x->edge->read++;
-        enter_wedge(x, next->at - x->low, next->value);
+    const margin_steps *from = x->from;
+    const int64_t end = (from != NULL) ? from->end : 0;
+    int64_t read = x->edge->read;
+    for (; (from != NULL) && (read < end) && (step_at(from, read)->at <= last); read++) {
+        const margin_step next = *step_at(from, read);
+        wedge = entered(x, wedge, next.at - x->low, next.value);
     }
+    x->edge->read = read;
+    return wedge;
 }
 
 /* The same where only samples are positions. */
-static void slide_over_samples(const windowing *x, int64_t until)
+static inline void slide_over_samples(const windowing *x, int64_t until)
 {
     const margin_steps *stamps = &x->w->g->stamps;
-    margin_steps *wedge = &x->o->wedge;
-    while ((x->o->positions < stamps->end) && (step_at(stamps, x->o->positions)->at <= until)) {
-        const int64_t position = step_at(stamps, x->o->positions)->at;
-        x->o->positions++;
-        enter_samples(x, position + x->high);
-        drop_exits(wedge, position);
+    const int64_t end = stamps->end;
+    handy_steps wedge = at_hand(&x->o->wedge);
+    int64_t number = x->o->positions;
+    for (; (number < end) && (step_at(stamps, number)->at <= until); number++) {
+        const int64_t position = step_at(stamps, number)->at;
+        wedge = enter_samples(x, wedge, position + x->high);
+        while ((wedge.first < wedge.end) && (wedge.ring[wedge.first & wedge.mask].at < position)) {
+            wedge.first++;
+        }
         tell_step(x->w, x->place, position,
-                  (wedge->first < wedge->end) ? step_at(wedge, wedge->first)->value : x->nothing);
+                  (wedge.first < wedge.end) ? wedge.ring[wedge.first & wedge.mask].value : x->nothing);
     }
-    enter_samples(x, until + x->high + 1); /* few of them are kept */
+    wedge = enter_samples(x, wedge, until + x->high + 1); /* few of them are kept */
+    put_back(&x->o->wedge, wedge);
+    x->o->positions = number;
     x->o->next = (x->o->next <= until) ? until + 1 : x->o->next;
 }
 
-static void slide_window(windowing *x, int64_t until)
+static inline void slide_window(windowing *x, int64_t until)
 {
     if (x->w->sparse) {
         slide_over_samples(x, until);
@@ -162,37 +195,33 @@ static void give_up(windowing *x)
     }
 }
 
+/* Tell what windows are when the trace has ended, those that lie behind it in part. */
+static void end_windows(windowing *x, int64_t limit, bool ahead)
+{
+    slide_window(x, least(limit, x->w->end->last));
+    if (ahead && (margin_behind(x->w->end, false) != x->nothing)) {
+        give_up(x);
+    }
+    slide_window(x, x->w->end->last);
+}
+
 void gauge_window(gauging *w, int32_t place)
 {
     const operator_plan *n = node_plan_of(w, place);
-    const int32_t operand = w->shape->places[place].edge;
+    margin_node *nodes = w->g->nodes;
     const int64_t limit = (n->over < 0) ? w->now : floored(w->reached - n->over, w->step);
-    int64_t until = limit;
-    windowing x;
-    x.w = w;
-    x.o = &w->g->nodes[place];
-    x.edge = &w->g->edges[operand];
-    x.from = (n->low <= n->high) ? &w->g->nodes[n->left].out : NULL;
-    x.place = place;
-    x.every = n->turned != 0;
-    x.closes = w->end != NULL;
-    x.nothing = x.every ? INFINITE : -INFINITE;
-    x.low = n->low;
-    x.high = n->high;
-    if (w->end == NULL) {
-        if (x.from != NULL) {
-            until = least(until, w->g->nodes[n->left].known - n->high);
-        } else {
-            x.edge->read = w->g->nodes[n->left].out.end;
-        }
-        slide_window(&x, until);
+    const bool holds = n->low <= n->high;
+    const bool every = n->turned != 0;
+    windowing x = {w, &nodes[place], &w->g->edges[w->shape->places[place].edge],
+                   holds ? &nodes[n->left].out : NULL, place, every, w->end != NULL,
+                   every ? INFINITE : -INFINITE, n->low, n->high};
+    if (w->end != NULL) {
+        end_windows(&x, limit, n->over >= 0);
+    } else if (holds) {
+        slide_window(&x, least(limit, nodes[n->left].known - n->high));
     } else {
-        const bool unknown = (n->over >= 0) && (margin_behind(w->end, false) != x.nothing);
-        slide_window(&x, least(limit, w->end->last));
-        if (unknown) {
-            give_up(&x);
-        }
-        slide_window(&x, w->end->last);
+        x.edge->read = nodes[n->left].out.end;
+        slide_window(&x, limit);
     }
     x.o->known = x.o->next - 1;
 }

@@ -92,7 +92,7 @@ void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask 
 }
 
 /* Tell a figure that nothing can change any more. */
-static void tell_figure(const run *r, int32_t index, const margin_ask *one, double kept)
+static inline void tell_figure(const run *r, int32_t index, const margin_ask *one, double kept)
 {
     rv_margin *made = figure_found(r->home->monitor, one->record);
     if (made != NULL) {
@@ -106,6 +106,9 @@ static void tell_answers(run *r, int32_t index)
     measuring *q = &r->margins[index];
     const int64_t first = q->readings[0].answered;
     const int64_t answered = q->parted ? least(first, q->readings[1].answered) : first;
+    if ((q->asks_first < answered) && !room_for_figures(r->home->monitor, answered - q->asks_first)) {
+        return; /* the run is spoilt */
+    }
     while (q->asks_first < answered) {
         const margin_ask *one = ask_at(q, q->asks_first);
         q->asks_first++;
@@ -239,51 +242,17 @@ void enter_position(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Ask for a position of which the letter is not given yet. */
-void ask_for(run *r, int32_t index, int64_t position, int32_t record)
-{
-    measuring *q = &r->margins[index];
-    rv_monitor *m = r->home->monitor;
-    margin_ask *one;
-    int64_t i;
-    if (q->asks_end - q->asks_first == q->asks_room) {
-        const int32_t room = (q->asks_room > 0) ? 2 * q->asks_room : 4;
-        margin_ask *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made)
-                                                  : NULL;
-        if (made == NULL) {
-            m->spoilt = true;
-            return;
-        }
-        for (i = q->asks_first; i < q->asks_end; i++) {
-            made[i & (room - 1)] = *ask_at(q, i);
-        }
-        arena_give(&m->memory, q->asks, (size_t)q->asks_room * sizeof *made);
-        q->asks = made;
-        q->asks_room = room;
-    }
-    one = ask_at(q, q->asks_end);
-    q->asks_end++;
-    one->position = position;
-    one->low = -INFINITE;
-    one->high = INFINITE;
-    one->record = record;
-    r->asked += (record != 0) ? 1 : 0;
-    if ((q->asks_end == q->asks_first + 1) && !awaits_the_end(r, index) && !is_streamed(r, index)) {
-        const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
-        timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
-    }
-}
-
 /* Measure an attempt that begins at the position at `t`. */
 void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
 {
+    const int64_t position = floored(t, step_of(r));
     measuring *q;
     if ((r->margins == NULL) || (record == 0)) {
         return;
     }
     q = &r->margins[index];
     if ((r->at.presence != ARE_THERE) || r->at.dense) {
-        const margin_ask none = {floored(t, step_of(r)), -INFINITE, INFINITE, record};
+        const margin_ask none = {position, -INFINITE, INFINITE, record};
         tell_figure(r, index, &none, -INFINITE);
         return;
     }
@@ -292,7 +261,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
         || ((q->position < t) && (q->changed_inputs || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
     }
-    ask_for(r, index, floored(t, step_of(r)), record);
+    ask_for(r, index, &position, 1, record);
 }
 
 /* Read what a judge measures at the position at `t`, if it is asked for. */
@@ -317,6 +286,7 @@ static int32_t streamed_count(const run *r)
 void margins_visit(run *r, int64_t t)
 {
     const int32_t streamed = streamed_count(r);
+    const int64_t position = floored(t, step_of(r));
     int32_t i;
     if ((GAP(r) > 0) && (r->measured_at == -LIMIT)) {
         mark_all_changed(r);
@@ -330,7 +300,7 @@ void margins_visit(run *r, int64_t t)
     }
     r->changed_count = 0;
     for (i = 0; (i < streamed) && (t - step_of(r) < r->at.after); i++) {
-        ask_for(r, i, floored(t, step_of(r)), 0);
+        ask_for(r, i, &position, 1, 0);
     }
 }
 

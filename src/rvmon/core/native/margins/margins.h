@@ -60,6 +60,11 @@ static inline margin_step *step_at(const margin_steps *s, int64_t number)
     return &s->ring[number & (s->room - 1)];
 }
 
+static inline bool has_room(const margin_steps *s, int64_t count)
+{
+    return s->end - s->first + count <= s->room;
+}
+
 static inline const operator_plan *node_plan_of(const gauging *w, int32_t place)
 {
     return &w->shape->nodes[place];
@@ -101,10 +106,11 @@ static inline double measured_real(const margin_real *x, double value)
 }
 
 /* ---- margin_steps.c */
-bool room_for_step(gauging *w, margin_steps *s, int64_t oldest);
+bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest);
+int64_t oldest_unread(const gauging *w, int32_t place);
 bool takes_step(gauging *w, int32_t place, int64_t at, double value);
 bool is_asked(const gauging *w, int64_t left, int64_t right);
-void note_position(gauging *w, int64_t at);
+void note_positions(gauging *w, const int64_t *times, int64_t count);
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s);
 bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s);
 void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone);
@@ -124,7 +130,7 @@ static inline void add_step(margin_steps *s, int64_t at, double value)
 static inline void tell_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
-    if ((!w->thin && (s->end - s->first < s->room)) || takes_step(w, place, at, value)) {
+    if ((!w->thin && has_room(s, 1)) || takes_step(w, place, at, value)) {
         add_step(s, at, value);
     }
 }
@@ -176,11 +182,12 @@ void margins_cut(run *r, int32_t index, int64_t t);
 void give_letters(gauging *w, int64_t last);
 void part_margins(run *r, int32_t index);
 void enter_position(run *r, int32_t index, int64_t t);
-void ask_for(run *r, int32_t index, int64_t position, int32_t record);
+void ask_for(run *r, int32_t index, const int64_t *positions, int64_t count, int32_t record);
 void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached);
 void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept);
 
 /* ---- margin_results.c */
+bool room_for_figures(rv_monitor *m, int64_t count);
 rv_margin *figure_found(rv_monitor *m, int32_t record);
 rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record);
 

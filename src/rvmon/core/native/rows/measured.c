@@ -272,13 +272,13 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
     if ((i < end - 1) && ((q->asks_first < q->asks_end) || is_kept_up(r, index))) {
         give_rows(s, r, index, i, end - 1);
     }
-    for (i = row; is_streamed(r, index) && (i < end - 1); i++) {
-        ask_for(r, index, s->times[i], 0); /* before anything is found out about these */
+    if (is_streamed(r, index)) { /* before anything is found out about these */
+        ask_for(r, index, &s->times[row], end - 1 - row, 0);
     }
     hold_row(s, end - 1);
     enter_position(r, index, s->times[end - 1]);
     if (is_streamed(r, index)) {
-        ask_for(r, index, s->times[end - 1], 0);
+        ask_for(r, index, &s->times[end - 1], 1, 0);
     }
 }
 
