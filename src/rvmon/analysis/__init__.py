@@ -1,5 +1,6 @@
-"""What a specification means and can never do, and why a verdict came out.
+"""Analysis of specifications and of verdicts.
 
-Before any run: vacuity, conflicts, shortest timelines, words and graphs. After one: the truth of
-each part of an attempt, what came too late, how near a trigger came. And the pages of all codes.
+Before any run: vacuity, conflicts, shortest timelines, requirements in words and as graphs. After
+one: the truth of each subformula of an attempt, late responses, near misses of triggers. And the
+pages of all diagnostic codes.
 """

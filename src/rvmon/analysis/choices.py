@@ -1,6 +1,6 @@
-"""What a sample can say: values of the names read that the formulas can tell apart.
+"""Representative samples: values of the inputs that the formulas can distinguish.
 
-For comparisons these are the numbers at which they turn, so that both sides of each are seen.
+For comparisons these are the values at, between and beyond the roots of both sides.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ from rvmon.trace.time import TICKS_PER_SECOND
 Variable = SignalValue | FieldValue
 
 LARGEST = 1e15
-"""Roots beyond this are taken for artefacts of rounding."""
+"""Roots of greater magnitude are dismissed as artefacts of rounding."""
 
 
 def turning_values(
     variable: Variable, comparisons: Iterable[Compare], *, whole: bool
 ) -> list[float]:
-    """Values at, between and beside those at which a comparison turns, greatest first.
+    """Values at, between and beyond those at which a comparison turns, greatest first.
 
     Args:
-        variable: a signal or field; in a comparison with others, they are taken to be 0.
-        comparisons: all those that may read it.
-        whole: whether its values are whole numbers.
+        variable: a signal or field; other variables of a comparison are taken to be 0.
+        comparisons: the comparisons that may read it.
+        whole: whether its values are integers.
 
     >>> from rvmon.spec.checked.formula import CompareOp
     >>> limit = Compare(CompareOp.LT, SignalValue("x"), Literal(0.5, "m"))
@@ -78,7 +78,7 @@ def turning_values(
 
 
 def is_solved(comparison: Compare) -> bool:
-    """Whether `turning_values` of its only variable surely shows all its truths."""
+    """Whether `turning_values` of its only variable are sure to show all its truth values."""
     match comparison:
         case Compare(left=SignalValue() | FieldValue(), right=Literal()):
             return True
@@ -89,7 +89,7 @@ def is_solved(comparison: Compare) -> bool:
 
 
 def _stride(value: float) -> float:
-    """A step away from a value that people see: a tenth of it, or more."""
+    """A visible step away from a value: between a tenth of it and all of it."""
     return 1.0 if value == 0 else 10.0 ** math.floor(math.log10(abs(value)))
 
 
@@ -113,7 +113,7 @@ def _adds(window: WindowValue, variable: Variable) -> bool:
 
 
 def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
-    """Where a comparison turns, of what is read now, and of what a window is full of."""
+    """The values at which a comparison turns; in a window, if all its members have the value."""
     yield from _roots(leaf, variable)
     for window in windows_in(leaf.left, leaf.right):
         if window.value is not None and _adds(window, variable):
@@ -123,14 +123,14 @@ def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
 
 
 def _full(window: WindowValue, comes_to: float) -> float:
-    """What a window is full of that comes to so much; of a variance, every other number."""
+    """The value of all members of a window with a given result; of a variance, of every other."""
     if window.measured.of_time:
         return comes_to * TICKS_PER_SECOND / (window.window or TICKS_PER_SECOND)
     return 2 * abs(comes_to) ** 0.5 if window.measured is Measured.VARIANCE else comes_to
 
 
 def _roots(leaf: Compare, variable: Variable | WindowValue) -> Iterator[float]:
-    """Where both sides are equal; exact where they are straight on each side of 0."""
+    """The values at which both sides are equal; exact if they are linear on each side of 0."""
     for first, second in ((1.0, 2.0), (-1.0, -2.0)):
         one, two = _difference(leaf, variable, first), _difference(leaf, variable, second)
         if one is None or two is None or one == two:
@@ -148,7 +148,7 @@ def _difference(leaf: Compare, variable: Variable | WindowValue, value: float) -
 
 
 def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> Scalar:
-    """An expression with the variable at a value, and all others at 0; `None`: there is none."""
+    """The value of an expression with the variable at `value` and all others at 0, if any."""
     match numeric:
         case Literal(value=constant):
             return constant
@@ -166,12 +166,15 @@ def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> S
 def truths_tried(
     spec: CheckedSpec, leaves: Sequence[Leaf], tried: Sequence[Mapping[str, Value]]
 ) -> list[tuple[int, ...]]:
-    r"""The truths of leaves for each of some choices of values.
+    r"""The truth values of leaves for each of several valuations.
 
     Args:
-        spec: declares what is read.
-        leaves: of present values: signals, events and comparisons of these.
-        tried: in each is all that the leaves read.
+        spec: declares the names.
+        leaves: over present values: signals, events and comparisons of these.
+        tried: the valuations; each has all names that the leaves read.
+
+    Returns:
+        Per valuation, the truth value of each leaf.
 
     Cost: one pass in C.
 
@@ -185,7 +188,7 @@ def truths_tried(
         return [()] * len(tried)
     factory = Factory()
     cores = [factory.literal(factory.leaf(leaf), Sense.TRUE) for leaf in leaves]
-    # One position each: of the clock, of samples, or a tick.
+    # One position per valuation: a sample each, at consecutive ticks or periods.
     gap = spec.gap or 1
     samples = [Sample(place * gap, values) for place, values in enumerate(tried)]
     found = known_truths(spec, cores, samples, samples[-1].t, None, {})
@@ -194,7 +197,7 @@ def truths_tried(
 
 
 def _column(known: Known, count: int) -> list[int]:
-    """Truths by position."""
+    """The truth value at each of the first `count` positions."""
     column = [UNKNOWN] * count
     for truth, ranges in (TRUE, known.true), (FALSE, known.false):
         for first, last in ranges.tolist():
@@ -204,14 +207,14 @@ def _column(known: Known, count: int) -> list[int]:
 
 
 MOST_VALUATIONS = 240
-"""Valuations that are kept; those with the fewest or the most departures come first."""
+"""The most valuations kept; those with the fewest or the most departures come first."""
 
 MOST_TRIED = 20 * MOST_VALUATIONS
 MOST_PAYLOADS = 24
 
 
 class Silence(Enum):
-    """Stands for a name that a sample does not speak of."""
+    """Stands for a name that a sample does not update."""
 
     SILENT = "silent"
 
@@ -219,7 +222,7 @@ class Silence(Enum):
 T = TypeVar("T")
 SILENT = Silence.SILENT
 Valuation = Mapping[str, Value | Silence]
-"""Of every name read what a sample says of it; of an event `False` if it does not occur."""
+"""By name read, its value in a sample; of an event `False` if it does not occur."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,9 +230,9 @@ class Choices:
     """The samples to choose from at every instant.
 
     Attributes:
-        names: signals and events that are read.
-        valuations: those that some formula tells apart, those nearest the defaults first.
-        remembered: the names whose updates matter beside their values.
+        names: the signals and events that are read.
+        valuations: pairwise distinguished by some formula, those nearest the defaults first.
+        remembered: the signals of which updates matter, not only values.
         complete: whether no combination was left out.
     """
 
@@ -246,7 +249,15 @@ def choices_of(
     captured: Sequence[Numeric] = (),
     windows: Sequence[Compare] = (),
 ) -> Choices:
-    """The samples worth trying; beside leaves some comparisons of windows, of which none is all."""
+    """The samples worth trying.
+
+    Args:
+        spec: declares the names.
+        leaves: the leaves of the formulas.
+        read: the names to assign.
+        captured: the expressions captured by `let`.
+        windows: comparisons of windows; with any, the choices never count as complete.
+    """
     names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered, windows)
@@ -267,12 +278,12 @@ def choices_of(
 
 
 def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Value | Silence]:
-    """What a name can say that some leaf tells apart; of an event `False` if it does not occur."""
+    """The values of a name that some leaf distinguishes; of an event `False` for no occurrence."""
     return _Options(spec, leaves, (), frozenset()).of(name)
 
 
 def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
-    """Names of which it matters when they were updated."""
+    """The names whose updates matter, not only their values."""
     yield from (name for name, one in spec.signals.items() if one.stale_after is not None)
     for leaf in leaves:
         if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
@@ -283,7 +294,7 @@ def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
 
 
 class _Options:
-    """What can be reported of one name; the default comes first."""
+    """The values to try for a name; the default comes first."""
 
     def __init__(
         self,
@@ -297,7 +308,7 @@ class _Options:
         self.leaves = leaves
         self.remembered = remembered
         self.compared = [leaf for leaf in leaves if isinstance(leaf, Compare)] + [*windows]
-        # A captured value is compared with what the others are.
+        # A comparison with a captured value turns where the captured expression equals it.
         self.compared += [
             Compare(leaf.op, numeric, leaf.right) for leaf in self.compared for numeric in captured
         ]
@@ -336,7 +347,7 @@ class _Options:
                 assert_never(type_.kind)
 
     def _labels(self, variable: Variable, labels: Sequence[str]) -> list[str]:
-        """One that is not compared with, and those that are; two signals may be compared."""
+        """The labels compared with, after one that is not; all, if signals are compared."""
         sides = [
             (leaf.left, leaf.right) for leaf in self.compared if variable in (leaf.left, leaf.right)
         ]
@@ -350,7 +361,7 @@ class _Options:
 
 
 def _defaults_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
-    """All combinations: few departures from the first options, then few from all, in turn."""
+    """All combinations, by number of departures from the first options: 0, n, 1, n − 1 etc."""
     low, high = 0, len(options)
     while low <= high:
         yield from _departing(options, low)
@@ -360,7 +371,7 @@ def _defaults_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
 
 
 def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, ...]]:
-    """The combinations in which so many are not the first option."""
+    """The combinations in which exactly `count` entries are not the first option."""
     for places in combinations(range(len(options)), count):
         yield from product(
             *(own[1:] if place in places else own[:1] for place, own in enumerate(options))
@@ -368,7 +379,7 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
 
 
 class _Seen:
-    """What the formulas see of a valuation."""
+    """Equivalence keys of valuations that no formula distinguishes."""
 
     def __init__(
         self, spec: CheckedSpec, leaves: Iterable[Leaf], remembered: frozenset[str]
@@ -384,7 +395,7 @@ class _Seen:
                 self.plain.append(leaf)
 
     def keys(self, valuations: Sequence[Valuation]) -> Iterator[tuple[object, ...]]:
-        """Equal for valuations between which no formula tells."""
+        """The keys of some valuations."""
         spoken = [
             {name: value for name, value in one.items() if not isinstance(value, Silence)}
             for one in valuations

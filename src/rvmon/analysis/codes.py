@@ -34,11 +34,11 @@ def page_of(code: str) -> str:
     """The page of a code as Markdown.
 
     Args:
-        code: such as `RV012`; also the code in words, such as `unknown-signal`, of specifications
-            where models have the same.
+        code: such as `RV012`, or a name such as `unknown-signal`; a name that occurs twice means
+            the code of specifications, not of models.
 
     Raises:
-        UnknownNameError: there is no such code; those most alike are named.
+        UnknownNameError: there is no such code; the message lists similar ones.
     """
     rules = every_rule()
     named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
@@ -70,7 +70,7 @@ def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
 
 
 def _alike(code: str, rules: Mapping[str, Rule]) -> list[Rule]:
-    """The three rules with the nearest numbers, or with names most alike."""
+    """The three rules with the nearest numbers, or with the most similar names."""
     family, digits = code[:2].upper(), code[2:]
     if family in ("RV", "TA") and digits.isdecimal():
         number = int(digits[:9])

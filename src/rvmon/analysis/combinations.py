@@ -1,9 +1,9 @@
-"""Which combinations of propositions inputs can bring about; more are allowed, never fewer.
+"""The combinations of truth values that inputs can bring about, over-approximated.
 
-What a formula says at one instant depends on *sources*: names, each of which shows one of a few
-values that its comparisons tell apart, and parts that remember or compare in other ways, which are
-taken to be true or false at will. Formulas that share no source are combined freely, others join
-on what the shared sources show.
+The value of a formula at one instant depends on *sources*: names, each with a few cases that its
+comparisons distinguish, and subformulas with memory or complex comparisons, which are taken as
+free. Formulas without a common source are combined freely; others are joined on the cases of their
+common sources.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 MOST_COMBINATIONS = 1 << 12
-"""Of more combinations, of one group of formulas or of all together, nothing is reported."""
+"""The most combinations of one group of formulas, or of all; beyond it nothing is decided."""
 
 T = TypeVar("T", bound=Hashable)
 Truths = tuple[bool, ...]
@@ -34,13 +34,13 @@ Source = str | State
 
 
 def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Truths] | None:
-    """The truths that state formulas can have together, one per formula.
+    """The combinations of truth values that state formulas can have at one instant.
 
-    What remembers, and what compares in other ways than a name with a constant, is taken to be
-    true or false at will, so that a combination that is not found is impossible indeed.
+    Operators with memory, and comparisons other than of a name with a constant, are taken as free,
+    so a combination that is not in the result is impossible.
 
     Returns:
-        All that inputs can bring about, and perhaps more; `None` if there is too much to look at.
+        A superset of the possible combinations; `None` if there are too many.
     """
     table = Letters(spec).table(states, lambda truths: truths)
     return None if table is None else frozenset(table.rows.values())
@@ -48,12 +48,12 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Tru
 
 @dataclass(frozen=True, slots=True)
 class Table(Generic[T]):
-    """What a group of formulas can be, by what its sources show.
+    """The possible values of a group of formulas, by the cases of its sources.
 
     Attributes:
-        sources: that the formulas depend on.
-        leaves: of each source, those that are read here; a part that remembers is its own.
-        rows: what is shown of each source, and what the formulas are then.
+        sources: the sources that the formulas depend on.
+        leaves: per source, the leaves that read it; a subformula with memory is its own leaf.
+        rows: by the truth values of the leaves of each source, the value of the group.
     """
 
     sources: tuple[Source, ...]
@@ -62,14 +62,14 @@ class Table(Generic[T]):
 
 
 class Letters:
-    """What groups of formulas of one specification can be, alone and together."""
+    """The possible values of groups of formulas of one specification, alone and jointly."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
         self._seen: dict[tuple[Source, tuple[State, ...]], tuple[Truths, ...]] = {}
 
     def table(self, states: Sequence[State], view: Callable[[Truths], T]) -> Table[T] | None:
-        """What some formulas can be; `None` if there is too much to look at."""
+        """The possible values of a group, seen through `view`; `None` if there are too many."""
         nodes = _nodes(states)
         leaves = _leaves_by_source(nodes, self.spec)
         shown = [self._shown(source, own) for source, own in leaves.items()]
@@ -78,13 +78,13 @@ class Letters:
             size *= len(own)
         if size > MOST_COMBINATIONS:
             return None
-        # Of each formula its truth in every row.
+        # Per formula, its truth value in every row.
         values: dict[State, NDArray[np.bool_]] = {}
         for node in nodes:
             if isinstance(node.leaf, Constant):
                 values[node] = np.full(size, node.leaf.value)
             elif isinstance(node.leaf, Lapsed) or node.leaf == Elapsed(0):
-                # Nothing is unknown, and there is a position.
+                # Everything is known here, and the position exists.
                 values[node] = np.full(size, node.leaf == Elapsed(0))
         rest = np.arange(size)
         for read, own in zip(reversed(leaves.values()), reversed(shown), strict=True):
@@ -100,7 +100,7 @@ class Letters:
         return Table(tuple(leaves), tuple(leaves.values()), rows)
 
     def joint(self, tables: Sequence[Table[T] | None]) -> frozenset[tuple[T, ...]] | None:
-        """What several groups can be together; `None` if there is too much to look at."""
+        """The joint values that several groups can have; `None` if there are too many."""
         known = [table for table in tables if table is not None]
         if len(known) < len(tables):
             return None
@@ -115,7 +115,7 @@ class Letters:
         return frozenset(together for found in relation.values() for together in found)
 
     def _shared(self, tables: Sequence[Table[T]]) -> dict[Source, dict[State, Truths]]:
-        """Of each source that several tables read, what each leaf is in every case of it."""
+        """For each source that several tables read, the truth values of each leaf by case."""
         readers: dict[Source, list[tuple[State, ...]]] = defaultdict(list)
         for table in tables:
             for source, own in zip(table.sources, table.leaves, strict=True):
@@ -129,7 +129,7 @@ class Letters:
         return found
 
     def _shown(self, source: Source, leaves: tuple[State, ...]) -> tuple[Truths, ...]:
-        """The truths that some leaves of a source can have."""
+        """The combinations of truth values that the leaves of a source can have."""
         alone = leaves[0].leaf if len(leaves) == 1 else None
         if not isinstance(source, str) or isinstance(alone, SignalAtom | EventAtom):
             return ((False,), (True,))
@@ -145,14 +145,14 @@ class Letters:
 
 @dataclass(frozen=True, slots=True)
 class _Part(Generic[T]):
-    """A table as others see it: by the cases of the sources that it shares with them."""
+    """A table projected onto the cases of the sources that it shares with others."""
 
     sources: tuple[Source, ...]
     rows: Mapping[tuple[int, ...], set[T]]
 
     @classmethod
     def of(cls, table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> _Part[T]:
-        """The table without what it does not share."""
+        """The projection of a table."""
         places = [place for place, source in enumerate(table.sources) if source in shared]
         cases: list[dict[Truths, list[int]]] = []
         for place in places:
@@ -177,11 +177,11 @@ def _join(
     part: _Part[T],
     later: set[Source],
 ) -> tuple[tuple[Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
-    """One group more, joined on the sources it shares; only those used later are kept.
+    """Join one more group on the shared sources; only sources read by later groups are kept.
 
-    A hash join with projection, as in bucket elimination. To drop a source that no later group
-    reads loses nothing: what can be joined later does not depend on which of its values was chosen.
-    If all were kept, the rows would multiply with every group.
+    A hash join with projection, as in bucket elimination. Dropping a source that no later group
+    reads loses nothing, as later joins do not depend on its case; keeping all would multiply the
+    rows with every group.
     """
     ours = [place for place, source in enumerate(live) if source in part.sources]
     theirs = [part.sources.index(live[place]) for place in ours]
@@ -189,7 +189,7 @@ def _join(
     fresh = [
         place for place, source in enumerate(part.sources) if source in later and source not in live
     ]
-    # The group's rows by what they share with the relation: the table that is probed below.
+    # The hash table of the join: the group's rows by the cases they share with the relation.
     matches: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = {}
     for chosen, views in part.rows.items():
         rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})
@@ -204,7 +204,7 @@ def _join(
 
 
 def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source, tuple[State, ...]]:
-    """What formulas depend on, and which of their leaves read it."""
+    """The sources of formulas, each with the leaves that read it."""
     found: dict[Source, tuple[State, ...]] = {}
     for node in nodes:
         if node.leaf is not None and _is_plain(node.leaf, spec):
@@ -216,7 +216,7 @@ def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source,
 
 
 def _nodes(states: Iterable[State]) -> list[State]:
-    """The formulas and what they are made of at one instant, operands first."""
+    """The formulas and their subformulas outside of operators with memory, operands first."""
     found: set[State] = set()
     waiting = list(states)
     while waiting:
@@ -229,7 +229,7 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 
 def _is_free(node: State) -> bool:
-    """Whether a node is a leaf or remembers."""
+    """Whether a node is a leaf, has memory, or compares measured windows."""
     return node.op in (
         StateOp.LEAF,
         StateOp.PREVIOUS,
@@ -241,7 +241,7 @@ def _is_free(node: State) -> bool:
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
-    """Whether all truths of a leaf are seen by trying values."""
+    """Whether trying values of its names shows all truth values of a leaf."""
     match leaf:
         case Constant() | SignalAtom() | EventAtom() | Lapsed() | Elapsed(duration=0):
             return True
@@ -253,9 +253,9 @@ def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
 
 
 def _is_steady(name: str, spec: CheckedSpec) -> bool:
-    """Whether what is tried for a name covers all that it can say at one position.
+    """Whether the values tried for a name cover all cases at one position.
 
-    Not so for events with many fields, nor where several of their payloads come together.
+    Not so for events with several fields, nor where several payloads may share a position.
     """
     if name in spec.signals:
         return True
@@ -284,6 +284,6 @@ def _value(node: State, args: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
             | StateOp.PASSED
             | StateOp.DOUBT
         ):
-            raise AssertionError("leaves and what remembers have a value already")
+            raise AssertionError("leaves and operators with memory have a value already")
         case _:
             assert_never(node.op)

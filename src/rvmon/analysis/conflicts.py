@@ -10,35 +10,35 @@ from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.requirement import Conflict, Implication, Member, Subject
 
 MOST_OFFSETS = 12
-"""Of two requirements so many distances between their triggers are looked at."""
+"""The most distances between the triggers of two requirements that are examined."""
 
 MOST_ALWAYS = 4
-"""So many requirements that hold at every instant are looked at beside two others."""
+"""The most `always` requirements that are added to a pair."""
 
 LARGEST_GROUP = 6
-"""Groups of so many are tried first: where all of one can hold, so can all sets within."""
+"""The size of the groups tried first: if all of a group can hold, so can every subset."""
 
 LARGEST_SET = 5
-"""Larger sets are not looked at one by one."""
+"""The size of the largest sets that are examined one by one."""
 
 MOST_SETS = 2000
-"""Of more sets of one size above three none is looked at."""
+"""If there are more sets of one size above three, that size is skipped."""
 
 
 class ConflictSearch:
-    """Looks for conflicts among requirements that can be met one by one.
+    """Searches for conflicts among requirements each of which can pass by itself.
 
     Args:
-        together: answers about groups.
+        together: answers reachability queries.
         subjects: the requirements.
-        deadline: of `time.monotonic`.
+        deadline: by `time.monotonic`, seconds.
 
     Attributes:
-        conflicts: found so far; none holds another one.
-        pairs: how many pairs read a common name.
-        pairs_undecided: how many of these are not decided.
-        sets_undecided: how many larger sets that were looked at are not decided.
-        whole_sets: sets of up to so many were all looked at; `None` if of any size.
+        conflicts: found so far; none contains another one.
+        pairs: the number of pairs that read a common name.
+        pairs_undecided: the number of these that are not decided.
+        sets_undecided: the number of larger sets examined but not decided.
+        whole_sets: all sets of up to this size were examined; `None` if those of any size were.
     """
 
     def __init__(self, together: Together, subjects: Sequence[Subject], deadline: float) -> None:
@@ -58,16 +58,16 @@ class ConflictSearch:
 
     @property
     def pairs(self) -> int:
-        """How many pairs read a common name."""
+        """The number of pairs that read a common name."""
         return len(self._pairs)
 
     @property
     def pairs_undecided(self) -> int:
-        """How many of the pairs are not decided, or not reached."""
+        """The number of these not decided, or not reached before the deadline."""
         return len(self._open)
 
     def run(self) -> None:
-        """Look at pairs at once and apart, at groups, then at larger and larger sets."""
+        """Examine pairs triggered at once, groups, triples, pairs apart in time, larger sets."""
         decided = set()
         for pair in self._pairs:
             if not self._is_late() and self._pair_at_once(*pair) is not None:
@@ -87,13 +87,13 @@ class ConflictSearch:
         return time.monotonic() > self.deadline
 
     def _can_hold(self, members: Sequence[Member]) -> bool | None:
-        """Whether all can end well, triggered as given."""
+        """Whether all can pass, triggered at their offsets; `None` if not decided."""
         subjects = [member.subject for member in members]
         offsets = [member.offset for member in members]
         return self.together.can_reach(subjects, offsets, Aim(frozenset(range(len(members)))))
 
     def _pair_at_once(self, one: Subject, other: Subject) -> bool | None:
-        """Whether two can hold, triggered at one instant; a conflict is kept."""
+        """Whether two can pass, triggered at one instant; a conflict is recorded."""
         if self.together.can_start([one, other]) is False:
             self._apart.add(frozenset((one, other)))
             return True
@@ -103,7 +103,11 @@ class ConflictSearch:
         return holds
 
     def _to_be_set_apart(self) -> Iterator[tuple[Subject, Subject]]:
-        """Requirements with themselves, then pairs that are near, also by what holds always."""
+        """Pairs to be examined with time between their triggers.
+
+        First each requirement with itself, then pairs that read a common name, then pairs
+        connected by an `always` requirement that shares a name with both.
+        """
         yield from ((one, one) for one in self.subjects if one.starts_anew)
         yield from self._pairs
         for one, other in combinations(self.subjects, 2):
@@ -113,7 +117,7 @@ class ConflictSearch:
                 yield one, other
 
     def _pair_apart(self, one: Subject, other: Subject) -> None:
-        """Look at two, or at one that is triggered twice, with time between their triggers."""
+        """Examine two, or one that is triggered twice, at several distances of the triggers."""
         orders = [(one, other)] if one is other else [(one, other), (other, one)]
         for first, second in orders:
             if second.starts_late and not first.is_always:
@@ -122,7 +126,7 @@ class ConflictSearch:
                         return
 
     def _apart_by(self, first: Subject, second: Subject, offset: int) -> bool:
-        """Whether two, the second so much later, conflict, or do so with what holds always."""
+        """Whether two at this distance conflict, alone or with `always` requirements."""
         names = first.names | second.names
         always = [
             Member(subject)
@@ -137,7 +141,7 @@ class ConflictSearch:
         return holds is False and self._keep(self._minimal(members))
 
     def _minimal(self, members: list[Member]) -> list[Member]:
-        """The members without those that are not needed for the conflict."""
+        """A minimal conflicting subset of conflicting members, with offsets from 0."""
         for member in list(members):
             rest = [other for other in members if other is not member]
             if len(rest) > 1 and self._can_hold(rest) is False:
@@ -146,7 +150,10 @@ class ConflictSearch:
         return [Member(member.subject, member.offset - start) for member in members]
 
     def _keep(self, members: Sequence[Member]) -> bool:
-        """Keep a conflict, if it is none of triggers alone; whether it was kept."""
+        """Record a conflict; returns whether it was.
+
+        Not if it contains a known one, nor if some member cannot pass among the triggers alone.
+        """
         group = frozenset(member.subject for member in members)
         if any(bad <= group for bad in self._bad):
             return False
@@ -163,7 +170,10 @@ class ConflictSearch:
     # Sets of more than two, triggered at one instant.
 
     def _groups(self) -> None:
-        """Of each requirement a group of near ones, in the hope that all of it can hold."""
+        """Find groups that can hold as a whole, to settle all their subsets with one query.
+
+        Each starts from one requirement, adds related ones, and shrinks until it can hold.
+        """
         for subject in self.subjects:
             group = [subject]
             for other in self.subjects:
@@ -175,13 +185,13 @@ class ConflictSearch:
                 group.pop()
 
     def _fits(self, group: Collection[Subject], other: Subject) -> bool:
-        """Whether one more is near, can start with the others, and conflicts with none."""
+        """Whether one more shares a name with a member, can start with all, conflicts with none."""
         if other in group or not any(frozenset((one, other)) in self._near for one in group):
             return False
         return not self._is_hopeless(frozenset((*group, other)))
 
     def _is_hopeless(self, group: frozenset[Subject]) -> bool:
-        """Whether a conflict or two that never start together are within."""
+        """Whether a group contains a conflict, or a pair that never starts together."""
         pairs = map(frozenset, combinations(group, 2))
         return any(bad <= group for bad in self._bad) or any(p in self._apart for p in pairs)
 
@@ -189,7 +199,10 @@ class ConflictSearch:
         return any(group <= known for known in self._fine)
 
     def _sets_of(self, size: int, level: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-        """Look at sets of a size, each a smaller one and one more; none is left if that is all."""
+        """Examine the sets of one size, extensions of those one smaller (`level`); returns them.
+
+        Empty if there are none, or if the sets of the previous size were not all examined.
+        """
         if self.whole_sets != size - 1:
             return []
         larger = list(dict.fromkeys(self._grown(level)))
@@ -223,7 +236,7 @@ class ConflictSearch:
 
 
 def _offsets(first: Subject, second: Subject) -> list[int]:
-    """Distances at which windows of the two begin, end or touch, round ones first."""
+    """Distances (ticks) at which bounds of the two meet, within a tick; round ones first."""
     theirs = {0, *_cuts(second)}
     found = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
     return sorted((at for at in found if at > 0), key=_roundness)[:MOST_OFFSETS]
@@ -239,7 +252,7 @@ def _cuts(subject: Subject) -> set[int]:
 
 
 MOST_OTHERS = 5
-"""So many others are looked at together."""
+"""The most requirements tried together as implying another."""
 
 
 def implications_among(
@@ -249,18 +262,18 @@ def implications_among(
     conflicts: Sequence[Conflict],
     deadline: float,
 ) -> tuple[list[Implication], bool]:
-    """The requirements that one or several others make superfluous, each with a minimal set.
+    """The requirements that one or several others imply, each with a minimal set of these.
 
     Args:
-        together: answers about groups.
+        together: answers reachability queries.
         subjects: the requirements that may imply another one.
-        falling: those that can fail.
-        conflicts: sets that cannot all hold: they would imply anything.
-        deadline: of `time.monotonic`.
+        falling: those that can fail, and so may be implied.
+        conflicts: sets that cannot all hold; they would imply anything, so they are excluded.
+        deadline: by `time.monotonic`, seconds.
 
     Returns:
-        The implications, and whether all requirements were looked at. Of requirements that imply
-        each other the later ones are reported as implied.
+        The implications, and whether all requirements were tested. Of requirements that imply each
+        other, the later ones are reported as implied.
     """
     found: list[Implication] = []
     dropped: set[str] = set()
@@ -284,7 +297,7 @@ def implications_among(
 
 
 def starts_with(together: Together, other: Subject, implied: Subject) -> bool:
-    """Whether an attempt of the other is under way wherever one of a requirement starts."""
+    """Whether an attempt of `other` starts, or is open, wherever one of `implied` starts."""
     ours, theirs = implied.requirement, other.requirement
     if theirs.captures or theirs.for_each or ours.captures or ours.for_each:
         return False
@@ -328,7 +341,7 @@ def _by_several(
 
 
 def _implies(together: Together, by: Sequence[Subject], implied: Subject) -> bool:
-    """Whether it cannot fail where all others end well, and all can."""
+    """Whether `implied` cannot fail if all of `by` pass, and all of them can pass together."""
     group, places = [*by, implied], range(len(by) + 1)
     fails_alone = Aim(frozenset(places[:-1]), frozenset(places[-1:]))
     if together.can_reach(group, [0] * len(group), fails_alone) is not False:

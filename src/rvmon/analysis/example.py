@@ -1,4 +1,4 @@
-"""Example timelines, and how their times are written."""
+"""Example timelines, and the step between their samples."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from rvmon.verdict.attempt import Attempt
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A short run and what the law says of it.
+    """A short run with its verdicts.
 
     Attributes:
-        samples: what arrives, in order.
-        end: the instant at which it ends, ticks.
+        samples: the samples, in order of time.
+        end: the end of the trace, ticks.
         verdicts: by requirement.
-        attempts: those that were started.
+        attempts: all attempts of the run.
     """
 
     samples: tuple[Sample, ...]
@@ -33,13 +33,13 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How long to look for examples.
+    """Limits of a search for examples.
 
     Attributes:
-        runs: short runs that are judged at most.
-        samples: in one run at most.
-        step: between two samples where nothing else asks for an instant, ticks; `None`: one that is
-            small beside the durations of the requirements.
+        runs: the most runs judged.
+        samples: the most samples of one run.
+        step: default distance of two samples, ticks; `None`: small relative to the durations of
+            the requirements.
     """
 
     runs: int = 4000
@@ -49,12 +49,12 @@ class Budget:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a search for examples brought.
+    """The result of a search for examples.
 
     Attributes:
-        examples: by what was looked for, those with the fewest samples, then the earliest end.
-        runs: how many were judged.
-        exhausted: whether nothing was left to try among the instants and values looked at.
+        examples: by kind, the example with the fewest samples, then the earliest end.
+        runs: the number of runs judged.
+        exhausted: whether the whole search space was examined.
     """
 
     examples: Mapping[str, Example]
@@ -70,9 +70,9 @@ def intervals_of(formula: Formula) -> Iterator[Interval]:
 
 
 def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
-    """A step that is small beside all durations of some requirements, and a round number of ticks.
+    """A round number of ticks that is small relative to all durations of the requirements.
 
-    Of a spec that is sampled by a clock, a whole number of its periods.
+    In clocked time, a multiple of the period.
     """
     bounds = [
         bound
@@ -90,7 +90,7 @@ def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
 
 
 def _rounded_down(ticks: int) -> int:
-    """The greatest of 1, 2, 5, 10, … that is at most this, or 1."""
+    """The greatest of 1, 2, 5, 10, 20, … that is at most `ticks`, at least 1."""
     scale = 1
     while scale * 10 <= ticks:
         scale *= 10

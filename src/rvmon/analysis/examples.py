@@ -1,6 +1,6 @@
-"""A specification analysed: its findings, and the shortest timelines of requirements and conflicts.
+"""Shortest example timelines of requirements and conflicts, and the analysis as a whole.
 
-The search is best first over samples, instants and values that matter.
+Examples are found by best-first search over relevant samples, instants and values.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Played:
     """A short run, judged.
 
     Attributes:
-        example: the run as it stands if it ends here.
-        situation: equal for runs that go on alike, as far as the search looks.
-        cut: the next instant after its end at which time alone may change something.
+        example: the run, if it ends here.
+        situation: a key that is equal for runs with the same future, as far as the search looks.
+        cut: the next instant after its end at which time alone may decide something, ticks.
     """
 
     example: Example
@@ -74,7 +74,7 @@ class Player:
             if not run.judge(sample.t, sample.values, False):
                 values = self._planned.plain(sample.t, sample.values)
                 if not run.judge(sample.t, values, True):
-                    raise ValueError("the core does not take what the search has made up")
+                    raise ValueError("the core refuses a sample of the search")
         situation, cut = run.situation(end)
         run.finish(end)
         report = report_of_run(self._planned, run, samples[0].t, end)
@@ -83,19 +83,19 @@ class Player:
 
 
 Goal = Callable[[Example], str | None]
-"""What an example shows, or `None` if nothing that is looked for."""
+"""Classifies an example into one of the wanted kinds; `None` if it is of no interest."""
 
 _PATIENCE = 6
-"""How often a run waits between two samples before each further wait counts as a sample."""
+"""The number of waits between two samples that are free; each further one counts as a sample."""
 
 
 def verdict_of(name: str) -> Goal:
-    """The goal of an example for each verdict of a requirement."""
+    """The goal that finds an example for each verdict of a requirement."""
     return lambda example: example.verdicts[name].value
 
 
 def difference_of(first: str, second: str) -> Goal:
-    """The goal of an example on which two requirements have different verdicts."""
+    """The goal that finds examples on which two requirements have different verdicts."""
 
     def differs(example: Example) -> str | None:
         verdicts = example.verdicts[first], example.verdicts[second]
@@ -108,10 +108,15 @@ def difference_of(first: str, second: str) -> Goal:
 
 @dataclass(frozen=True, slots=True)
 class _Node:
-    """A run to be judged: its samples, its end, what is held then, and whether it waits there.
+    """A run to be judged.
 
-    `stir` counts what happens in it: occurrences, values other than false; `waits` how often it
-    waited since its last sample.
+    Attributes:
+        samples: the samples so far.
+        end: the end of the run, ticks.
+        held: the current values.
+        stir: the number of occurrences and of values other than false; quieter runs go first.
+        at_cut: whether it waits at its end, after the last sample.
+        waits: the number of waits since the last sample.
     """
 
     samples: tuple[Sample, ...]
@@ -123,7 +128,7 @@ class _Node:
 
     @property
     def effort(self) -> int:
-        """How many samples there are; waiting on and on counts as much, lest nothing else comes."""
+        """The number of samples; many waits count too, or endless waiting would come first."""
         return len(self.samples) + max(0, self.waits - _PATIENCE)
 
 
@@ -136,16 +141,16 @@ def shortest_examples(
 ) -> Found:
     """Look for the shortest example of each kind.
 
-    All runs are judged by the monitor itself, so that an example shows what it claims to show.
-    They are tried in order of the number of samples, then of their end; where waiting leads to ever
-    new situations, each wait beyond a few counts as a sample. A sample takes one of the
-    valuations between which the formulas tell; it follows at a short step, or where a window opens
-    or ends, or a tick before or after that.
+    Runs are judged by the core itself, so an example is right by construction. They are tried by
+    number of samples, then by end; where waiting leads to ever new situations, each wait beyond a
+    few counts as a sample. A sample takes one of the valuations that the formulas distinguish, a
+    short step after the last one, or within a tick of an instant at which a window opens or
+    closes.
 
     Args:
         compiled: the specification.
-        requirements: of it, those that are looked at.
-        goal: what a run is an example of.
+        requirements: those of its requirements to be judged.
+        goal: classifies a run.
         wanted: the kinds of examples; the search ends when all are found.
         budget: when to give up.
 
@@ -185,7 +190,7 @@ def shortest_examples(
 
 
 def _stir(changes: Mapping[str, Value]) -> int:
-    """How much happens at a sample."""
+    """The number of occurrences, and of values other than false, in a sample."""
     return sum(value is not False for value in changes.values())
 
 
@@ -208,7 +213,7 @@ class _Search:
                     some.setdefault(name, value)
         tried: dict[str, Valuation] = {}
         for valuation in self.choices.valuations:
-            # Of several names whose updates matter, few combinations are kept in which all speak.
+            # At the first sample silent names get a default, lest few valuations remain.
             whole = {n: some[n] if v is SILENT else v for n, v in valuation.items() if n in some}
             tried.setdefault(repr(whole), whole)
         for valuation in tried.values():
@@ -234,7 +239,7 @@ class _Search:
                 yield _Node(node.samples, t, node.held, node.stir, at_cut=True, waits=waits)
 
     def _changes(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
-        """What a sample has to say: new values, all updates that matter, occurrences."""
+        """The contents of a sample: new values, relevant updates, occurrences."""
         changes: dict[str, Value] = {}
         for name, value in valuation.items():
             if isinstance(value, Silence):
@@ -259,7 +264,7 @@ def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> 
 
 
 def _windows(requirement: Requirement) -> Iterator[Compare]:
-    """The windows of numbers that a requirement compares, with what it compares them."""
+    """The comparisons of numeric windows in a requirement."""
     for part in (*subformulas(requirement.trigger), *subformulas(requirement.consequent)):
         found = part
         if isinstance(part, Amount):
@@ -271,19 +276,19 @@ def _windows(requirement: Requirement) -> Iterator[Compare]:
 
 
 CONFLICT_RUNS = 400
-"""Short runs that are tried for the timeline of one conflict."""
+"""The most runs tried for the timeline of one conflict."""
 
 _OPEN, _MET = "open", "met"
 
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """What an analysis found.
+    """The result of an analysis.
 
     Attributes:
         findings: as diagnostics.
-        examination: the same as data, with what was not decided.
-        timelines: of the first conflicts, the shortest run that triggers them as given.
+        examination: the same as data, with counts of undecided questions.
+        timelines: for the first conflicts, the shortest run that triggers their requirements.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -296,8 +301,8 @@ def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3)
 
     Args:
         compiled: the specification.
-        seconds: the budget of the examination; what is not reached counts as not decided.
-        timelines: of so many conflicts at most the timeline is looked for.
+        seconds: the budget of `examine`.
+        timelines: the most conflicts for which a timeline is sought.
     """
     subjects = [
         Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
@@ -313,9 +318,9 @@ def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3)
 
 
 def conflict_example(compiled: CompiledSpec, conflict: Conflict) -> Example | None:
-    """The shortest run found that triggers conflicting requirements as the conflict says.
+    """The shortest run found that triggers the requirements of a conflict at its offsets.
 
-    One on which none has failed yet is preferred.
+    A run on which none has failed yet is preferred.
     """
     chosen = [compiled.requirements[name] for name in dict.fromkeys(conflict.ids)]
     goal = _triggered_as(conflict.ids, conflict.offsets)

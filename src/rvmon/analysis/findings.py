@@ -1,4 +1,4 @@
-"""All analyses of a specification, and what they found as diagnostics."""
+"""All analyses of a specification, and their results as diagnostics."""
 
 from __future__ import annotations
 
@@ -21,19 +21,18 @@ from rvmon.texts import listed
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """What was found.
+    """The results of all analyses.
 
     Attributes:
         possible: by requirement.
         conflicts: minimal sets that cannot all hold.
         implications: requirements that others make superfluous.
-        undecided: ids of which it was not decided whether they can trigger, fail and pass.
-        pairs: how many pairs that read a common name were looked at.
-        pairs_undecided: how many of these were not decided, or not reached within the budget.
-        sets_undecided: how many larger sets that were looked at were not decided.
-        whole_sets: sets of up to so many requirements were all looked at; `None` if those of any
-            size were.
-        implications_done: whether all requirements were looked at whether others imply them.
+        undecided: ids for which it was not decided whether they can trigger, fail and pass.
+        pairs: the number of pairs that read a common name.
+        pairs_undecided: the number of these not decided, or not reached within the budget.
+        sets_undecided: the number of larger sets examined but not decided.
+        whole_sets: all sets of up to this size were examined; `None` if those of any size were.
+        implications_done: whether every requirement was tested for being implied.
     """
 
     possible: Mapping[str, Possible]
@@ -48,12 +47,12 @@ class Examination:
 
 
 def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> Examination:
-    """Examine requirements, each alone, by two, by more.
+    """Analyse requirements: each alone, then pairs, then larger sets.
 
     Args:
         spec: declares the names.
         subjects: its requirements.
-        seconds: the budget; what is not reached counts as not decided.
+        seconds: the budget; analyses not reached within it count as not decided.
     """
     deadline = time.monotonic() + seconds
     found: dict[str, Possible] = {}
@@ -88,7 +87,7 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
 
 
 def _is_sound(subject: Subject, found: Mapping[str, Possible]) -> bool:
-    """Whether a requirement can be met by itself, as far as is known."""
+    """Whether a requirement can trigger and pass by itself, as far as is known."""
     one = found.get(subject.id)
     if one is None or subject.trigger is None or subject.automaton is None:
         return False
@@ -96,7 +95,7 @@ def _is_sound(subject: Subject, found: Mapping[str, Possible]) -> bool:
 
 
 def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:
-    """Diagnostics, in order of the file for single requirements, then conflicts, then the rest."""
+    """The diagnostics: single requirements in file order, then conflicts, then implications."""
     singles = [
         diagnostic
         for name in spec.requirements
@@ -162,21 +161,21 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
 
 
 def _can_fail(requirement: Requirement) -> str:
-    """What lets a requirement fail that never does."""
+    """The advice for a requirement that can never fail."""
     if any(map(_has_no_end, subformulas(requirement.consequent))):
         return "give it a deadline with `within`, or write `at end: strong`"
     return "the consequent holds wherever it is evaluated: look at the comparisons in it"
 
 
 def _is_open(requirement: Requirement) -> bool:
-    """Whether something may be required to the end of the run."""
+    """Whether an obligation of the requirement may stay open to the end of the run."""
     return requirement.mode is Mode.WHENEVER or any(
         map(_has_no_end, subformulas(requirement.consequent))
     )
 
 
 def _has_no_end(part: Formula) -> bool:
-    """Whether it is an operator that looks ahead for ever."""
+    """Whether a formula is an unbounded future operator."""
     return (
         isinstance(part, Unary | Binary)
         and part.op in FUTURE
@@ -185,7 +184,7 @@ def _has_no_end(part: Formula) -> bool:
 
 
 def _can_pass(requirement: Requirement) -> str:
-    """What lets a requirement pass that never does."""
+    """The advice for a requirement that can never pass."""
     policy = requirement.at_end
     if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
         return (
@@ -196,12 +195,12 @@ def _can_pass(requirement: Requirement) -> str:
 
 
 def _has_trigger(requirement: Requirement) -> bool:
-    """Whether something was specified about when it applies, other than always or at the start."""
+    """Whether a requirement has a trigger other than always, `start` or `end`."""
     return not isinstance(requirement.trigger, Constant | BoundAtom)
 
 
 def _later(conflict: Conflict) -> Iterator[str]:
-    """Which are triggered how long after the first."""
+    """The clauses for requirements that are triggered after the first one."""
     for name, offset in zip(conflict.ids, conflict.offsets, strict=True):
         if offset:
             yield f"{name} {format_duration(offset)} after {conflict.ids[0]}"

@@ -1,4 +1,4 @@
-"""An automaton as people read it: places, and edges with conditions in words."""
+"""An automaton as a readable graph: places, and edges with conditions in words."""
 
 from __future__ import annotations
 
@@ -19,13 +19,17 @@ from rvmon.spec.print import format_duration, format_formula
 from rvmon.texts import shown
 
 Cube = tuple[int, ...]
-"""Per proposition 1, 0, or `ANY`."""
+"""A partial valuation: per proposition 1, 0 or `ANY`."""
 
 ANY = -1
 
 
 def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cube, ...]:
-    """Cubes that cover these vectors: prime ones, chosen greedily.
+    """Prime cubes that cover the vectors, chosen greedily.
+
+    Args:
+        vectors: to be covered.
+        never: impossible vectors, which may be covered or not.
 
     Source: Quine 1952, McCluskey 1956; the choice of primes is greedy.
 
@@ -65,7 +69,7 @@ def _covers(cube: Cube, vector: Cube) -> bool:
 
 
 MOST_PROPOSITIONS = 8
-"""Conditions over more propositions are counted, not spelled out."""
+"""The most propositions for which conditions are spelled out; beyond it they are counted."""
 
 CLOCKS = "xyzuvwabcd"
 
@@ -75,9 +79,9 @@ class Place:
     """A location.
 
     Attributes:
-        name: a short one: `start`, `A`, `B`, …, `P`, `F`.
-        required: what is required there; empty at the ends.
-        location: its place in the automaton.
+        name: `start`, `A`, `B`, …, `P` or `F`.
+        required: the residual in words; "" for `P` and `F`.
+        location: its index in the automaton.
     """
 
     name: str
@@ -87,13 +91,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A step.
+    """An edge.
 
     Attributes:
-        source: name of a place.
-        target: the same.
-        condition: on the input; empty for any.
-        when: on the clocks; empty for any.
+        source: name of its source place.
+        target: name of its target place.
+        condition: the condition on the input; "" if there is none.
+        when: the guard on the clocks; "" if there is none.
         sets: the clocks that are started or renamed, as text.
     """
 
@@ -113,9 +117,9 @@ class Graph:
 
 
 def graph_of(compiled: CompiledRequirement, automaton: Automaton, spec: CheckedSpec) -> Graph:
-    """An automaton with its conditions in words.
+    """The graph of an automaton.
 
-    Unknown inputs are left out, and combinations that inputs cannot bring about.
+    Letters with unknown propositions, and impossible combinations, are left out.
     """
     names = _names(automaton)
     places = tuple(
@@ -184,7 +188,7 @@ class _Reader:
         self.first, self.later = inputs_of(compiled, spec, self.letters)
 
     def edges(self, index: int) -> Iterator[tuple[int, str, str, str]]:
-        """Target, condition on the input, condition on the clocks, clocks that are set."""
+        """The edges of a location: target, condition on the input, guard, clocks that are set."""
         automaton = self.automaton
         cuts = automaton.locations[index].cuts
         can_be = self.first if index == automaton.initial else self.later
@@ -220,7 +224,7 @@ class _Reader:
 
 
 def letters_of(alphabet: Alphabet, most: int) -> Mapping[Cube, int]:
-    """The letters without unknowns, by the truths of their propositions; none if these are more."""
+    """The letters without unknowns, by valuation; empty for more than `most` propositions."""
     if len(alphabet.propositions) > most:
         return {}
     digits = [(own[FALSE], own[TRUE]) for own in alphabet.pessimistic]
@@ -233,7 +237,7 @@ def letters_of(alphabet: Alphabet, most: int) -> Mapping[Cube, int]:
 def inputs_of(
     compiled: CompiledRequirement, spec: CheckedSpec, letters: Mapping[Cube, int]
 ) -> tuple[Set[Cube], Set[Cube]]:
-    """Those of some letters that inputs can bring about: at the trigger, and at any position."""
+    """The possible valuations among `letters`: at the trigger, and at any position."""
     trigger, width = compiled.obligation.trigger, len(compiled.alphabet.propositions)
     states = [*compiled.alphabet.propositions, *([] if trigger is None else [trigger])]
     vectors = combinations_of(spec, states)
@@ -245,7 +249,7 @@ def inputs_of(
 
 
 def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
-    """The propositions in the words of the spec."""
+    """By proposition, its text in the language."""
     texts: dict[State, str] = {}
     requirement = compiled.requirement
     for node, origin in compiled.obligation.origins.items():
@@ -254,7 +258,7 @@ def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
             formula = origin.formula
             episode = requirement.mode is Mode.WHENEVER and not always(requirement)
             if formula is requirement.consequent and episode:
-                # What an episode owes at each instant is the whole implication.
+                # An episode requires the whole implication at each of its positions.
                 formula = Binary(BinaryOp.IMPLIES, requirement.trigger, formula)
             text = format_formula(formula)
             texts.setdefault(node.proposition, _negated(text) if negative else text)
@@ -266,7 +270,7 @@ def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
 
 
 def _bracketed(text: str) -> str:
-    """A part of a conjunction; in brackets if it has a connective of its own."""
+    """An operand of a conjunction, in brackets if it has a connective of its own."""
     loose = any(f" {word} " in text for word in ("or", "and", "->", "<->", "xor"))
     return f"({text})" if loose and not text.startswith(("not (", "(")) else text
 
@@ -279,7 +283,7 @@ def _negated(text: str) -> str:
 
 
 def _when(rows: Sequence[tuple[int, ...]], cuts: tuple[tuple[int, ...], ...]) -> str:
-    """The ages of the clocks in some rows; where they make up no box, the rows one by one."""
+    """The guard of some rows: one conjunction if they form a box, else one per row."""
     spans = [sorted({row[clock] for row in rows}) for clock in range(len(cuts))]
     size = 1
     for span in spans:
@@ -290,7 +294,7 @@ def _when(rows: Sequence[tuple[int, ...]], cuts: tuple[tuple[int, ...], ...]) ->
 
 
 def _between(clock: str, span: Sequence[int], cuts: tuple[int, ...]) -> str:
-    """The ages of one clock in a span of its regions."""
+    """The guard on one clock for a span of its regions."""
     low = cuts[span[0] - 1] if span[0] else None
     high = cuts[span[-1]] - 1 if span[-1] < len(cuts) else None
     if low is None and high is None:
@@ -304,7 +308,7 @@ def _between(clock: str, span: Sequence[int], cuts: tuple[int, ...]) -> str:
 
 
 def _least(clock: str, low: int) -> str:
-    """At least `low`; a tick more than a round duration reads as above that."""
+    """The guard of ages from `low` on; one tick above a round duration is written as `>` that."""
     if len(format_duration(low - 1)) < len(format_duration(low)):
         return f"{clock} > {format_duration(low - 1)}"
     return f"{clock} ≥ {format_duration(low)}"
@@ -325,7 +329,7 @@ ENDS = {"P": "✓ P", "F": "✗ F"}
 
 
 def graph_lines(graph: Graph) -> list[str]:
-    """Each place with what is required there, and below it the steps that lead on."""
+    """The graph as text: each place with its residual, and its outgoing edges below it."""
     lines: list[str] = []
     for place in graph.places:
         edges = [edge for edge in graph.edges if edge.source == place.name]

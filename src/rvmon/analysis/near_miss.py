@@ -32,9 +32,9 @@ class _Miss:
     """The moment at which most parts of a conjunction were true.
 
     Attributes:
-        parts: of the conjunction.
-        there: those that were true.
-        at: the first such instant; `None` if no part was ever true.
+        parts: the operands of the conjunction.
+        there: the operands that were true.
+        at: the first such instant, ticks; `None` if no operand was ever true.
     """
 
     parts: tuple[Formula, ...]
@@ -43,7 +43,7 @@ class _Miss:
 
     @property
     def missing(self) -> tuple[Formula, ...]:
-        """The parts that were not true."""
+        """The operands that were not true."""
         return tuple(part for part in self.parts if part not in self.there)
 
 
@@ -54,12 +54,12 @@ def why_not_triggered(
     end: int,
     names: frozenset[str] | None = None,
 ) -> str:
-    """One sentence: what its trigger lacked when it was nearest; empty if there is none to say.
+    """One sentence: the parts that the trigger lacked when it came nearest; "" if none applies.
 
     Args:
         spec: the specification.
-        requirement: one that was not triggered.
-        samples: the recording, in order.
+        requirement: a requirement that was not triggered.
+        samples: the recording, in order of time.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
     """
@@ -68,14 +68,14 @@ def why_not_triggered(
 
 
 def parts_asked(requirement: Requirement) -> Question:
-    """The parts of a trigger."""
+    """The operands of a trigger as a question; none for `for each`, which is not explained."""
     if requirement.for_each is not None:
         return Question(())
     return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
 
 
 def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
-    """As `why_not_triggered`, where a recording was looked through for its `parts_asked`."""
+    """As `why_not_triggered`, from the truths of its `parts_asked` over a recording."""
     if seen.begin is None:
         return "the recording has no sample"
     if requirement.for_each is not None or requirement.trigger == BoundAtom(Bound.END):
@@ -91,7 +91,7 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
 
 
 def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
-    """The ways in which a trigger comes true, and the parts of each."""
+    """The disjuncts of a trigger, each as the operands of its conjunction."""
     return [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
 
 
@@ -104,7 +104,7 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
 
 
 def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
-    """The moment at which most parts were true; of equals one with more events, then the first."""
+    """The instant with the most true operands; ties go to more events, then to the first."""
     instants = np.unique(np.concatenate([seen[part].sure[:, 0] for part in parts]))
     if not len(instants):
         return _Miss(parts, (), None)
@@ -116,7 +116,7 @@ def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
 
 
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
-    """What is to be reported if some part was true, or there is none."""
+    """The sentence if some operand was true, or none is missing."""
     at = miss.at
     if at is None or not miss.missing:
         when = "" if at is None else f" at {format_instant(at, origin)}"
@@ -137,7 +137,7 @@ def _apart(
     start: int,
     end: int,
 ) -> Iterator[str]:
-    """What is reported of parts of which none was ever true, and of signals without a value."""
+    """The clauses if no operand was ever true, with those on signals without a value."""
     groups: dict[str, list[Formula]] = {}
     for part in parts:
         word = "was never true"
@@ -159,7 +159,7 @@ def _apart(
 
 
 def _without_values(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
-    """Of the signals that parts read, those without any value, and what is reported of them."""
+    """The signals without any value that the operands read, each with the clause for it."""
     read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
     lacking = read & seen.valueless
     absent = set() if seen.names is None else lacking - seen.names

@@ -1,9 +1,9 @@
-"""Attempts of several requirements side by side: whether they can all end well.
+"""The product of several requirements' automata: whether attempts of all can pass together.
 
-One clock measures the time since the first trigger; its ages are cut into cells by the windows of
-all. Of every clock of an attempt it is known in which cell it was started, so that its age is known
-up to the widths of two cells. More is taken to be possible than is: a cell takes any number of
-steps, and clocks that are started in one cell are not compared. So what is found impossible is so.
+The time since the first trigger is divided into cells by the bounds of all windows. Of each clock
+the cell in which it was started is known, and so its age up to the widths of two cells. This is an
+over-approximation: a cell allows any number of steps, and clocks started in one cell are not
+compared. So a negative answer is a proof.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ MOST_STATES = 4000
 FOREVER = 1 << 63
 
 Spot = tuple[int, Regions, tuple[int, ...]]
-"""Where one attempt is: its location, the least regions of its clocks and where they began."""
+"""The state of one attempt: location, least regions of its clocks, cells where these started."""
 
 State = tuple[int, tuple[Spot | None, ...]]
-"""The cell, and each attempt; `None` before its trigger."""
+"""The present cell, and the state of each attempt; `None` before its trigger."""
 
 Letter = tuple[tuple[int, bool], ...]
-"""A joint letter: for each requirement the class for its automaton, and if its trigger holds."""
+"""A joint letter: per requirement, the class of letters, and whether its trigger is true."""
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """What is looked for.
+    """The goal of a search.
 
     Attributes:
-        well: the attempts, by their place, that shall end well.
-        failed: those that shall have failed; of the others nothing is asked.
+        well: indices of the attempts that must pass.
+        failed: indices of the attempts that must fail; the others are unconstrained.
     """
 
     well: frozenset[int]
@@ -46,7 +46,7 @@ class Aim:
 
 
 class Together:
-    """Answers about groups of requirements of one specification."""
+    """Reachability queries on products of requirements of one specification; cached."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
@@ -70,7 +70,7 @@ class Together:
         return self._tables[subject]
 
     def can_start(self, subjects: Sequence[Subject]) -> bool | None:
-        """Whether the triggers of all can hold at one instant; `None` if it was not decided."""
+        """Whether the triggers of all can be true at one instant; `None` if not decided."""
         letters = self.letters(subjects)
         if letters is None:
             return None
@@ -79,16 +79,16 @@ class Together:
     def can_reach(
         self, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
     ) -> bool | None:
-        """Whether attempts can come to what is looked for.
+        """Whether attempts can reach a goal.
 
         Args:
             subjects: with automata and triggers.
-            offsets: of their triggers, ticks after the first.
-            aim: what is looked for, if the run ended there.
+            offsets: of each trigger, ticks after the first.
+            aim: the goal, evaluated as if the run ended at a state.
 
         Returns:
-            `False` if it surely cannot be, `True` if it may, `None` if that was too much to find
-            out.
+            `False` if it is impossible, `True` if it may be possible, `None` if the search exceeds
+            its limits.
 
         Source: emptiness of a product of timed automata, after Alur and Dill 1994.
         """
@@ -112,7 +112,7 @@ class Together:
 
 
 def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
-    """What matters of a requirement's propositions and trigger: class and whether it starts."""
+    """The view of a requirement's valuation: class of the letter, and whether it triggers."""
     automaton, triggered = _automaton(subject), subject.trigger is not None
 
     def view(truths: Truths) -> tuple[int, bool]:
@@ -149,7 +149,7 @@ class _Search:
         self._at: dict[int, frozenset[tuple[int, ...]]] = {}
 
     def after(self, state: State) -> Iterator[State]:
-        """The states one step later from which the aim is not lost."""
+        """The states one step later from which the goal can still be reached."""
         cell, spots = state
         for later in self._cells(cell):
             for classes in self._classes(later):
@@ -168,7 +168,7 @@ class _Search:
                         yield later, chosen
 
     def _classes(self, cell: int) -> frozenset[tuple[int, ...]]:
-        """The joint classes that can come in a cell: whoever starts there has its trigger."""
+        """The joint classes possible in a cell: requirements that start there are triggered."""
         if cell not in self._at:
             starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
             self._at[cell] = frozenset(
@@ -200,7 +200,7 @@ class _Search:
     def _moves(
         self, index: int, spot: Spot | None, cell: int, class_: int
     ) -> Iterator[Spot | None]:
-        """Where one attempt can be after a step in a cell."""
+        """The possible states of one attempt after a step in a cell."""
         automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
         if age < 0:
             yield None
@@ -236,7 +236,7 @@ class _Search:
         return self.starts[cell + 1] - 1 if cell + 1 < len(self.starts) else FOREVER
 
     def is_reached(self, state: State) -> bool:
-        """Whether the aim is reached if the run ends here, all attempts having been triggered."""
+        """Whether the goal is met if the run ends here; all attempts must have been triggered."""
         cell, spots = state
         if any(spot is None for spot in spots):
             return False
@@ -260,7 +260,7 @@ class _Search:
 
 
 def _cuts(automaton: Automaton) -> set[int]:
-    """Ages at which windows of an automaton open and end, and those of windows in windows."""
+    """The ages at which windows open and end; also their sums, if clocks are restarted."""
     cuts = automaton.cuts
     row = automaton.bases[automaton.initial] * automaton.classes
     first = set(automaton.edges[row : row + automaton.classes])

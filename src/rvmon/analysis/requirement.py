@@ -1,4 +1,4 @@
-"""What the analyses know of a requirement, and which ages of its clocks lead alike."""
+"""The data of the analyses: requirements with their automata, conflicts, implications."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Subject:
     Attributes:
         requirement: as checked.
         trigger: starts an attempt; `None` if it is the end of the trace.
-        automaton: of what an attempt owes; `None` if it does not close.
-        names: the signals and events that what is required reads.
+        automaton: the automaton of the requirement; `None` if it does not close.
+        names: the signals and events that it reads.
     """
 
     requirement: Requirement
@@ -35,7 +35,7 @@ class Subject:
 
     @property
     def is_always(self) -> bool:
-        """Whether it holds of every instant, so that an attempt is under way at each."""
+        """Whether it is `whenever true`, so that an attempt is open at every instant."""
         trigger = self.requirement.trigger
         always = isinstance(trigger, Constant) and trigger.value
         return always and self.requirement.mode is Mode.WHENEVER
@@ -53,7 +53,7 @@ class Subject:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A requirement of a set, triggered so many ticks after the first."""
+    """A requirement of a set, triggered `offset` ticks after the first trigger of the set."""
 
     subject: Subject
     offset: int = 0
@@ -64,8 +64,8 @@ class Conflict:
     """Requirements that cannot all hold.
 
     Attributes:
-        ids: a minimal set; one that is triggered twice stands twice.
-        offsets: for each how long after the first it is triggered, ticks.
+        ids: a minimal set; a requirement that is triggered twice occurs twice.
+        offsets: for each, the ticks from the first trigger to its own.
     """
 
     ids: tuple[str, ...]
@@ -74,18 +74,18 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class Implication:
-    """A requirement that fails only where one of some others fails; a minimal set of those."""
+    """A requirement that fails only where one of `by` fails; `by` is minimal."""
 
     implied: str
     by: tuple[str, ...]
 
 
 Regions = tuple[int, ...]
-"""For each clock of a location how many of its cuts have been passed."""
+"""For each clock of a location, the number of its cuts that its age has reached."""
 
 
 def after_edge(automaton: Automaton, location: int, regions: Regions, edge: int) -> Regions:
-    """The least regions behind an edge; locations may cut the age of one clock differently."""
+    """The least possible regions after an edge, by the cuts of the target location."""
     ours = automaton.locations[location].cuts
     theirs = automaton.locations[automaton.targets[edge]].cuts
     found = []

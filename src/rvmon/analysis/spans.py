@@ -1,4 +1,4 @@
-"""Sets of ticks: closed intervals in an array int64[n, 2], ascending, none touching the next."""
+"""Sets of ticks as arrays int64[n, 2] of closed intervals: ascending, disjoint, not adjacent."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ FOREVER = (1 << 63) - 1
 
 
 def joined(intervals: Any) -> NDArray[np.int64]:
-    """Those intervals, where some may touch the next.
+    """The set of some intervals, with adjacent ones merged.
 
     Args:
-        intervals: int64[n, 2], ascending, none reaching into the next.
+        intervals: int64[n, 2], ascending and disjoint.
 
     >>> joined([(1, 2), (3, 4), (6, 7)]).tolist()
     [[1, 4], [6, 7]]
@@ -31,7 +31,7 @@ def joined(intervals: Any) -> NDArray[np.int64]:
 
 
 def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
-    """The ticks from `low` to `high` that lie in the set.
+    """The intersection of the set with [low, high].
 
     >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
     [[3, 4], [6, 6]]
@@ -42,7 +42,7 @@ def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
 
 
 def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
-    """The ticks from `low` to `high` that do not; the set lies within these.
+    """The complement of the set within [low, high], which must contain it.
 
     >>> outside(joined([(2, 3)]), 0, 5).tolist()
     [[0, 1], [4, 5]]
@@ -53,7 +53,7 @@ def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
 
 
 def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:
-    """Whether each of some ticks lies in the set.
+    """Whether each tick lies in the set.
 
     >>> hold(joined([(1, 4), (6, 7)]), [0, 1, 5, 7]).tolist()
     [False, True, False, True]

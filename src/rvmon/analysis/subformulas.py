@@ -1,4 +1,4 @@
-"""An attempt taken apart: the truth of each subformula over its window, and what came too late."""
+"""Dissection of an attempt: the truth of each subformula over time, and late responses."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ if TYPE_CHECKING:
 
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
-    """What a failed attempt had awaited when its window closed.
+    """The formula that a failed attempt awaited when its window closed.
 
     Returns:
-        `None` if that is not why it failed, or if what was awaited spoke of the future itself.
+        `None` if it did not fail by a closed window, or if the formula has a future operator.
     """
     blame = attempt.blame
     if blame is None or blame.window[1] is None or attempt.decided is None:
@@ -65,7 +65,7 @@ def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
 
 
 def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
-    """By number of the attempt, what it had awaited in vain; see `awaited`."""
+    """By number of the attempt, the formula it awaited in vain; see `awaited`."""
     return {
         attempt.number: Question((formula,), requirement.for_each, attempt.captured)
         for attempt in attempts
@@ -76,13 +76,14 @@ def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int,
 def late_in(
     attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: Seen
 ) -> dict[int, int]:
-    """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
+    """By number of the attempt, the instant (ticks) after the deadline when the response came.
+
+    Attempts that missed no deadline, and those whose response never came, are left out.
 
     Args:
-        attempts: of a requirement; those that missed no deadline, and those whose wait was never
-            over, are left out.
-        waits: of these; see `waits_of`.
-        seen: of the recording, which was looked through for the waits.
+        attempts: the attempts of a requirement.
+        waits: from `waits_of`.
+        seen: the truths of the waits over the recording.
     """
     found = {}
     for attempt in attempts:
@@ -97,7 +98,7 @@ def late_in(
 
 
 def _first_after(deadline: int, spans: NDArray[np.int64], positions: Positions) -> int | None:
-    """The first position after an instant that lies in a span."""
+    """The first position after `deadline` that lies in a span; `None` if there is none."""
     for place in range(int(np.searchsorted(spans[:, 1], deadline, "right")), len(spans)):
         low, high = (int(edge) for edge in spans[place])
         first = max(low, deadline + 1)
@@ -111,14 +112,14 @@ def _first_after(deadline: int, spans: NDArray[np.int64], positions: Positions) 
 
 @dataclass(frozen=True, slots=True)
 class PartTruth:
-    """One subformula over the window.
+    """The truth of one subformula over a stretch of time.
 
     Attributes:
-        depth: how deep it lies; 0 for what is required.
-        text: as in the spec.
+        depth: its nesting depth; 0 for the trigger and the consequent.
+        text: as in the specification.
         part: `trigger` or `required`.
-        true: closed intervals of the ticks of the window at which it is true.
-        false: of those at which it is false; at the others it is not known.
+        true: closed intervals of ticks at which it is true.
+        false: those at which it is false; elsewhere it is unknown.
     """
 
     depth: int
@@ -130,14 +131,14 @@ class PartTruth:
 
 @dataclass(frozen=True, slots=True)
 class Breakdown:
-    """An attempt taken apart.
+    """The dissection of an attempt.
 
     Attributes:
         attempt: its record.
-        start: first tick of the window that is shown.
-        end: its last tick.
-        late: when what it had awaited came after its deadline, ticks; `None` if it did not.
-        part_truths: the trigger, then what is required, each before its parts.
+        start: first tick shown.
+        end: last tick shown.
+        late: the instant (ticks) of a response after the deadline; `None` if there was none.
+        part_truths: the trigger, then the consequent, each before its subformulas.
     """
 
     attempt: Attempt
@@ -148,7 +149,7 @@ class Breakdown:
 
 
 AROUND = 0.15
-"""What is shown before the trigger and after the decision, as a share of what lies between."""
+"""The margin shown before the trigger and after the decision, relative to the time between."""
 
 
 def dissect(
@@ -158,13 +159,13 @@ def dissect(
     attempt: Attempt,
     names: frozenset[str] | None = None,
 ) -> Breakdown:
-    """Take an attempt apart.
+    """Dissect an attempt.
 
     Args:
         spec: the specification.
-        samples: the recording, in order.
+        samples: the recording, in order of time.
         end: the last instant of the recording, ticks.
-        attempt: of one of its requirements on this recording.
+        attempt: an attempt of one of its requirements on this recording.
         names: the signals and events that have a source; `None`: all.
 
     Source: SEMANTICS 2; Kleene's value by a pessimistic and an optimistic reading (SEMANTICS 1).
@@ -186,7 +187,7 @@ def dissect(
 def part_truths_of(
     requirement: Requirement, attempt: Attempt, seen: Seen, start: int, stop: int
 ) -> tuple[PartTruth, ...]:
-    """The truth of trigger, consequent, and all their parts, over a stretch of time."""
+    """The truth of trigger, consequent and their subformulas, from `start` to `stop` (ticks)."""
     truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
     parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]

@@ -1,4 +1,4 @@
-"""Where formulas are true over a whole recording."""
+"""Evaluates formulas over a whole recording, as sets of ticks."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Where a formula is surely true, and where it may be (unknown or true), on all ticks."""
+    """The ticks at which a formula is TRUE, and those at which it is TRUE or UNKNOWN (`may`)."""
 
     sure: NDArray[np.int64]
     may: NDArray[np.int64]
@@ -57,12 +57,12 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Formulas of which somebody asks where they are true.
+    """Formulas to be evaluated, with their captured values.
 
     Attributes:
-        formulas: may speak of the future.
-        for_each: of the instance that the formulas belong to, if they do to one.
-        captured: the values of `let` and `for each`.
+        formulas: may have future operators.
+        for_each: the `for each` clause, if they belong to an instance.
+        captured: the captured values of `let` and `for each`.
     """
 
     formulas: tuple[Formula, ...]
@@ -71,21 +71,21 @@ class Question:
 
     @property
     def whose(self) -> tuple[object, ...]:
-        """Equal where formulas are looked at in the same way."""
+        """The key of questions that can be evaluated in one run."""
         return self.for_each, *self.captured.items()
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """Where formulas are true in a recording; behind its end they may be anything.
+    """The truths of formulas over a recording; after its end they are unknown.
 
-    In held time all ticks are positions; else a truth lasts from its position to the next.
+    In clocked and sampled time, a truth value is extended from its position to the next.
 
     Attributes:
         names: the signals and events that had a source; `None`: all.
         begin: the instant of the first sample, ticks; `None`: there is none.
-        end: the last instant.
-        positions: of the recording.
+        end: the last instant, ticks.
+        positions: the positions of the recording.
         valueless: the signals that never had a value.
     """
 
@@ -97,7 +97,7 @@ class Seen:
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
     def truths(self, question: Question) -> list[Truth]:
-        """Of the formulas of a question that was asked."""
+        """The truths of the formulas of a question, in order."""
         own = self._truths[question.whose]
         return [own[format_formula(one)] for one in question.formulas]
 
@@ -111,20 +111,19 @@ def look_through(
     plans: Plans | None = None,
     outages: Sequence[Outage] = (),
 ) -> Seen:
-    """Find where formulas are true in a recording, which is read once.
+    """Evaluate formulas over a recording, which is read once.
 
     Args:
         spec: the specification.
         questions: the formulas.
-        pieces: the recording, in order.
+        pieces: the recording, in order of time.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
-        plans: what was made for the same questions about other recordings; what is made now is
-            added.
-        outages: what the recording lost, but for one that is held, which says so itself.
+        plans: a cache of plans from calls with other recordings; new plans are added.
+        outages: the outages of the recording; ignored for a `HeldRecording`, which has its own.
 
-    Cost: one pass in C for each `Question.whose`. Memory grows with how often the truths change,
-    in sampled time with the number of samples.
+    Cost: one pass in C for each `Question.whose`. Memory is linear in the number of changes of
+    truth values, in sampled time in the number of samples.
     """
     groups: dict[tuple[object, ...], _Group] = {}
     for question in questions:
@@ -157,12 +156,12 @@ def look_through(
 
 
 class _Plan:
-    """Formulas that are looked at in the same way, made ready.
+    """The plan of formulas that are evaluated in one run.
 
     Attributes:
-        cores: by their texts; `None`: it is not known while a trace lasts, as where that ends.
-        order: those that there are.
-        plan: for the core; `None`: there is nothing to look for.
+        cores: by text; `None` for the formula `end`, which is not known before the end.
+        order: the distinct core formulas.
+        plan: for the core; `None` if there are no formulas to evaluate.
     """
 
     def __init__(
@@ -178,11 +177,11 @@ class _Plan:
 
 
 Plans = dict[tuple[str, ...], _Plan]
-"""By the texts of formulas that belong to no instance and read no captured value."""
+"""Plans by the texts of their formulas; only of formulas without captured values."""
 
 
 class _Group:
-    """Formulas that are looked at in the same way, in one recording."""
+    """Formulas that are evaluated in one run over a recording."""
 
     def __init__(self, spec: CheckedSpec, question: Question) -> None:
         self._spec = spec
@@ -192,11 +191,11 @@ class _Group:
         self._run: TruthsRun | None = None
 
     def add(self, formulas: Iterable[Formula]) -> None:
-        """Look for these, too."""
+        """Add formulas."""
         self._formulas |= {format_formula(formula): formula for formula in formulas}
 
     def begin(self, source: Trace, plans: Plans | None) -> bool:
-        """Be ready to look; false: there is nothing to look for."""
+        """Start the run; returns whether there is anything to evaluate."""
         if plans is None or self._question.for_each is not None or self._question.captured:
             plans = {}
         key = tuple(self._formulas)
@@ -208,7 +207,7 @@ class _Group:
         return self._run is not None
 
     def take(self, piece: Batch | Sample, samples: Sequence[Sample]) -> None:
-        """Look at what comes next; an instance does so by the samples in it."""
+        """Take the next piece; an instance takes it as `samples`, filtered by its key."""
         if self._run is None:
             return
         each = self._question.for_each
@@ -219,7 +218,7 @@ class _Group:
             self._run.take(sample)
 
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
-        """By text of the formula; the recording is over."""
+        """End the run; returns the truths by text of the formula."""
         assert self._made is not None, "it began"
         known = [] if self._run is None else self._run.known()
         found: dict[Core | None, Truth] = {
@@ -238,7 +237,7 @@ def _samples(spec: CheckedSpec, piece: Batch | Sample) -> Sequence[Sample]:
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
-    """The signals that have a value in a piece and had none before."""
+    """The signals of `valueless` that have a value in a piece."""
     if isinstance(piece, Sample):
         values = piece.values
         return {name for name in valueless & values.keys() if not is_unknown(values[name])}
@@ -261,7 +260,7 @@ def _positions(
 
 
 class _Ticks:
-    """The ticks at which something is said of positions."""
+    """Converts ranges of positions, as the core numbers them, to sets of ticks."""
 
     def __init__(self, positions: Positions, begin: int, end: int) -> None:
         self._positions = positions
@@ -272,19 +271,19 @@ class _Ticks:
         self.end = end
 
     def spans(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Those of ranges of positions."""
+        """The ticks of ranges of positions, each up to the tick before the next position."""
         if self._positions is not None:
             ranges = self._lasting(ranges - self._first, self._positions)
         return within(joined(ranges), self._begin, self.end)
 
     def others(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
-        """All others, and those behind the end."""
+        """The ticks outside of ranges of positions, including all after the end."""
         return outside(self.spans(ranges), self._begin, FOREVER)
 
     def _lasting(
         self, ranges: NDArray[np.int64], positions: range | NDArray[np.int64]
     ) -> NDArray[np.int64]:
-        """From the first of these positions to the tick before the one that follows the last."""
+        """Ranges of ticks: from the first position to the tick before the one after the last."""
         ranges = ranges[(ranges[:, 1] >= 0) & (ranges[:, 0] < len(positions))]
         if not len(ranges):
             return ranges
@@ -305,9 +304,9 @@ def _at(positions: range | NDArray[np.int64], places: NDArray[np.int64]) -> NDAr
 def _of_instance(
     each: ForEach, captured: Mapping[str, Scalar], samples: Iterable[Sample]
 ) -> Iterator[Sample]:
-    """A recording as the instance of a value sees it: other occurrences of its event are none.
+    """The samples for one instance: occurrences of its event with another key are removed.
 
-    One whose value is not known is an unknown occurrence in every instance.
+    An occurrence with an unknown key is an unknown occurrence for every instance.
     """
     event, own = each.value.event, captured[each.name]
     for sample in samples:
@@ -328,14 +327,14 @@ def _of_instance(
 
 
 def _reported(seen: Sequence[Payload | None]) -> Value:
-    """Occurrences as a sample reports them: an unknown one beside others has unknown fields."""
+    """Occurrences as the value of a sample; an unknown one among others has unknown fields."""
     if all(one is None for one in seen):
         return None
     return tuple({} if one is None else one for one in seen)
 
 
 def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
-    """The formula, then what it is made of; a negation of an atom is not taken apart."""
+    """A formula and its subformulas with their depths; the negation of an atom is not split."""
     yield depth, formula
     match formula:
         case (
@@ -354,19 +353,19 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
 
 
 def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
-    """The trigger, what is required, and all that they are made of."""
+    """The trigger, the consequent and all their subformulas, for an attempt."""
     wholes = (requirement.trigger, requirement.consequent)
     formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
     return Question(formulas, requirement.for_each, attempt.captured)
 
 
 def truths_of_parts(requirement: Requirement, attempt: Attempt, seen: Seen) -> dict[int, Truth]:
-    """Where the trigger, what is required and their parts are true, by `id` of the formula.
+    """The truths of trigger, consequent and their subformulas, by `id()` of the formula.
 
     Args:
-        requirement: that is taken apart.
-        attempt: of it.
-        seen: of the recording, which was looked through for `parts_of` both.
+        requirement: the requirement.
+        attempt: an attempt of it.
+        seen: the truths of `parts_of(requirement, attempt)` over the recording.
     """
     question = parts_of(requirement, attempt)
     found = zip(question.formulas, seen.truths(question), strict=True)

@@ -1,4 +1,4 @@
-"""What a requirement can never do: trigger, fail, pass."""
+"""Vacuity: whether a requirement can trigger, fail and pass at all."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from rvmon.logic.state_formula import FALSE, TRUE, State
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 
 _STARTED = -1
-"""In the place of a region: of a clock that was started at this position."""
+"""The pseudo-region of a clock that was started at this position."""
 
 
 @dataclass(frozen=True, slots=True)
 class Possible:
-    """What a requirement may do; `False` is certain, `None` was not decided.
+    """The possible behaviour of a requirement; `False` is proved, `None` was not decided.
 
     Attributes:
         trigger: whether an attempt can start.
@@ -36,16 +36,16 @@ class Possible:
 def possible(
     spec: CheckedSpec, trigger: State | None, automaton: Automaton | None, policy: EndPolicy
 ) -> Possible:
-    """What a requirement can do, found on its automaton.
+    """The possible behaviour of a requirement, by reachability on its automaton.
 
-    More is taken to be possible than is, never less: past and complex comparisons are true or
-    false at will, and so is the order in which ages cross their bounds.
+    An over-approximation: past operators and complex comparisons are taken as free propositions,
+    and the order in which ages cross their bounds is free.
 
     Args:
         spec: declares the names.
-        trigger: of the requirement; `None` if it is the end of the trace.
-        automaton: of what is required; `None` if it does not close.
-        policy: for what is undecided at the end.
+        trigger: the trigger; `None` if it is the end of the trace.
+        automaton: the automaton of the requirement; `None` if it does not close.
+        policy: `at end` of the requirement.
 
     Source: AUTOMATA 2, regions after Alur and Dill 1994.
     """
@@ -60,8 +60,8 @@ def possible(
     first = {v for v in found if trigger is None or v[-1]}
     if not first:
         return Possible(trigger=False)
-    # What is explored has every run that there is, and perhaps more. So "cannot fail" is a proof,
-    # and becomes a finding; "can fail" is none: no run need show it, and nothing is said of it.
+    # The exploration covers every run, and perhaps more. So "cannot fail" is proved and becomes a
+    # finding; "can fail" is not proved, and is not reported.
     width = len(propositions)
     reach = _Reach(automaton, spec.gap)
     reach.run(
@@ -76,7 +76,7 @@ def possible(
 
 
 def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
-    """The class of the letter in which the propositions have these truths."""
+    """The class of the letter with these truth values, all of them known."""
     weights = automaton.alphabet.pessimistic
     letter = sum(
         own[TRUE] if truth else own[FALSE] for own, truth in zip(weights, truths, strict=True)
@@ -85,17 +85,16 @@ def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
 
 
 class _Reach:
-    """All rows of an automaton that runs can come to.
+    """The reachable rows of an automaton.
 
-    Of a clock that was started at the position of a step the age is known; of others, between which
-    cuts it lies.
+    The age of a clock just started is known exactly; of the others only the region.
 
     Args:
-        automaton: explored.
-        gap: ticks from position to position; `None`: time passes at will.
+        automaton: to be explored.
+        gap: ticks between two positions; `None` if any number of ticks may pass.
 
     Attributes:
-        rows: of undecided locations.
+        rows: the reachable rows of undecided locations.
         failed: whether an attempt can fail.
         passed: whether one can pass.
     """
@@ -108,7 +107,12 @@ class _Reach:
         self.passed = False
 
     def run(self, first: set[int], letters: set[int]) -> None:
-        """Explore from the trigger; letters are given by their classes."""
+        """Explore from the trigger.
+
+        Args:
+            first: the classes of letters possible at the trigger.
+            letters: the classes possible at any position.
+        """
         waiting = list(self._step(self.automaton.initial, (), first))
         seen = set(waiting)
         while waiting:
@@ -168,7 +172,7 @@ class _Reach:
         ours: tuple[tuple[int, ...], ...],
         cuts: tuple[int, ...],
     ) -> Iterable[int]:
-        """What may be known of a clock behind an edge, whose cuts are others."""
+        """The possible regions of a clock after an edge, by the cuts of the target."""
         if source == NOW:
             return (_STARTED,)
         return regions_between(cuts, *region_bounds(ours[source], regions[source]))

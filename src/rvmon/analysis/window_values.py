@@ -1,4 +1,4 @@
-"""What windows of the past, as `count(e, 10 s)`, came to at some instants of a recording."""
+"""Evaluates windows of the past, such as `count(e, 10 s)`, at given instants of a recording."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ if TYPE_CHECKING:
     from rvmon.verdict.attempt import Blame
 
 Asked = tuple[int, WindowValue]
-"""An instant, ticks, and a window that is looked at there."""
+"""An instant in ticks, and the window to be evaluated there."""
 
 
 def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) -> list[WindowValue]:
-    """The windows of the part that failed, of which the value can be told.
+    """The windows of the blamed subformula whose values are worth showing.
 
-    None of an instance, or of what was captured; nor one that moves between samples: where that
-    fails, it has come to its limit.
+    None in a requirement with `for each` or `let`; none in held time that changes between samples,
+    as it fails exactly when it reaches its limit.
     """
     if requirement.for_each is not None or requirement.captures:
         return []
@@ -63,7 +63,7 @@ def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) ->
 
 
 def unit_of(spec: CheckedSpec, window: WindowValue) -> str | None:
-    """The unit of a window's value, empty if it has none; `None`: that is not known."""
+    """The unit of a window's value; "" if it has none, `None` if it is not known."""
     match window.measured.dimension, window.value:
         case Dimension.PLAIN, _:
             return ""
@@ -74,19 +74,21 @@ def unit_of(spec: CheckedSpec, window: WindowValue) -> str | None:
 
 
 class WindowValues:
-    """Looks at windows while a recording is read.
+    """Evaluates windows while a recording is read.
+
+    Each window is captured by a requirement of its own that is triggered at the instant.
 
     Args:
         spec: the specification.
-        asked: what is to be looked at.
+        asked: instants and windows.
         origin: the first instant of the recording, ticks.
-        recording: its names, end and outages; what it holds is taken piece by piece.
+        recording: gives names, end and outages; its samples are passed to `take`.
     """
 
     def __init__(
         self, spec: CheckedSpec, asked: Sequence[Asked], origin: int, recording: Trace
     ) -> None:
-        from rvmon.monitor.recording import RecordingRun  # which imports NumPy
+        from rvmon.monitor.recording import RecordingRun  # imports NumPy
 
         self._asked = asked
         requirements = {
@@ -98,11 +100,11 @@ class WindowValues:
         self._run = RecordingRun(own, planned, Source(recording), finds=False)
 
     def take(self, piece: Batch | Sample) -> None:
-        """Take what comes next."""
+        """Take the next piece of the recording."""
         self._run.take(piece)
 
     def told(self) -> Mapping[Asked, Scalar]:
-        """The values, where they are known; the recording is over."""
+        """End the recording; returns the values that are known."""
         return {
             self._asked[int(attempt.requirement)]: value
             for attempt in self._run.report().attempts

@@ -1,4 +1,4 @@
-"""Requirements in plain English: when an attempt starts, what is required, and further facts."""
+"""Requirements in plain English, and facts on how they are judged."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _AT_END = {
 
 
 def requirement_in_words(requirement: Requirement) -> list[str]:
-    """Sentences: when an attempt starts, what is required, what is captured, what the end does."""
+    """A requirement as sentences: trigger, consequent, captured values, policy at the end."""
     lines = [f"{_starts(requirement)}:", f"{_required(requirement)}."]
     lines += [
         f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."
@@ -163,7 +163,7 @@ def _amount(formula: Amount, positive: bool) -> str:
         return f"{often} {back}, {what}"
     op = CompareOp.GT if formula.strict else CompareOp.GE
     verb = (op if positive else op.denied).said
-    if of.value is None or isinstance(of.value, NumericLiteral):  # so many times 1
+    if of.value is None or isinstance(of.value, NumericLiteral):  # a count, or a sum of constants
         often = "for how long" if of.measured.of_time else "how often"
         amount = f"{often} {what} {back}"
     else:
@@ -172,14 +172,14 @@ def _amount(formula: Amount, positive: bool) -> str:
 
 
 def _by_entry(formula: Unary | Binary, positive: bool) -> str:
-    """An operator in the words of its entry."""
+    """An operator formula in the wording of the operator table."""
     entry = formula.op.entry
     text = entry.said if positive else entry.denied or f"not so: {entry.said}"
     return text.format_map(_Parts(formula))
 
 
 class _Parts(dict[str, str]):
-    """What stands in the words of an operator; each part is made if it is asked for."""
+    """The placeholders in the wording of an operator, computed on access."""
 
     def __init__(self, formula: Unary | Binary) -> None:
         super().__init__()
@@ -207,7 +207,7 @@ class _Parts(dict[str, str]):
 
 
 def _age(interval: Interval | None) -> str:
-    """The length of a window of `once` that an update makes an age; empty if it is none."""
+    """The length of a window [0, D], by which `once updated(x)` is an age; else ""."""
     if interval is None or interval.low or interval.high is None:
         return ""
     return format_duration(interval.high)
@@ -220,7 +220,7 @@ def _begins(operand: Formula, positive: bool) -> str:
 
 
 def _ahead(interval: Interval, *, some: bool) -> str:
-    """The window of `F` or `G`, seen from its instant."""
+    """The window of `F` (`some`) or `G`, relative to the present."""
     low, high = interval.low, interval.high
     if high is None:
         after = "" if not low else f", {format_duration(low)} later or more"
@@ -234,7 +234,7 @@ def _ahead(interval: Interval, *, some: bool) -> str:
 
 
 def _back(interval: Interval, *, some: bool) -> str:
-    """The window of `O` or `H`, seen from its instant."""
+    """The window of `O` (`some`) or `H`, relative to the present."""
     low, high = interval.low, interval.high
     if high is None:
         before = "" if not low else f", {format_duration(low)} ago or more"
@@ -259,7 +259,7 @@ def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
 
 
 def _clause(formula: Formula, positive: bool) -> str:
-    """A formula inside another: in brackets unless it is a plain statement."""
+    """A formula inside another one: in brackets unless it is a simple clause."""
     text = in_words(formula, positive=positive)
     inner = formula
     while isinstance(inner, Unary) and inner.op is UnaryOp.NOT:
@@ -272,7 +272,7 @@ Facts = dict[str, str]
 
 
 def facts_of(compiled: CompiledRequirement) -> Facts:
-    """By heading, one line each."""
+    """Facts on how a requirement is judged, one line per heading; empty ones are left out."""
     machine = machine_of(planned_rule(compiled), compiled.gap)
     automaton = compiled.automaton if isinstance(machine, Automaton) else None
     chained = not isinstance(machine, Automaton) and machine[1] is not None
@@ -319,7 +319,7 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
 
 
 def _past(compiled: CompiledRequirement) -> str:
-    """How far its past operators look."""
+    """How far the past operators of a requirement look back."""
     trigger = compiled.obligation.trigger
     states = [*compiled.alphabet.propositions, *([] if trigger is None else [trigger])]
     nodes = graph_of(states).nodes

@@ -1,1 +1,1 @@
-"""The native core: its C sources, and the packing of plans for it. Built, it is `rvmon.native`."""
+"""The native core: its C sources, and the packing of plans for it; built as `rvmon.native`."""

@@ -10,9 +10,9 @@ import re
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "native")
 HEADER = "core.h"
-"""What an embedding program includes; the other headers are the core's own."""
+"""The public header, for programs that embed the core; the other headers are internal."""
 BINDING = "python"
-"""The folder of the sources that need Python."""
+"""The folder of the Python binding, which is not amalgamated."""
 
 _INCLUDE = re.compile(r'^#include (?:"(?P<own>[^"]+)"|<(?P<system>[^>]+)>).*\n', re.MULTILINE)
 _PROTOTYPE = re.compile(
@@ -21,12 +21,12 @@ _PROTOTYPE = re.compile(
 
 
 def core_header(folder: str = FOLDER) -> str:
-    """The public header of the core, which includes no other file of ours."""
+    """The text of the public header of the core, which includes no other file of it."""
     return _text(folder, HEADER)
 
 
 def core_files(folder: str = FOLDER) -> list[str]:
-    """The sources of the core but the binding to Python, as paths below their folder, sorted."""
+    """The sources of the core except the Python binding: paths relative to `folder`, sorted."""
     places = ["", *(name for name in os.listdir(folder) if "." not in name and name != BINDING)]
     names = [
         f"{place}/{name}" if place else name
@@ -43,8 +43,8 @@ def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> st
     Functions shared between files become static, so that only `rv_…` is visible outside.
 
     Args:
-        header: the name by which the header is included.
-        folder: of the sources.
+        header: the name by which the public header is included.
+        folder: the folder of the sources.
         lines: whether `#line` directives name the original files in compiler messages.
     """
     names = core_files(folder)
@@ -57,7 +57,7 @@ def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> st
 
 
 def _body(folder: str, name: str, done: set[str], system: dict[str, None], lines: bool) -> str:
-    """A file without its includes, behind the headers that it needs and that are not there yet."""
+    """A file without its includes, preceded by the headers it needs that are not in `done`."""
     done.add(name)
     text = _text(folder, name)
     needed = ""
@@ -66,7 +66,7 @@ def _body(folder: str, name: str, done: set[str], system: dict[str, None], lines
             system[found["system"]] = None
         elif found["own"] not in done:
             needed += _body(folder, found["own"], done, system, lines)
-    # Lines stay where they are if the compiler is to name them.
+    # With `#line` directives, the line numbers of the original have to be preserved.
     text = _INCLUDE.sub("\n" if lines else "", text)
     if name.endswith(".h"):
         text = _PROTOTYPE.sub("static ", text)

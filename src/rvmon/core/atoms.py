@@ -1,6 +1,6 @@
-"""Packs the atoms of a plan part: everything that is read from the input, each once.
+"""Packs the atoms of a plan part: the distinct leaves that read the input.
 
-Numeric expressions become programs that the core runs on a stack.
+Numeric expressions are compiled to programs for the stack machine of the core.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from rvmon.spec.checked.rewrite import without_spans
 from rvmon.trace.schema import Kind
 
 DEPTH = 32
-"""So many numbers the stack of a program has room for."""
+"""The size of the stack machine's stack, in numbers."""
 
 _WHOLE, _REAL = 1, 2
 _INT64 = 1 << 63
@@ -61,13 +61,13 @@ class Code(IntEnum):
 
 
 OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
-"""Their numbers, which go on from there in the order of their table."""
+"""The code of each operation: they follow the operand codes, in the order of `NumericOp`."""
 
 NOW = len(Code) + len(OPERATIONS)
-"""The word for `now`, behind all operations."""
+"""The code of `now`, after all operations."""
 
 WINDOW = NOW + 1
-"""The word for what a window comes to."""
+"""The code of the value of a window."""
 
 _UPDATES = {
     UpdateFunction.PREV: Code.PREV,
@@ -77,7 +77,7 @@ _UPDATES = {
 
 
 _UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
-"""A number that nobody knows."""
+"""An expression whose value is always unknown."""
 
 
 class Names:
@@ -122,7 +122,7 @@ class Programs:
         """The index of the program of an expression.
 
         Raises:
-            RvmonError: it is too deep, or holds a number that the core does not have.
+            RvmonError: it is nested too deep, or has a constant that is no int64 and no double.
         """
         words: list[int] = []
         if self._emit(expression, words) >= DEPTH:
@@ -132,7 +132,7 @@ class Programs:
         return self._sections.run(Section.CODE, [*words, Code.END])
 
     def _emit(self, expression: Numeric, words: list[int]) -> int:
-        """Add the words of an expression; returns the stack depth that it needs."""
+        """Append the words of an expression; returns the stack depth that it needs."""
         names = self._names
         match expression:
             case Literal(value=value):
@@ -159,7 +159,7 @@ class Programs:
         return 1
 
     def _operation(self, op: NumericOp, args: Sequence[Numeric], words: list[int]) -> int:
-        """An operation, from the left if it takes any number of arguments."""
+        """Append an operation; one of any number of arguments is folded from the left."""
         at_once = len(args) if op.entry.most else op.entry.least
         depth = 0
         for number, arg in enumerate(args, 1):
@@ -170,9 +170,9 @@ class Programs:
         return depth
 
     def _number(self, value: float | str) -> int:
-        """The place of a constant."""
+        """The index of a constant in `NUMBERS`."""
         if isinstance(value, str):
-            value = self._names.numbering.labels.get(value, -1)  # which no value is
+            value = self._names.numbering.labels.get(value, -1)  # −1: equal to no label
         if isinstance(value, int) and -_INT64 <= value < _INT64:
             return self._sections.shared(Section.NUMBERS, _WHOLE, int(value))
         number = exact(value)
@@ -199,7 +199,7 @@ def _word(code: int, argument: int) -> int:
 
 
 MOST_EVENTS = 8
-"""Of so many events one comparison may read fields."""
+"""The most events whose fields one comparison may read."""
 
 _COMPARISONS = {op: number for number, op in enumerate(CompareOp)}
 
@@ -226,15 +226,15 @@ class Atom:
 
     Attributes:
         op: its kind.
-        constant: the constant a real signal is compared with.
-        compare: the number of the comparison.
+        constant: of `REAL`, the constant that the signal is compared with.
+        compare: the number of the comparison operator.
         input: the signal or event; −1 if there is none, or several.
         left: index of the program of the left side.
         right: index of the program of the right side.
         events: the events whose fields it reads.
         values: the signals whose values it reads.
-        updates: the signals whose updates change it even if the value stays.
-        occurrences: the events that it reads.
+        updates: the signals any update of which may change it, even to an equal value.
+        occurrences: the events that it reads, with or without fields.
         captured: whether it reads captured values.
     """
 
@@ -252,12 +252,12 @@ class Atom:
 
     @property
     def lone_signals(self) -> tuple[int, ...]:
-        """The signals that, if they have a source, make its value momentary."""
+        """The signals, each of which, if it has a source, makes the atom momentary."""
         return self.updates if self.op in (AtomOp.UPDATED_SIGNAL, AtomOp.CHANGED) else ()
 
     @property
     def momentary(self) -> int:
-        """How many of its names, if they have a source, make it hold at single positions only."""
+        """The number of names that, if they have a source, make it true at single positions."""
         return len(self.lone_signals) + len(self.occurrences) + (self.op is AtomOp.START)
 
 
@@ -272,19 +272,19 @@ class Atoms:
 
     @property
     def all(self) -> Sequence[Atom]:
-        """All that were asked for, by number."""
+        """The atoms requested so far, by number."""
         return tuple(self._numbers)
 
     def number(self, leaf: Leaf) -> int:
-        """The number of the atom that a leaf shows."""
+        """The number of the atom of a leaf."""
         return self._numbers.setdefault(self._atom(leaf), len(self._numbers))
 
     def itself(self, number: Numeric) -> int:
-        """The atom `x == x`: UNKNOWN where a number is unknown; its programs compute the number."""
+        """The atom `x == x`, UNKNOWN where `x` is; its programs compute the number."""
         return self.comparison(Compare(CompareOp.EQ, number, number))
 
     def comparison(self, compared: Compare) -> int:
-        """The number of the atom that compares two programs, whatever they read."""
+        """The number of the general atom of a comparison, compiled to two programs."""
         return self._numbers.setdefault(self._comparison(compared), len(self._numbers))
 
     def _atom(self, leaf: Leaf) -> Atom:
@@ -314,7 +314,7 @@ class Atoms:
                 raise ValueError(f"{leaf} is not read off the input")
 
     def _real(self, leaf: Compare) -> Atom | None:
-        """A real signal beside a number."""
+        """The special atom for a real signal against a constant; `None` if it is not that."""
         match leaf.left, leaf.right:
             case SignalValue(name=name), Literal(value=int() | float() as value):
                 op = leaf.op
@@ -353,5 +353,5 @@ class Atoms:
 
 
 def _chosen(numbers: Mapping[str, int], names: Iterable[str]) -> tuple[int, ...]:
-    """The numbers of those names that have one, in order."""
+    """The numbers of the names that have one, ascending."""
     return tuple(sorted({numbers[name] for name in names if name in numbers}))

@@ -1,4 +1,4 @@
-"""Packs automata as tables, shared between requirements of one shape, and letter diagrams."""
+"""Packs automata as integer tables, equal tables once, and letter classes as diagrams."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Automata:
             ints(strides),
             ints(cut_first),
             self._sections.run(Section.TICKS, cuts),
-            ints([max(edge, 0) for edge in automaton.edges]),  # where no run comes, any will do
+            ints([max(edge, 0) for edge in automaton.edges]),  # unreachable: any edge will do
             ints(automaton.targets or [0]),
             ints([one for own in automaton.sources or [()] for one in _padded(own, width)]),
             ints(tuple(automaton.time_values)),  # as numbers, not as bytes
@@ -108,7 +108,7 @@ def _padded(values: Sequence[int], width: int) -> list[int]:
 
 
 def _regions(automaton: Automaton, width: int) -> tuple[list[int], list[int], list[int]]:
-    """Per location and clock: offset of its cuts, the cuts, and the stride of its regions."""
+    """Offsets of the cuts per location and clock, all cuts, strides per location and clock."""
     first, cuts, strides = [0], list[int](), list[int]()
     for location, own in zip(automaton.locations, automaton.strides, strict=True):
         strides += _padded(own, width)
@@ -120,7 +120,7 @@ def _regions(automaton: Automaton, width: int) -> tuple[list[int], list[int], li
 
 
 def _clauses(automaton: Automaton) -> tuple[list[int], list[int], list[int], list[int]]:
-    """The rule for the end: where clauses of locations and their tests begin; tests; ages."""
+    """The rule for the end: first clause per location, first test per clause, tests, ages."""
     clause_first, test_first = [0], [0]
     tests, ages = list[int](), list[int]()
     for location in automaton.locations:

@@ -1,4 +1,4 @@
-"""Packs formulas that are judged by a network, and the leaves by which robustness is measured."""
+"""Packs formulas that are evaluated as networks, for verdicts and for robustness."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit
 
 _FARTHEST = (1 << 62) - 2
-"""No two instants of a trace that need to be told apart are farther from each other."""
+"""The bound, in ticks, to which offsets are clamped; no two instants are farther apart."""
 
 _NEVER = (1 << 63) - 1
 
 _PAST = -1
-"""In the place of the deadline of a window."""
+"""The deadline field of a window of the past."""
 
 _WORSE, _BETTER = 1, 2
 
@@ -57,9 +57,9 @@ def add_form(
     """Add the formula of a network; returns its index.
 
     Args:
-        sections: of the plan.
-        plan: of the formula.
-        chain: its description as a chain; `None` if it is no chain.
+        sections: the sections of the plan.
+        plan: the network of the formula.
+        chain: its description as a chain; `None` if it is not one.
         index: the node of each proposition.
     """
     operators = add_operators(sections, plan, index)
@@ -75,7 +75,7 @@ def add_form(
 
 
 def add_operators(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> Listed:
-    """Add the nodes of a formula; see `add_form`."""
+    """Add the nodes of a network; see `add_form`."""
     first = sections.count(Section.OPERATORS)
     leaves = 0
     for node in plan.nodes:
@@ -165,7 +165,7 @@ def _measure(
     spec: CheckedSpec,
     requirement: Requirement,
 ) -> tuple[float, int, int, int]:
-    """Factor, kind, whether it is negated, and the node."""
+    """The measure of a leaf: factor to base units, kind, whether it is negated, and its node."""
     if isinstance(core, Constant):
         return 1.0, Measure.CONSTANT, not core.value, -1
     state = core.proposition
@@ -180,9 +180,9 @@ def _measure(
 
 
 def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requirement) -> bool:
-    """Whether measuring a leaf needs the truth value of its node to be maintained.
+    """Whether measuring a leaf needs its node to be kept up to date once all signals are born.
 
-    A distance is computed from the values; before all signals are born every node is maintained.
+    A distance is computed from the values alone, without the node.
     """
     if isinstance(core, Constant):
         return False
@@ -196,7 +196,7 @@ def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requir
 
 
 def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement) -> bool:
-    """Whether both sides are labels, which have no distance."""
+    """Whether a comparison is between labels, which have no distance."""
     values = {one.name: one.value for one in requirement.captures}
     each = requirement.for_each
     if each is not None:
@@ -219,7 +219,7 @@ def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement)
 
 
 def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
-    """The factor from the unit of a comparison to base units; 1 where the unit is a product."""
+    """The factor from the unit of a comparison to SI base units; 1 if the unit is a product."""
     sides = (leaf.left, leaf.right)
     written: Sequence[str] = [side.unit for side in sides if isinstance(side, Number) and side.unit]
     units = [*written, *(_unit(side, spec) for side in sides)]
@@ -227,7 +227,7 @@ def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
 
 
 def _unit(expression: Numeric, spec: CheckedSpec) -> str:
-    """The unit that an expression's values come in, "" if it has none or is a product."""
+    """The unit of an expression's value; "" if it has none or it is a product."""
     match expression:
         case Number(unit=unit):
             return unit

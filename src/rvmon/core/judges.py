@@ -24,13 +24,13 @@ _OPEN = (Verdict.INCONCLUSIVE, Decision.OPEN)
 def settle_at_end(
     policy: EndPolicy, *, held: bool, cannot_pass: bool, cannot_fail: bool
 ) -> tuple[Verdict, Decision]:
-    """The verdict of an attempt that no prefix decided, and what settled it.
+    """The verdict of an attempt that is undecided at the end of the trace, and its decision.
 
     Args:
-        policy: of its requirement.
-        held: whether it is true if every opened unbounded `R` counts as true and all else that is
-            pending as unknown.
-        cannot_pass: whether unknown input has left it without a way to become true.
+        policy: `at end` of its requirement.
+        held: whether it is true if every opened unbounded `R` counts as true and every other
+            pending operator as unknown.
+        cannot_pass: whether, because of unknown input, it could not have become true.
         cannot_fail: the same for false.
 
     Source: SEMANTICS, section 3, The end.
@@ -65,7 +65,7 @@ _PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _IN_RUNS, _TRACED = 1, 2, 4, 8, 16,
 _NOTHING = ((0, 0, 0), (0, 0, 0))
 
 Weights = tuple[Sequence[int], Sequence[int]]
-"""What FALSE, UNKNOWN and TRUE add to a letter, for the worse and for the better."""
+"""The summands of a letter for FALSE, UNKNOWN and TRUE, in the pessimistic and optimistic run."""
 
 
 class Judges:
@@ -107,7 +107,7 @@ class Judges:
                 add_margin(sections, network, self._index, plan.spec, rule.requirement)
 
     def links(self, place: int) -> Iterator[tuple[int, ...]]:
-        """The links from a node to judges, as records."""
+        """The links from a node to judges, as records of `LINKS`."""
         for judge, (kind, (worse, better)) in self._links.get(place, {}).items():
             yield (judge, kind, *worse, *better)
 
@@ -159,9 +159,10 @@ class Judges:
 
 
 def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
-    """How a rule is judged: by an automaton, a network, or a chain.
+    """The machine that judges a rule: an automaton, or a network, with its chain if it is one.
 
-    An automaton for nested windows steps each open attempt on its own; a chain steps all at once.
+    For nested windows a chain is preferred: it steps all open attempts at once, an automaton that
+    does not move in runs each one on its own.
     """
     automaton = rule.automaton
     if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
@@ -185,9 +186,9 @@ def _flags(rule: PlannedRule, *, hidden: bool) -> int:
 
 @cache
 def outcomes(policy: EndPolicy) -> tuple[int, ...]:
-    """How the end of a trace settles an undecided attempt: verdict plus 4 times the decision.
+    """The outcomes of an undecided attempt at the end, each as verdict + 4 × decision.
 
-    Indexed by bits: holds by the rule for the end (1), can no longer pass (2), nor fail (4).
+    Indexed by bits, the arguments of `settle_at_end`: held (1), cannot pass (2), cannot fail (4).
     """
     found = []
     for state in range(8):

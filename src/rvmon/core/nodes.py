@@ -1,4 +1,4 @@
-"""Packs state formulas as nodes: their operators, memories, timers and lifetimes."""
+"""Packs state formulas as nodes: operators, memory slots, timers, and when they are needed."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class NodeOp(IntEnum):
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
-"""The nodes that remember a truth."""
+"""The nodes that remember a truth value."""
 
 STRETCHED = (NodeOp.STRETCH, NodeOp.WINDOW)
 """The nodes that remember stretches of time."""
@@ -74,7 +74,7 @@ TIMED = (
 """The nodes that time alone can change."""
 
 _FOLDS = {measured: number for number, measured in enumerate(Measured)}
-"""What members of a window come to, in the order of plan.h."""
+"""The fold over the members of a window, by its number in plan.h."""
 _TALLIED = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL, Measured.VARIANCE)
 _STRICT, _COUNTED, _NUMBER = 16, 32, 64
 
@@ -95,10 +95,12 @@ class Node:
         op: its kind.
         operands: indices of nodes; for leaves and births, 2 × signal, plus 1 if an update after the
             first value is required.
-        tally: for a window that adds numbers, the index of its exact sum.
-        most: for a window of the last n updates, n; 0 for any number.
-        chosen: for a window, the first operand that is evaluated per occurrence.
-        since: for a window, the captured instant at which it begins; −1 if none.
+        slot: index of its memory among nodes of the same sort of memory; −1 if it has none.
+        timer: index of its timer; −1 if time alone cannot change it.
+        tally: of a window that adds numbers, the index of its exact sum; −1 of any other window.
+        most: of a window over the last n updates, n; 0 for any number.
+        chosen: of a window, the first operand that is evaluated per occurrence.
+        since: of a window, the index of the captured instant at which it begins; −1 if none.
         reads: the atoms whose numbers, not only truth values, it reads.
     """
 
@@ -121,18 +123,18 @@ class Nodes:
     """The nodes of a part.
 
     Args:
-        plan: of the part.
-        names: of the part.
-        atoms: of the part; those that leaves show are added.
+        plan: the plan of the part.
+        names: the names of the part.
+        atoms: the atoms of the part; those of leaves are added.
 
     Attributes:
-        all: of them, operands first.
-        seen: how many remember a truth value.
-        edges: how many remember an instant.
-        stretches: how many remember stretches of time.
-        tallies: how many of these add numbers.
-        timers: how many can change by time alone.
-        needed: those still needed once all signals are born and all triggers were determined.
+        all: the nodes, operands first.
+        seen: the number of nodes that remember a truth value.
+        edges: the number that remember an instant.
+        stretches: the number that remember stretches of time.
+        tallies: the number of windows that add numbers.
+        timers: the number that time alone can change.
+        needed: places of the nodes needed once all signals are born and triggers determined.
     """
 
     def __init__(self, plan: Plan, names: Names, atoms: Atoms) -> None:
@@ -157,10 +159,10 @@ class Nodes:
         self.needed = _needed(plan)
 
     def leaves(self, live: bool) -> list[list[int]]:
-        """Per atom, the leaves that show it, and what adds up its numbers.
+        """Per atom, the places of the nodes that read its truth value or its number.
 
         Args:
-            live: those only that matter once all is born and determined.
+            live: only the nodes needed once all is born and determined.
         """
         found: list[list[int]] = [[] for _ in self._atoms.all]
         for place, node in enumerate(self.all):
@@ -171,18 +173,18 @@ class Nodes:
 
     @property
     def read_as_numbers(self) -> frozenset[int]:
-        """The atoms whose numbers are read."""
+        """The atoms whose numbers, not only truth values, are read."""
         return frozenset(atom for node in self.all for atom in node.reads)
 
     def parents(self, place: int) -> tuple[Sequence[int], Sequence[int]]:
-        """The parents of each node: at first, and once all is born and determined."""
+        """The parents of a node: at first, and once all is born and determined."""
         found = self.graph.parents[place]
         if place not in self.needed:
             return found, ()
         return found, [parent for parent in found if parent in self.needed]
 
     def born_with(self) -> Iterator[tuple[int, int, bool]]:
-        """The nodes that births change: the place, the signal, and whether twice over."""
+        """The nodes that a birth changes: place, signal, whether a further update is needed."""
         for place, node in enumerate(self.all):
             if node.op in (NodeOp.LEAF, NodeOp.UNBORN):
                 for operand in node.operands:
@@ -190,7 +192,7 @@ class Nodes:
 
     def stateful(self) -> list[int]:
         """In sampled time, the nodes to be evaluated at every sample."""
-        lasting = (NodeOp.DOUBT, NodeOp.EVER, NodeOp.ELAPSED)  # the last one has a timer
+        lasting = (NodeOp.DOUBT, NodeOp.EVER, NodeOp.ELAPSED)  # `ELAPSED` has a timer
         return [place for place in self.graph.stateful if self.all[place].op not in lasting]
 
     def _births(self, signals: Iterable[tuple[str, bool]]) -> list[int]:
@@ -218,7 +220,7 @@ class Nodes:
     def _window(self, state: State, operands: Sequence[int]) -> Node:
         amount = state.amount
         if amount is None:
-            raise AssertionError("it says what is measured")
+            raise AssertionError("an AMOUNT state has an amount")
         of = amount.of if isinstance(amount, Amount) else amount
         reads = [] if of.value is None else [self._atoms.itself(of.value)]
         if isinstance(amount, Amount):
@@ -254,7 +256,7 @@ class Nodes:
         leaf = state.leaf
         match leaf:
             case None:
-                raise ValueError("a leaf reads something")
+                raise ValueError("a LEAF state has a leaf")
             case Constant(value=value):
                 return Node(NodeOp.CONSTANT, TRUE if value else FALSE)
             case Lost():
@@ -281,7 +283,7 @@ def _since(state: State) -> NodeOp:
 
 
 def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
-    """Number the memories of nodes of some kinds; returns how many there are."""
+    """Assign memory slots to the nodes of some kinds; returns how many there are."""
     count = 0
     for node in nodes:
         if node.op in kinds:
@@ -300,12 +302,12 @@ def _needed(plan: Plan) -> frozenset[int]:
 
 
 def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
-    """The state formulas of a rule that matter also when its trigger was true or false."""
+    """The state formulas of a rule that are needed beyond birth and `determined`."""
     named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
     yield from rule.noted
-    yield from rule.caught
+    yield from rule.captures_known
     leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
     for _, core in leaves:
         if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):

@@ -26,10 +26,10 @@ _IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
 _EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4
 
 _WATCH = 8
-"""The kind of a link that tells a watch, in place of a judge."""
+"""The kind of a link that notifies a watch, not a judge."""
 
 _ITEMS_MOST = 1 << 22
-"""So many bins and combinations are counted at most."""
+"""The most bins and combinations that one part may count."""
 
 _UNUSED = Uses()
 
@@ -112,11 +112,11 @@ class Part:
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
-        """Two lists: until all is born and determined, and from then on."""
+        """Two lists: until all signals are born and triggers determined, and from then on."""
         return *self._sections.listed(first), *self._sections.listed(then)
 
     def _add_groups(self) -> dict[int, list[int]]:
-        """Add the counters of coverage; returns by node the watches that it notifies."""
+        """Add the watches and groups of coverage; returns, by node, the watches it notifies."""
         watched: dict[int, list[int]] = {}
         groups: list[list[int]] = [[] for _ in self._plan.watches]
         first = 0
@@ -174,8 +174,8 @@ class Part:
         """By number of a name, the atoms that read it.
 
         Args:
-            count: so many names there are.
-            read: what an atom reads of them.
+            count: the number of names.
+            read: the numbers of the names that an atom reads.
         """
         found: list[list[int]] = [[] for _ in range(count)]
         for number, atom in enumerate(self._atoms.all):
@@ -184,11 +184,11 @@ class Part:
         return found
 
     def _alive(self, atoms: Sequence[int]) -> list[int]:
-        """The nodes needed once all is born and determined."""
+        """The atoms with a node still needed once all is born and determined."""
         return [number for number in atoms if self._live[number]]
 
     def _add_signals(self) -> int:
-        """Add the signals; returns how many of them go stale."""
+        """Add the signals; returns how many of them can go stale."""
         plan, sections, count = self._plan, self._sections, len(self.names.signals)
         on_change = self._readers(count, lambda atom: atom.values)
         on_update = self._readers(count, lambda atom: atom.updates)
@@ -225,7 +225,7 @@ class Part:
 
     @property
     def _captured(self) -> list[Numeric]:
-        """What is captured."""
+        """The expressions captured by `let`."""
         return [one.value for rule in self._plan.rules for one in rule.requirement.captures]
 
     def _add_events(self) -> int:
@@ -300,7 +300,7 @@ def pack(plan: Plan) -> Packed:
 
 
 def _subscribe(sections: Sections, plan: Plan, parts: list[Part]) -> None:
-    """Add the parts that read each name, and the fields of each event."""
+    """Add the first field of each event, and for each name the parts that read it."""
     first = 0
     sections.add(Section.FIELD_FIRST, first)
     for event in plan.spec.events.values():

@@ -18,16 +18,16 @@ from rvmon.trace.schema import Kind
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """A plan as bytes, with the meaning of its numbers.
+    """A plan as bytes, with the names that its numbers stand for.
 
     Attributes:
         data: the bytes.
         signals: kind of value by name, in the order of their numbers.
-        events: names; numbered after the signals.
-        fields: kind of value by event and field, in the order of their numbers.
+        events: names, numbered after the signals.
+        fields: kind of value by (event, field), in the order of their numbers.
         labels: by label, its number in the core.
-        ids: of the requirements, by number.
-        numbers: of the requirements, by id.
+        ids: the ids of the requirements, by number.
+        numbers: by id, the number of the requirement.
     """
 
     data: bytes
@@ -74,11 +74,11 @@ def numbered(names: Sequence[str]) -> dict[str, int]:
 
 MAGIC = b"rvmonpl1"
 ORDER = 0x01020304
-"""What a number of four bytes looks like to who has another order of bytes."""
+"""A byte order mark: a reader of the other byte order sees another number."""
 
 HEADER = struct.Struct("=8sIiqQq6i")
 _ENTRY = struct.Struct("=2q")
-"""Where a section begins, and how many records it has."""
+"""The byte offset of a section, and its number of records."""
 
 
 class Section(IntEnum):
@@ -132,10 +132,10 @@ RECORDS = {
     Section.MARGINS: struct.Struct("=6i"),
     Section.MEASURES: struct.Struct("=d4i"),
 }
-"""The fields of a record, in the order of its type in C."""
+"""The layout of a record of each section, as its type in plan.h."""
 
 Listed = tuple[int, int]
-"""The first of some values that stand one behind the other, and how many they are."""
+"""A slice of a section: the index of its first record, and the number of records."""
 
 
 class Sections:
@@ -147,7 +147,7 @@ class Sections:
         self._runs: dict[tuple[Section, bytes], int] = {}
 
     def count(self, section: Section) -> int:
-        """How many records a section has."""
+        """The number of records of a section."""
         return len(self._bytes[section]) // RECORDS[section].size
 
     def add(self, section: Section, *fields: float) -> int:
@@ -177,7 +177,7 @@ class Sections:
         return place
 
     def listed(self, places: Sequence[int]) -> Listed:
-        """A list of indices."""
+        """The slice of `LISTS` that holds these indices."""
         return self.run(Section.LISTS, places), len(places)
 
     def data(self, gap: int, sizes: Sequence[int]) -> bytes:
@@ -185,7 +185,8 @@ class Sections:
 
         Args:
             gap: ticks between two positions; 0 if only samples are positions.
-            sizes: the numbers of signals, events, fields, requirements, captured values.
+            sizes: the numbers of signals, events, fields, requirements, and the most captured
+                values of an attempt.
         """
         padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
         begin = HEADER.size + len(padded) * _ENTRY.size
@@ -201,7 +202,7 @@ class Sections:
 
 
 def hash_of(data: bytes) -> int:
-    """FNV-1a of words of 8 bytes: byte by byte takes as long here as all the rest."""
+    """FNV-1a over words of 8 bytes: byte by byte it would take as long as all other packing."""
     found = 0xCBF29CE484222325
     for word in array("Q", data):
         found = (found ^ word) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF

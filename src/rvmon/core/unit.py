@@ -1,4 +1,4 @@
-"""Packs what attempts with `let` and instances of `for each` need.
+"""Packs requirements with captured values: attempts with `let`, instances of `for each`.
 
 Each such attempt or instance is a run of its own, forked from the state of the run that started it.
 """
@@ -21,7 +21,7 @@ from rvmon.spec.checked.specification import Mode
 _REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST, _CAPTURES_NOW = 1, 2, 4, 8, 16
 
 SHARED = (0, 0, -1, 0, 0, 0, -1, -1, *([0] * 10))
-"""The fields of a part of which no requirement has captured values."""
+"""The unit fields of a part without captured values."""
 
 
 class Unit:
@@ -36,7 +36,7 @@ class Unit:
     def fields(
         self, sections: Sections, names: Names, programs: Programs, nodes: Nodes, atoms: Atoms
     ) -> Iterator[int]:
-        """The fields of its part, from `captured` to `lapsed`."""
+        """The fields of its part record in plan.h, from `captured` to `lapsed`."""
         key = names.key
         yield len(self._rule.captured)
         yield self._requirement.for_each is not None
@@ -70,7 +70,7 @@ class Unit:
         return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
 
     def _forgets(self, state: State) -> bool:
-        """Whether a time-dependent node carries no memory into a new attempt."""
+        """Whether a stateful node carries no memory into a new attempt."""
         begins = not self._replays and begins_with_attempt(state)
         return state.op is StateOp.PASSED or begins
 
@@ -114,12 +114,12 @@ class Unit:
         return self._plan.gap in (None, 1) or (reach.begins and no_edge)
 
     def _shared(self, rule: PlannedRule) -> Iterator[State]:
-        """The state formulas of an instance."""
+        """The state formulas evaluated by an instance, not by its attempts."""
         if not self._requirement.captures:
             yield from rule.states
         named = (rule.trigger, rule.determined, rule.blurs)
         yield from (state for state in named if state is not None)
-        yield from rule.caught
+        yield from rule.captures_known
 
     @property
     def _starters(self) -> tuple[int, int]:
@@ -135,7 +135,7 @@ class Unit:
 
 
 def _consequent(rule: PlannedRule) -> Iterator[State]:
-    """The state formulas of an attempt."""
+    """The state formulas evaluated by an attempt."""
     yield from rule.alphabet.propositions
     yield from rule.asked
     named = [rule.again, rule.unborn]

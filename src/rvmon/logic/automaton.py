@@ -16,22 +16,22 @@ from rvmon.logic.letters import Alphabet, LetterClasses
 from rvmon.logic.residual import NO_CLOCK, Residual
 
 FAILED, PASSED = 0, 1
-"""The locations in which an attempt is decided; they stand first in every machine."""
+"""The locations in which an attempt is decided: the first two of every automaton."""
 
 NOW = -1
-"""As the source of a clock: it is started at the position of the step."""
+"""The source of a clock that is started at the position of the step."""
 
 Token = tuple[int, tuple[int, ...]]
-"""Where an attempt is: its location, and for each clock the instant at which it was started."""
+"""The state of an attempt: its location, and the start instant (ticks) of each of its clocks."""
 
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A location: what an attempt there still owes, whatever the exact ages of its clocks.
+    """A location: the residual formula of the attempts there, for all ages of its clocks.
 
     Attributes:
-        residual: the formula owed; its clocks are numbered 0, 1, … from the oldest.
-        cuts: for each clock the ages, ascending, at which it enters its next region.
+        residual: its clocks are numbered 0, 1, … from the oldest.
+        cuts: per clock, the ages in ticks, ascending, at which it enters its next region.
     """
 
     residual: Residual
@@ -39,11 +39,11 @@ class Location:
 
 
 def normalise(residual: Residual, clocks: int) -> tuple[Residual, tuple[int, ...]]:
-    """Number the clocks of a residual after a step by age.
+    """Renumber the clocks of a residual after a step, oldest first, without unused ones.
 
     Args:
         residual: the result of `rvmon.logic.progress.step`.
-        clocks: how many clocks there were before the step; a clock it starts has this number.
+        clocks: the number of clocks before the step, and so the number of the one it started.
 
     Returns:
         The renumbered residual, and for each of its clocks the old number, or `NOW`.
@@ -92,10 +92,10 @@ class Automaton:
         class_of: the class of each letter.
         bases: per location, its first row.
         strides: per location and clock.
-        edges: row and class to the number of an edge; −1 where no run comes.
+        edges: row and class to the number of an edge; −1 in unreachable rows.
         targets: per edge, the location it leads to.
-        sources: per edge, for each clock of its target the old clock it is, or `NOW`.
-        time_values: per row, the truth once time alone, without a letter, has reached it.
+        sources: per edge, for each clock of its target the clock it continues, or `NOW`.
+        time_values: per row, the truth value when time alone, without a letter, reaches it.
         end_values: per row, whether the residual holds if the trace ends there.
     """
 
@@ -124,7 +124,8 @@ class Automaton:
 
 
 EndClause = tuple[tuple[int, int, bool], ...]
-"""Clock (−1: none), least age, and whether the age is that at the end or as far as time came."""
+"""Tests: clock (−1: none), least age in ticks, and whether the age counts at the end of the trace
+(True) or at the last instant that time reached (False)."""
 
 
 def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
@@ -150,7 +151,7 @@ def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
 def layout_of(
     locations: Sequence[Location],
 ) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
-    """First row and strides of each location, number of rows; the last clock varies fastest."""
+    """First row and strides of each location, and the number of rows; the last clock is fastest."""
     bases, strides, total = [], [], 0
     for location in locations:
         bases.append(total)
@@ -165,23 +166,23 @@ def layout_of(
 
 
 def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
-    """The row of a location, given for each clock how many of its cuts its age has passed."""
+    """The row of a location; `regions` is, per clock, the number of cuts its age has reached."""
     strides = automaton.strides[location]
     return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
 
 
 _MOST = 5
-"""Orders of more locations are not looked through."""
+"""The most locations whose orders are searched (n! of them)."""
 
 
 def moves_in_runs(automaton: Automaton) -> bool:
-    """Whether all attempts in one location can be stepped together, as a run sorted by trigger.
+    """Whether the attempts of one location can be stepped together, as a run sorted by trigger.
 
-    It is proved if there is one clock at most, which every attempt starts at its trigger and never
-    again, and if the locations have an order in which age decides: read from the oldest attempts
-    to the youngest, no letter ever leads a younger one to an earlier location than an older one.
-    So a run, sorted by age, moves as a whole or is cut where a region ends, and runs that meet
-    stand one behind the other.
+    Sufficient: there is at most one clock, started at the trigger and never again, and the
+    locations have an order that every letter preserves: read from the oldest attempt to the
+    youngest, it never moves a younger one to an earlier location than an older one. Then a run,
+    sorted by age, moves as a whole or is cut at a region bound, and runs that meet in a location
+    are simply concatenated.
 
     Source: AUTOMATA 3.
     """
@@ -214,7 +215,7 @@ def _starts_once(automaton: Automaton) -> bool:
 
 
 def _age_decides(automaton: Automaton, order: Sequence[int]) -> bool:
-    """Whether every letter preserves an order of the locations, given oldest attempts first."""
+    """Whether every letter preserves an order of the locations, oldest attempts first."""
     rank = {location: index for index, location in enumerate(order)}
     rows = [row for location in order for row in reversed(_rows(automaton, location))]
     rows += _rows(automaton, automaton.initial)
@@ -230,7 +231,7 @@ def _age_decides(automaton: Automaton, order: Sequence[int]) -> bool:
 
 
 def _rows(automaton: Automaton, location: int) -> range:
-    """The rows of a location, by the age of its attempts."""
+    """The rows of a location, by ascending age."""
     first = automaton.bases[location]
     regions = [len(cuts) + 1 for cuts in automaton.locations[location].cuts]
     return range(first, first + (regions[0] if regions else 1))

@@ -1,9 +1,9 @@
-"""Chains: windows nested in windows over a propositional base, whose positions settle in order.
+"""Chains: windows nested in windows over a propositional base, decided in the order of positions.
 
-No position of such a formula is decided before one further left: `F` is decided by the first
-position of its window that holds, `G` by the last. So the decided positions are a prefix, and the
-state is that prefix with the positions at which the value changes. The same is true of an invariant
-over a chain (`whenever`, `always`): the first position at which it fails is the first one decided.
+No position of such a formula is decided before an earlier one: `F` is decided by the first position
+of its window that holds, `G` by the last. So the decided positions form a prefix, and the state is
+its length with the positions at which the value changes. The same holds for an invariant over a
+chain (`whenever`, `always`): the first position at which it fails is the first one decided.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, S
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """A chain found in a network plan.
+    """The chain of a network plan; places are indices of its nodes.
 
     Attributes:
         base: place of the operand of the innermost window: a leaf, or a junction of leaves.
         windows: innermost first.
         left: place of the leaf that releases the invariant; `None` if this is no invariant.
-        places: of the windows in the plan.
-        excused: place of the leaf under which the invariant holds whatever the windows say; `None`
-            if there is none. Where nothing is unknown it is true wherever `left` is.
+        places: places of the windows.
+        excused: place of a leaf that is a disjunct of the invariant's body, `None` if there is
+            none. Where nothing is unknown it is true wherever `left` is.
     """
 
     base: int
@@ -54,10 +54,10 @@ def reach_of(plan: NetworkPlan) -> int | None:
                 return None
 
     def within(junction: Junction, place: int) -> int | None:
-        """The reach of an operand, or that of an `until` which another operand bounds.
+        """The reach of an operand; an unbounded `until` may be bounded by its sibling window.
 
-        Where its right operand is not met in time, that decides the junction; where it is, that
-        decides the `until`.
+        `φ U[a,b] ψ` is planned as a junction of `F[a,b] ψ` with an unbounded `until`: if ψ is not
+        met in the window, the window decides the junction, and if it is, the `until` is decided.
         """
         node = plan.nodes[place]
         low = node.offset if isinstance(node, Shift) else 0
@@ -91,12 +91,13 @@ def reach_of(plan: NetworkPlan) -> int | None:
 
 
 def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
-    """The chain that a plan is; `None` if it is none.
+    """The plan as a chain; `None` if it is not one.
 
     Args:
         plan: of a network.
-        gap: ticks between two positions; `None` if only samples are positions. There a window that
-            opens later may hold no position, so that what is known does not end at one.
+        gap: ticks between two positions; `None` if only samples are positions. There a window with
+            a positive lower bound may contain no position, so the decided positions need not be a
+            prefix, and it is no chain.
     """
     nodes = plan.nodes
     top, left, excused = len(nodes) - 1, None, None
@@ -114,7 +115,7 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
             top = inner[0]
             excused = next(one for one in right.operands if one != top)
         elif not isinstance(end.core, Constant):
-            return None  # what is kept up has to hold where that ends, too
+            return None  # `p R φ` requires φ also at the position where p ends it
     windows: list[Window] = []
     places: list[int] = []
     node = nodes[top]
@@ -131,7 +132,7 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
 
 
 def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
-    """Whether one leaf implies the left one wherever nothing is unknown."""
+    """Whether a leaf denies the same proposition as the left one, so that they agree if known."""
     one, other = plan.nodes[left], plan.nodes[place]
     if not (isinstance(one, Leaf) and isinstance(other, Leaf)):
         return False

@@ -1,7 +1,7 @@
 """Zones of clock ages: bounds on each age and on the differences between ages.
 
-Source: difference bounds after Dill 1989; widening by the bounds that matter after Behrmann et al.
-2006. Ages are whole numbers, so all bounds are closed.
+Source: difference bound matrices after Dill 1989; widening by the bounds of the automaton after
+Behrmann et al. 2006. Ages are integers, so all bounds are closed.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ NEVER = 1 << 62
 """No bound."""
 
 _NARROW = 8
-"""In regions of so many ages, ages are kept as they are; in wider ones only differences are."""
+"""Regions with fewer ages keep exact ages; in wider ones only differences are kept."""
 
 Ages = tuple[tuple[int, ...], ...]
-"""Per pair of clocks the most by which the first is older than the second; 0 is no clock: its age
-is 0, the clocks count from 1. Each bound is implied by no others that are less."""
+"""A closed difference bound matrix: entry (i, j) is the most by which clock i is older than j.
+Clock 0 is the reference clock of age 0; the real clocks are numbered from 1."""
 
 Cuts = Sequence[Sequence[int]]
-"""Per clock the ages, ascending, from which on it is in another region."""
+"""Per clock, the ages, ascending, at which it enters its next region."""
 
 
-def exactly(ages: Sequence[int]) -> Ages:
+def point_zone(ages: Sequence[int]) -> Ages:
     """The zone in which every clock has a known age.
 
     >>> exactly([5, 2])
@@ -45,12 +45,12 @@ def region_bounds(cuts: Sequence[int], region: int) -> tuple[int, int]:
 
 
 def regions_between(cuts: Sequence[int], low: int, high: int) -> range:
-    """The regions that the ages in an interval lie in."""
+    """The regions that an interval of ages intersects."""
     return range(bisect_right(cuts, low), bisect_right(cuts, high) + 1)
 
 
 def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
-    """A zone cut to an interval for each age; `None` if that leaves nothing.
+    """A zone intersected with an interval for each age; `None` if that is empty.
 
     >>> within(exactly([5, 2]), [(0, 9), (3, 9)]) is None
     True
@@ -67,7 +67,7 @@ def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
 
 
 def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
-    """Tighten one bound, and the others that follow from it."""
+    """Tighten one bound and close the matrix again."""
     behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
     for row in found:
         if row[one] < NEVER:
@@ -90,20 +90,20 @@ def after(ages: Ages, longest: int) -> Ages:
     )
 
 
-def joined(ages: Ages) -> Ages:
-    """The zone with one more clock, of age 0."""
+def with_new_clock(ages: Ages) -> Ages:
+    """The zone with one more clock, the last, of age 0."""
     rows = [(*row, row[0]) for row in ages]
     return (*rows, rows[0])
 
 
-def chosen(ages: Ages, clocks: Sequence[int]) -> Ages:
-    """The zone of some of the clocks, in this order; numbered from 0, −1 is the last."""
+def projected(ages: Ages, clocks: Sequence[int]) -> Ages:
+    """The zone of some clocks, in this order; clocks are numbered from 0, −1 is the last."""
     places = [0, *(range(1, len(ages))[clock] for clock in clocks)]
     return tuple(tuple(ages[one][other] for other in places) for one in places)
 
 
 def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
-    """A larger zone of the same regions, so that a search meets finitely many.
+    """A larger zone within the same regions, so that a search meets finitely many zones.
 
     Args:
         ages: a zone within one region of each clock.
@@ -118,7 +118,7 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
         place = clock + 1
         if not differences or greatest == NEVER:
             apart.append(place)
-        # From the last age of a region, the next position is in another one.
+        # The last age of a region is kept: the next position is certainly in another region.
         wide = greatest - least >= _NARROW and low < greatest
         if wide or (low < high and not differences):
             found[0][place], found[place][0] = -least, greatest

@@ -16,13 +16,13 @@ from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClause
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The size at which the construction of an automaton is given up.
+    """Limits beyond which the construction of an automaton is given up.
 
     Attributes:
-        locations: at most so many.
-        clocks: at most so many in one location.
+        locations: locations.
+        clocks: clocks of one location.
         rows: locations times their age regions.
-        clauses: of one residual.
+        clauses: clauses of one residual.
         table: rows times classes of letters.
     """
 
@@ -34,7 +34,7 @@ class Budget:
 
 
 class DoesNotCloseError(Exception):
-    """The automaton of a formula outgrew its budget; the message says in what."""
+    """The automaton of a formula exceeds its budget; the message names the limit."""
 
 
 def construct(
@@ -43,10 +43,10 @@ def construct(
     """Build the automaton of a formula.
 
     Args:
-        required: what an attempt requires, as `X` of it: it starts before its trigger's position.
-        alphabet: of that formula.
+        required: `X` of what an attempt requires, as it starts before the trigger's position.
+        alphabet: the alphabet of that formula.
         budget: when to give up.
-        ages: if given, collects the clock ages with which locations were explored.
+        ages: if given, collects the clock ages (ticks) with which locations were explored.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.
@@ -64,7 +64,7 @@ class _Construction:
         self.locations: list[Location] = []
         self.index: dict[Residual, int] = {}
         self.youngest: list[tuple[int, ...]] = []
-        """Per location, for each clock the least age with which it is entered."""
+        """Per location, the least age of each clock on entry."""
         self.rows: dict[tuple[int, tuple[int, ...]], Node] = {}
         self.least: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {}
         """Per row, the least ages with which it was explored."""
@@ -80,7 +80,7 @@ class _Construction:
         return self.tables(initial)
 
     def enter(self, residual: Residual, ages: tuple[int, ...]) -> int:
-        """The location of a residual; queued again if it is new, or entered at a lesser age."""
+        """The location of a residual; queued if it is new or is entered with a smaller age."""
         index = self.index.get(residual)
         if index is None:
             if len(residual) > self.budget.clauses:
@@ -107,7 +107,7 @@ class _Construction:
         for regions in product(*(range(len(cuts) + 1) for cuts in location.cuts)):
             row = (index, regions)
             ages = _least_ages(location.cuts, regions, self.youngest[index])
-            # A row that is now met younger leads on younger as well: its targets have to know.
+            # A row now reachable with smaller ages enters its targets with smaller ages too.
             if ages is None or self.least.get(row) == ages:
                 continue
             if row not in self.rows and len(self.rows) >= self.budget.rows:
@@ -176,9 +176,9 @@ def _region_starts(cuts: tuple[tuple[int, ...], ...]) -> Iterator[tuple[int, ...
 def _least_ages(
     cuts: tuple[tuple[int, ...], ...], regions: tuple[int, ...], entered: tuple[int, ...]
 ) -> tuple[int, ...] | None:
-    """The least ages at a step in these regions; `None` if no step can be there.
+    """The least ages at a step in these regions; `None` if no step is possible there.
 
-    Ages at a step are at least 1 and more than on entering; the older clock has the greater age.
+    At a step an age is at least 1 and more than on entry, and an older clock has a greater age.
     """
     ages: list[int] = []
     least = 0

@@ -1,8 +1,8 @@
 """Decides whether some infinite continuation of a trace satisfies a residual.
 
-A clause of a residual is a state of a nondeterministic automaton: a step takes it to any clause of
-what it becomes, under letters that the clause's literals allow. A path is accepting if no unbounded
-`U` is put off for ever.
+A clause of a residual is a state of a nondeterministic automaton: a step leads to any clause of its
+progression whose literals some letter satisfies. A path is accepting if no unbounded `U` is
+postponed for ever.
 
 Source: generalised Büchi acceptance after Gerth, Peled, Vardi and Wolper 1995; strongly connected
 components for emptiness, after Couvreur 1999.
@@ -22,12 +22,12 @@ from rvmon.logic.clock_regions import (
     Cuts,
     after,
     bounds,
-    chosen,
-    exactly,
-    joined,
+    point_zone,
+    projected,
     region_bounds,
     regions_between,
     widened,
+    with_new_clock,
     within,
 )
 from rvmon.logic.formula import Literal, Sense, Until
@@ -36,27 +36,27 @@ from rvmon.logic.residual import NO_CLOCK, Clause, Residual, TooManyClausesError
 from rvmon.logic.state_formula import Elapsed, State
 
 MOST_TRIED = 200
-"""Steps of states, and combinations of regions in which they might be made."""
+"""The most combinations of clock regions tried in one search, long clauses counted extra."""
 
 _MOST_APART = 100
-"""The same, where clocks are known by their differences: that tells more states apart."""
+"""The same when differences of clocks are kept, which distinguishes more states."""
 
 _FEW_ATOMS = 8
-"""A step of a clause of `n` times as many costs `n` squared small ones more, and counts as such."""
+"""A step of a clause with `n` times this many atoms counts `n`² more: progression is quadratic."""
 
 MOST_CLAUSES = 100
-"""Of one step of a clause."""
+"""The most clauses of one step of a clause."""
 
 
 class TooLargeError(Exception):
-    """The search outgrew its limits."""
+    """The search exceeds its limits."""
 
 
 @dataclass(frozen=True, slots=True)
 class _State:
     """A state of the search: one clause of a residual, with a zone of its clock ages.
 
-    Ages are counted in the ticks between two positions where these are always as many.
+    Ages are in ticks; in clocked time, in multiples of the gap between positions.
     """
 
     residual: Residual
@@ -65,7 +65,7 @@ class _State:
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """An edge of the search; `fair` if the oldest clock is not kept in a bounded region."""
+    """An edge of the search; `fair` unless the oldest clock stays in a bounded region."""
 
     source: int
     target: int
@@ -73,36 +73,36 @@ class _Move:
 
 
 Start = tuple[_State, ...]
-"""The clauses of a residual, of which one is to be satisfied."""
+"""One state per clause of a residual; a continuation has to satisfy one of them."""
 
 
 def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
-    """The start state of a search, the same for residuals with the same future; `None` if true.
+    """The start states of a search, a key for residuals of equal future; `None` if it is true.
 
     Args:
-        residual: of literals of two senses, as `rvmon.logic.progress` makes them.
+        residual: over known propositions, as `rvmon.logic.progress.Duals` makes them.
         ages: of its clocks at the last position, ticks.
-        gap: ticks between two positions; `None` if any number of ticks may lie between them.
+        gap: ticks between two positions; `None` if it varies.
     """
     if any(not clause for clause in residual):
         return None
     search = _Search(gap, differences=True)
-    known = exactly([age // search.unit for age in ages])
+    known = point_zone([age // search.unit for age in ages])
     return tuple(search.state(clause, known) for clause in residual)
 
 
 def is_satisfiable(start: Start, gap: int | None) -> bool:
-    """Whether some infinite continuation satisfies one of these.
+    """Whether some infinite continuation satisfies one of the start states.
 
-    In wide regions clocks are known by their differences only: so what is bounded may be called
-    satisfiable though it is not; what is called unsatisfiable is.
+    False is exact. True may be wrong for bounded windows, because in wide regions ages are
+    over-approximated by their differences.
 
     Args:
-        start: as `start_of` gives it.
-        gap: as for that.
+        start: from `start_of`.
+        gap: the same as there.
 
     Raises:
-        TooLargeError: the search takes too many steps.
+        TooLargeError: the search exceeds its limits even without differences of clocks.
     """
     try:
         return _Search(gap, differences=True).run(start)
@@ -134,9 +134,9 @@ class _Search:
         return self.has_accepting_cycle(moves)
 
     def state(self, clause: Clause, ages: Ages) -> _State:
-        """The state of a clause, the last clock being the one that `normalise` calls NOW."""
+        """The state of a clause; the last clock of `ages` is the one that `normalise` calls NOW."""
         made, sources = normalise(frozenset([clause]), len(ages) - 2)
-        own = chosen(ages, sources)
+        own = projected(ages, sources)
         return _State(made, widened(own, self.cuts(made), differences=self.differences))
 
     def enter(self, state: _State) -> int:
@@ -148,11 +148,11 @@ class _Search:
         return found
 
     def cuts(self, residual: Residual) -> list[list[int]]:
-        """The ages at which clocks enter their next region, in units."""
+        """The ages at which clocks enter their next region, in units, rounded up."""
         return [[-(-cut // self.unit) for cut in own] for own in location_of(residual).cuts]
 
     def successors(self, state: _State) -> Iterator[tuple[int | None, bool]]:
-        """The states after one position, `None` for what is satisfied; and whether it is fair."""
+        """The states after one position (`None`: satisfied), and whether the move is fair."""
         cuts = self.cuts(state.residual)
         cost = sum((len(clause) // _FEW_ATOMS) ** 2 for clause in state.residual)
         for ages in self.ages_after(cuts, state.ages):
@@ -171,7 +171,7 @@ class _Search:
                 if not pending:
                     yield None, True
                     return
-                target = self.enter(self.state(pending, joined(ages)))
+                target = self.enter(self.state(pending, with_new_clock(ages)))
                 oldest_stays = waits and any(clock == 0 for _, clock in pending)
                 yield target, not oldest_stays
 
@@ -191,7 +191,10 @@ class _Search:
                 yield found
 
     def has_accepting_cycle(self, moves: Sequence[_Move]) -> bool:
-        """Whether some cycle postpones no `U` for ever."""
+        """Whether some fair cycle postpones no unbounded `U` for ever.
+
+        Per strongly connected component: a promise kept by all its moves is postponed for ever.
+        """
         promised = [_promises(state) for state in self.states]
         if any(m.fair and m.source == m.target and not promised[m.target] for m in moves):
             return True
@@ -222,9 +225,9 @@ def _left_open(literal: Literal) -> Residual:
 
 
 def _without_literals(clause: Clause) -> Clause | None:
-    """What a clause owes later; `None` if no letter satisfies its literals.
+    """The clause without its literals; `None` if no letter satisfies these.
 
-    All that comes is there: nothing is lost of what is still possible.
+    `Elapsed(0)` is always true here: a continuation has no outages, so its positions exist.
     """
     seen: dict[State, Sense] = {}
     pending = []
@@ -239,7 +242,7 @@ def _without_literals(clause: Clause) -> Clause | None:
 
 
 def _promises(state: _State) -> frozenset[Until]:
-    """The unbounded `U` that a state postpones."""
+    """The unbounded `U` formulas that a state postpones."""
     return frozenset(
         node
         for clause in state.residual

@@ -12,19 +12,18 @@ from rvmon.logic.progress import Duals
 from rvmon.logic.residual import FAILS, HOLDS, Residual, TooManyClausesError
 
 MOST_CLAUSES = 60
-"""Of a residual, and of its negation."""
+"""The most clauses of a residual, and of its negation."""
 
 _MOST_KNOWN = 10_000
-"""Answers that are kept; with more, all are forgotten (they can be worked out again)."""
+"""The cache is emptied when it exceeds this many answers."""
 
 
 class Forecaster:
     """Forecasts the value of residuals.
 
-    A continuation is an infinite word in which every proposition is known, independently of the
-    others; bounded windows are judged by what is known of the ages of their clocks. So a forecast
-    that is given is right, and for formulas without bounds none is missed within the limits of
-    the search.
+    A continuation is an infinite word in which every proposition is known, and independent of the
+    others; for bounded windows the ages of clocks are over-approximated. So a forecast is sound,
+    and within the limits of the search it is complete for formulas without bounds.
 
     Attributes:
         duals: the factory of residuals over known propositions, and of their negations.
@@ -38,12 +37,12 @@ class Forecaster:
         """The value of a residual under all continuations; `None` if they differ.
 
         Args:
-            residual: what is required after a position.
+            residual: the residual after a position.
             ages: of its clocks at that position, ticks.
-            gap: ticks between two positions; `None` if any number of them.
+            gap: ticks between two positions; `None` if it varies.
 
         Returns:
-            `None`, too, where the search would outgrow its limits.
+            `None` also where the search exceeds its limits.
         """
         if residual in (HOLDS, FAILS):
             return residual == HOLDS
@@ -61,9 +60,9 @@ class Forecaster:
         """Whether a continuation may satisfy a residual; true also if the search is given up.
 
         Args:
-            residual: of formulas of `duals`.
+            residual: over formulas made by `duals`.
             ages: as for `of`.
-            gap: the same.
+            gap: as for `of`.
         """
         if len(residual) > MOST_CLAUSES:
             return True

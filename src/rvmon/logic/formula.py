@@ -1,11 +1,11 @@
-"""Core formulas: negation normal form over propositions, and the factory that makes them.
+"""Core formulas: negation normal form over propositions, and the factory that interns them.
 
-The future operators are X, U and R. Those of the past occur only where something of the future
-stands below them: else they are part of a proposition.
+The future operators are X, U and R. A past operator occurs here only above a future operator;
+otherwise it belongs to a proposition (`rvmon.logic.state_formula`).
 
-Equal formulas are the same object. Constants are folded, by such laws alone as change neither the
-value of a prefix nor that at the end of a trace: those of distributive lattices and of constants.
-`p or not p` stays (Kleene), and so does `G[0,3] true` (it is decided when its window is over).
+Formulas are hash-consed: equal formulas are the same object. The factory folds constants and
+flattens `and`/`or`, but applies no law that could change the value of a prefix or of a finished
+trace: `p or not p` stays (Kleene), and so does `G[0,3] true` (decided when its window closes).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Sense(Enum):
     TRUE = "is true"
     FALSE = "is false"
     KNOWN_FALSE = "is known to be false"
-    """Two-valued: an unknown proposition is not known to be false, however one looks at it."""
+    """Two-valued: false of an unknown proposition, in the pessimistic and the optimistic run."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +74,7 @@ class Next:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Until:
-    """`left U[low, high] right`; `opened` is the same with `low` 0, what remains in the window."""
+    """`left U[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
 
     id: int
     left: Core
@@ -86,7 +86,7 @@ class Until:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Release:
-    """`left R[low, high] right`; `opened` is the same with `low` 0, what remains in the window."""
+    """`left R[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
 
     id: int
     left: Core
@@ -137,7 +137,7 @@ def parts_of(node: Core) -> tuple[Core, ...]:
 
 
 def nodes_of(formula: Core) -> Iterator[Core]:
-    """A formula and all that it is made of, each once, from the top."""
+    """A formula and its subformulas, each once, operators before operands."""
     seen = {formula}
     stack = [formula]
     while stack:
@@ -154,14 +154,14 @@ def literals(formula: Core) -> Iterator[Literal]:
 
 
 def looks_back(formula: Core) -> bool:
-    """Whether something of the past stands above something of the future."""
+    """Whether a past operator stands above a future one."""
     return any(isinstance(node, Since | Previous) for node in nodes_of(formula))
 
 
 def horizon(formula: Core) -> int | None:
-    """The ticks after the trigger by which an attempt is decided; `None` if nothing bounds them.
+    """The ticks after the trigger within which an attempt is decided; `None` if unbounded.
 
-    `Next` counts as nothing bounded, as its distance in time is not known.
+    `Next` counts as unbounded: the time to the next position is not known.
     """
     reaches = [horizon(part) for part in parts_of(formula)]
     further = formula.high if isinstance(formula, Until | Release) else 0
@@ -202,7 +202,7 @@ class Factory:
         return cast(State, found)
 
     def leaf(self, leaf: Leaf, unborn: int = UNKNOWN) -> State:
-        """What is read off the input; `unborn` is its truth before the birth of its signals."""
+        """An atom over the input; `unborn` is its truth value before the birth of its signals."""
         return self._state(StateOp.LEAF, leaf=leaf, unborn=unborn)
 
     def negation(self, arg: State) -> State:
@@ -241,34 +241,37 @@ class Factory:
         return self._state(StateOp.SINCE, (left, right), low=low, high=high)
 
     def amount(self, amount: Amount, *args: State) -> State:
-        """So much of the first of `args`; of constants too, for what was lost."""
+        """A measured window compared with a limit; `args` are its operands, members first.
+
+        It is not folded where the members are constant: an outage still makes it unknown.
+        """
         own = replace(amount, of=self._emptied(amount.of, args), known=None, span=None)
         return self._state(StateOp.AMOUNT, args, amount=without_spans(own))
 
     def window(self, window: WindowValue, *args: State) -> State:
-        """What a window comes to as a number."""
+        """The numeric value of a window, TRUE where that is known."""
         return self._state(StateOp.AMOUNT, args, amount=window)
 
     def _emptied(self, window: WindowValue, args: Sequence[State]) -> WindowValue:
-        """A window without what its operands say, which are apart."""
+        """A window with its operand formulas blanked: they are `args`, and must not split keys."""
         own = replace(window, operand=ConstantLeaf(True))
         if own.counted is not None:
             own = replace(own, counted=ConstantLeaf(True))
         if args[0] is self.state_false and own.value is not None:
-            own = replace(own, value=Zero(0))  # what it reads is no part of any formula
+            own = replace(own, value=Zero(0))  # a window without members never reads its value
         return own
 
     def compared(self, compared: Compare, *args: State) -> State:
-        """A comparison of windows, which are among `args`."""
+        """A comparison between windows; `args` holds the windows and the other sides' `known`."""
         return self._state(StateOp.COMPARED, args, compared=compared)
 
     def passed(self, passed: Passed, known: State) -> State:
-        """So long has passed since an instant; unknown where `known` is."""
+        """Time passed since an instant, compared with a duration; unknown where `known` is."""
         own = replace(passed, span=None, known=replace(passed.known, span=None))
         return self._state(StateOp.PASSED, (known,), passed=own)
 
     def sure(self, arg: State) -> State:
-        """`arg` is TRUE, two-valued."""
+        """Two-valued: `arg` is TRUE."""
         if arg in (self.state_true, self.state_false) or arg.op is StateOp.SURE:
             return arg
         return self._state(StateOp.SURE, (arg,))
@@ -345,11 +348,11 @@ class Factory:
     def core_since(
         self, left: Core, right: Core, low: int, high: int | None, *, dual: bool
     ) -> Core:
-        """`left S[low, high] right`, or its dual, over operands that speak of the future."""
+        """`left S[low, high] right`, or its dual, with a future operator in an operand."""
         return cast(Core, self._core(Since, left, right, low, high, dual))
 
     def core_previous(self, operand: Core, *, first: bool) -> Core:
-        """`operand`, which speaks of the future, at the position before; `first` at the first."""
+        """`operand` at the position before; at the first position, the constant `first`."""
         return cast(Core, self._core(Previous, operand, first))
 
 

@@ -1,7 +1,7 @@
-"""A formula of the present and past with four values: false, unknown, true, and not born yet.
+"""A formula of the present and past with four values: false, unknown, true and unborn.
 
-No monitor has the fourth value. A formula is kept as the state formulas with three values that it
-is read as, one for each value that what is not born may be taken for (`three_valued` makes them).
+No monitor represents the fourth value. A four-valued formula is a family of three-valued state
+formulas, one per value that unborn may be replaced by; `three_valued` builds them.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ class Four:
     """A formula with four values.
 
     Args:
-        read: gives the state formula with three that is FALSE, UNKNOWN or TRUE where this one is
-            not born.
-        mortal: whether there is a time before its birth.
-        fades: whether it is born for good as soon as it is.
-        unborn: two-valued, that it is not born; default as `read` gives it.
-        parts: of a conjunction, its operands; of anything else, it alone.
+        read: from FALSE, UNKNOWN or TRUE, the three-valued formula that has this value where the
+            four-valued one is unborn.
+        born_late: whether it is unborn at some position.
+        stays_born: whether it is never unborn again once it was born.
+        unborn: two-valued, TRUE where it is unborn; by default derived from `read`.
+        parts: the operands of a conjunction; by default the formula itself.
 
     Attributes:
-        negated: what it is the negation of.
+        negated: the formula of which this one is the negation, if it was made as one.
     """
 
     def __init__(
@@ -33,23 +33,23 @@ class Four:
         factory: Factory,
         read: Callable[[int], State],
         *,
-        mortal: bool = True,
-        fades: bool = False,
+        born_late: bool = True,
+        stays_born: bool = False,
         unborn: State | None = None,
         parts: Sequence[Four] = (),
     ) -> None:
         self._factory = factory
-        self.read = cache(read) if mortal else same(read(UNKNOWN))
-        self.mortal = mortal
-        self.fades = fades
+        self.read = cache(read) if born_late else always_read_as(read(UNKNOWN))
+        self.born_late = born_late
+        self.stays_born = stays_born
         self.parts = tuple(parts) or (self,)
         self.negated: Four | None = None
         self._unborn = unborn
 
     @property
     def unborn(self) -> State:
-        """Two-valued: it is not born."""
-        if not self.mortal:
+        """Two-valued: TRUE where the formula is unborn."""
+        if not self.born_late:
             return self._factory.state_false
         if self._unborn is not None:
             return self._unborn
@@ -58,13 +58,13 @@ class Four:
 
     @property
     def missing(self) -> State:
-        """TRUE where it is not born, UNKNOWN where it is unknown, else FALSE."""
+        """TRUE where the formula is unborn, UNKNOWN where it is unknown, else FALSE."""
         factory = self._factory
         born = self.read(TRUE)
         lost = factory.state_all([born, factory.negation(born)])
         return factory.state_any([self.unborn, lost])
 
 
-def same(state: State) -> Callable[[int], State]:
-    """The reading of what is born throughout: one state, whatever is asked for."""
+def always_read_as(state: State) -> Callable[[int], State]:
+    """The `read` of a formula that is never unborn: one state for every replacement."""
     return lambda _: state

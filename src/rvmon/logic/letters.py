@@ -1,6 +1,6 @@
 """Letters: the valuations of propositions that a formula can tell apart, and their classes.
 
-Classes of letters are reduced ordered multi-valued decision diagrams.
+The partition into classes is computed on reduced ordered multi-valued decision diagrams.
 
 Source: Bryant, Graph-based algorithms for Boolean function manipulation, 1986.
 """
@@ -19,7 +19,7 @@ from rvmon.logic.state_formula import State
 
 
 class TruthValue(Enum):
-    """The value of a proposition as one run takes it: an unknown one in the worse or better way."""
+    """The value of a proposition in the pessimistic or the optimistic run of an attempt."""
 
     FALSE = 0
     TRUE = 1
@@ -48,10 +48,10 @@ class Alphabet:
 
     Attributes:
         propositions: in the order of their digits.
-        truths: per proposition and digit, one of the truths that the formula cannot tell apart.
+        truths: per proposition and digit, a representative of the truths that share the digit.
         strides: per proposition, the weight of its digit.
-        pessimistic: per proposition, what FALSE, UNKNOWN and TRUE contribute.
-        optimistic: the same with unknown taken the better way.
+        pessimistic: per proposition, the summands for FALSE, UNKNOWN and TRUE in that run.
+        optimistic: the same for the optimistic run.
         size: the number of letters.
     """
 

@@ -1,4 +1,4 @@
-"""Lowers requirements to obligations: when an attempt starts, and what it owes, in core form."""
+"""Lowers requirements to obligations: when an attempt starts and what it requires, as formulas."""
 
 from __future__ import annotations
 
@@ -48,20 +48,21 @@ class Obligation:
 
     Attributes:
         trigger: starts an attempt; `None` for `upon end`. Unborn counts as FALSE.
-        required: what an attempt owes from its trigger on; for an episode, over all its positions.
-        origins: for explanations, the source of each part of `required`.
-        running: for an episode, FALSE where it is over; with captured values, also where these are
+        required: the formula an attempt must satisfy from its trigger on; of an episode, over all
+            its positions.
+        origins: the source of each part of `required`, for explanations.
+        running: of an episode, FALSE where it is over; with captured values, also where these are
             no longer certain.
-        again: for an episode, FALSE where the consequent fails at once; after a failure it goes on
-            at the first position where it does not. `None` if it does not go on, as an operator of
-            the past stands above one of the future.
-        unborn: for an episode, TRUE while some signal of its consequent had no value yet.
-        determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
-        hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN wherever one
-            may start; `None` if the trigger is never unknown.
+        again: of an episode, FALSE where the consequent fails at once: after a failure the episode
+            resumes, as a new attempt, at the next position where this is not FALSE. `None` if it
+            never resumes, because a past operator stands above a future one.
+        unborn: of an episode, TRUE while some signal of its consequent had no value yet.
+        determined: TRUE once the trigger was TRUE or FALSE at some position; `None`: not asked.
+        hidden: the obligation of attempts in doubt, as an episode whose trigger is UNKNOWN wherever
+            a trigger may be hidden; `None` for episodes and `upon end`.
         doubted: the same for an instance of `for each` that may not exist.
-        doubt: for an episode with captured values, UNKNOWN where another one may have begun.
-        caught: states that say whether the windows captured by `let` have known values.
+        doubt: of an episode with captured values, UNKNOWN where another one may have begun.
+        captures_known: TRUE where the windows captured by `let` have known values.
     """
 
     trigger: State | None
@@ -74,7 +75,7 @@ class Obligation:
     hidden: Obligation | None = None
     doubted: Obligation | None = None
     doubt: State | None = None
-    caught: tuple[State, ...] = ()
+    captures_known: tuple[State, ...] = ()
 
 
 def lower(
@@ -85,40 +86,40 @@ def lower(
     measured: bool = False,
     sampled: bool = False,
 ) -> Obligation:
-    """Bring a requirement into core form.
+    """Lower a requirement to its obligation.
 
     Args:
         requirement: as checked.
-        factory: where its formulas are made; shared by the requirements of a spec.
+        factory: makes the formulas; shared by the requirements of a spec.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: see `rvmon.logic.three_valued.Reader`.
         sampled: whether only samples are positions.
 
     Raises:
-        UnmonitorableError: the trigger speaks of the future.
+        UnmonitorableError: the trigger has a future operator.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
     begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
-    in_truth = begin(measured=False).reader if measured else lowering.reader
+    truth_reader = begin(measured=False).reader if measured else lowering.reader
     of_windows = [itself(one.value) for one in requirement.captures if windows_in(one.value)]
-    caught = tuple(in_truth.four(one).read(UNKNOWN) for one in of_windows)
+    captures_known = tuple(truth_reader.four(one).read(UNKNOWN) for one in of_windows)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             required = lowering.core(requirement.consequent, True)
-            return Obligation(None, required, lowering.origins, caught=caught)
+            return Obligation(None, required, lowering.origins, captures_known=captures_known)
         case formula if has_future(formula):
             raise UnmonitorableError("its trigger speaks of the future")
-    reader = lowering.reader if requirement.mode is Mode.WHENEVER else in_truth
-    four = reader.four(requirement.trigger)  # an episode owes its trigger, too: that is measured
+    reader = lowering.reader if requirement.mode is Mode.WHENEVER else truth_reader
+    four = reader.four(requirement.trigger)  # an episode's robustness depends on its trigger too
     trigger = four.read(FALSE)
     determined = _determined(four, factory)
     if requirement.mode is Mode.WHENEVER:
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
-        # An episode is over where its trigger is FALSE, by whatever distance.
-        truth = _running(in_truth.four(requirement.trigger).read(FALSE), requirement, factory)
+        # Where an episode ends only the truth of its trigger counts, not its robustness.
+        truth = _running(truth_reader.four(requirement.trigger).read(FALSE), requirement, factory)
         required = lowering.episode(truth, lowering.required(implied), requirement)
         again = None
         if not looks_back_at_future(requirement.consequent):
@@ -130,7 +131,7 @@ def lower(
         return Obligation(
             *(trigger, required, lowering.origins, running, again, unborn, determined),
             doubt=doubt,
-            caught=caught,
+            captures_known=captures_known,
         )
     required = lowering.core(requirement.consequent, True)
 
@@ -149,7 +150,7 @@ def lower(
         determined=determined,
         hidden=hidden(False),
         doubted=hidden(True) if requirement.for_each is not None else None,
-        caught=caught,
+        captures_known=captures_known,
     )
 
 
@@ -160,14 +161,14 @@ def _running(trigger: State, requirement: Requirement, factory: Factory) -> Stat
 
 
 def _determined(trigger: Four, factory: Factory) -> State:
-    """TRUE as soon as a trigger was TRUE or FALSE."""
+    """TRUE once the trigger was TRUE or FALSE at some position."""
     is_false = factory.sure(factory.negation(trigger.read(TRUE)))
     known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])
     return factory.since(factory.state_true, known, 0, None)
 
 
 def _unborn(consequent: Formula, factory: Factory) -> State | None:
-    """TRUE while some signal that a consequent reads had no value; `None` if it reads none."""
+    """TRUE while some signal that the consequent reads had no value; `None` if it reads none."""
     found: dict[str, bool] = {}
     for atom in subformulas(consequent):
         if isinstance(atom, SignalAtom | Compare):
@@ -177,7 +178,7 @@ def _unborn(consequent: Formula, factory: Factory) -> State | None:
 
 
 def _at_once(core: Core, factory: Factory) -> State:
-    """A state formula that is FALSE where a position alone makes what is required there FALSE.
+    """A state formula that is FALSE where the position alone falsifies the consequent.
 
     Args:
         core: the consequent, with the lower bounds of its `G` and `R` taken as 0.
@@ -205,6 +206,6 @@ def _at_once(core: Core, factory: Factory) -> State:
         case Release(right=right):
             return of(right)
         case Since() | Previous():
-            raise AssertionError("what looks back is asked otherwise")
+            raise AssertionError("a consequent that looks back has no `again`")
         case _:
             assert_never(core)

@@ -44,11 +44,13 @@ class Junction:
 class Window:
     """`G[a,b]` (`every`) or `F[a,b]` of a node, or `H` or `O` in the past.
 
+    Offsets count units of `gap`: positions in clocked time, else ticks.
+
     Attributes:
         operand: its place.
-        low: offset from the current position to the first of the window; negative in the past.
-        high: offset to the last position of the window.
-        every: whether the operand must hold at all positions, or at some.
+        low: offset from the current position to the start of the window; negative in the past.
+        high: offset to the end of the window, inclusive.
+        every: whether the operand must hold at all positions of the window, or at some.
         over: ticks after which no new position can fall into the window; `None` in the past.
     """
 
@@ -64,11 +66,11 @@ class Sweep:
     """An unbounded `until` or `since`, or the dual of one.
 
     Attributes:
-        left: place of the operand that must hold until then.
-        right: place of the operand that must be reached.
-        future: whether it is `until`.
-        dual: whether it is the dual, with negated operands and result.
-        kept: whether the end of the trace counts as true for it (an unbounded `R`).
+        left: place of the left operand.
+        right: place of the right operand.
+        future: whether it is `until`, not `since`.
+        dual: whether operands and result are negated (`release`, or the dual of `since`).
+        kept: whether it counts as true at the end of the trace (an unbounded `R`).
     """
 
     left: int
@@ -84,8 +86,8 @@ class Shift:
 
     Attributes:
         operand: place of a `Sweep`.
-        offset: in positions; negative in the past.
-        opens: ticks to the position shifted to; the end of a trace is judged by it.
+        offset: in units of `gap`, as for `Window`; negative in the past.
+        opens: ticks until the window opens; at the end of a trace only an opened one counts.
     """
 
     operand: int
@@ -103,7 +105,7 @@ class NetworkPlan:
     Attributes:
         nodes: operands before operators, the root last.
         places: the place of each formula.
-        leaves: places of the leaves, with what each evaluates.
+        leaves: places of the leaves, with their literal or constant.
         looks_back: whether some node depends on positions before the start of the attempt.
     """
 
@@ -116,7 +118,7 @@ class NetworkPlan:
         """The sweep that a shift node reads."""
         found = self.nodes[node.operand]
         if not isinstance(found, Sweep):
-            raise AssertionError("only an `until` or `since` is moved along")
+            raise AssertionError("the operand of a shift is a sweep")
         return found
 
 
@@ -130,10 +132,10 @@ def operands_of(node: Node) -> tuple[int, ...]:
 
 
 def plan_of(required: Core, gap: int | None) -> NetworkPlan:
-    """The network of what an attempt owes.
+    """The network of one formula.
 
     Args:
-        required: the formula.
+        required: the formula an attempt must satisfy.
         gap: ticks between two positions; `None` if only samples are positions.
     """
     return plan_of_all([required], gap)
@@ -143,7 +145,7 @@ def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
     """One network of several formulas; `NetworkPlan.places` has the place of each.
 
     Args:
-        formulas: whose values are asked for.
+        formulas: the formulas whose values are needed.
         gap: as for `plan_of`.
     """
     planning = _Planning(gap or 1)
@@ -200,10 +202,10 @@ class _Planning:
         return different[0] if len(different) == 1 else self.add(Junction(different, every))
 
     def _neighbour(self, operand: Core, offset: int, first: bool) -> int:
-        """The operand at the next position, or at the one before; `first` where there is none.
+        """The operand at the next position, or the previous one; `first` where there is none.
 
-        Among integers it is that of the nearest position, which an `until` finds whose left operand
-        holds at no position.
+        `false U φ`, shifted by one tick, reads φ at the nearest position: only positions count,
+        wherever on the ticks they lie. Likewise `since` for the past, and the duals.
         """
         own = self.place(operand)
         nowhere = self.add(Leaf(_NOWHERE[first]))
@@ -251,7 +253,7 @@ class _Planning:
 
 
 def _is_neutral(left: Core, every: bool) -> bool:
-    """Whether the left operand of an operator asks for nothing."""
+    """Whether the left operand is neutral, so that the operator is `F`, `G`, `O` or `H`."""
     return isinstance(left, Constant) and left.value is not every
 
 

@@ -1,6 +1,6 @@
 """Lowers formulas to core formulas: X, U and R over propositions of past and present.
 
-`expanded` takes propositions apart again, where a formula is needed down to what the input gives.
+`expanded` goes on to split those propositions, down to literals over single leaves.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Lowering:
     """Lowers formulas to core form.
 
     Args:
-        factory: where core formulas are made.
+        factory: makes the core formulas.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         favour: whether unborn propositions count in favour of the requirement.
         measured: see `rvmon.logic.three_valued.Reader`.
@@ -61,7 +61,7 @@ class Lowering:
         opened: whether lower bounds of `G` and `R` are taken as 0.
 
     Attributes:
-        origins: where what was made comes from.
+        origins: the source of each core formula made so far.
     """
 
     def __init__(
@@ -78,20 +78,23 @@ class Lowering:
         held = period is None and not sampled
         self.reader = Reader(factory, period, measured=measured, held=held)
         self.favour = favour
-        self._meets_blanks = sampled
+        self._may_lack_position = sampled
         self._measured = measured
-        self._opened = opened
+        self._from_zero = opened
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}
 
     def state(self, formula: Formula, positive: bool) -> State:
-        """The state formula of a required formula, or of one whose negation is required."""
+        """The state formula of `formula`; `positive` says whether it or its negation is required.
+
+        The sign decides which value of unborn propositions is in favour of the requirement.
+        """
         if not self.favour:
             return self.reader.literal(formula, UNKNOWN)
         return self.reader.literal(formula, TRUE if positive else FALSE)
 
     def episode(self, trigger: State, implied: Core, requirement: Requirement) -> Core:
-        """`implied` until the trigger is known to be false, where the obligation ends."""
+        """`implied` at every position until the trigger is known to be false."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
         self.origins.setdefault(over, Origin(requirement.trigger, False))
         required = self.factory.release(over, implied, 0, None)
@@ -109,7 +112,7 @@ class Lowering:
         else:
             sense = Sense.TRUE if positive else Sense.FALSE
             made = self.factory.literal(self.state(formula, positive), sense)
-        if not made_up or _is_step(formula):
+        if not made_up or _keeps_origin(formula):
             self.origins.setdefault(made, Origin(formula, positive))
         return made
 
@@ -120,12 +123,12 @@ class Lowering:
             case Unary(op=UnaryOp.NEXT, operand=operand):
                 return self.factory.next(self.required(self.core(operand, positive)))
             case Unary(op=UnaryOp.PREVIOUS, operand=operand):
-                before = self._behind(self.core(operand, positive))
+                before = self._in_past(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
             case Binary(op=BinaryOp.AND, left=left, right=right):
-                return self._both(left, right, positive, positive)
+                return self._junction_of(left, right, positive, positive)
             case Binary(op=BinaryOp.OR, left=left, right=right):
-                return self._both(left, right, positive, not positive)
+                return self._junction_of(left, right, positive, not positive)
             case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._until(*ends, interval, positive)
@@ -135,10 +138,10 @@ class Lowering:
             case Unary() | Binary():
                 return self._core_future(self._rewritten(formula), positive)
             case _:
-                raise AssertionError("only operators have something of the future below them")
+                raise AssertionError("an atom has no future operator below it")
 
     def _rewritten(self, formula: Unary | Binary) -> Formula:
-        """The formula in other operators; what is made up for that stands nowhere in the spec."""
+        """The formula in primitive operators; new nodes are recorded, as they have no origin."""
         made = rewritten(formula)
         own = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
         waiting = [made]
@@ -155,13 +158,13 @@ class Lowering:
     def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         if left is not self.factory.constant(not dual):
-            left = self._behind(left)
-        right = self._behind(right)
+            left = self._in_past(left)
+        right = self._in_past(right)
         return self.factory.core_since(left, right, low, high, dual=dual)
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
-        if self._opened and not positive:
+        if self._from_zero and not positive:
             low = 0
         make = self.factory.until if positive else self.factory.release
         if not isinstance(left, CoreConstant):
@@ -171,31 +174,34 @@ class Lowering:
         return make(left, right, low, high)
 
     def required(self, operand: Core) -> Core:
-        """The requirement at positions that may not exist (an outage of sampled time)."""
-        return self._if_there(operand) if self._meets_blanks else operand
+        """An operand as required at later positions, which an outage of sampled time may lack."""
+        return self._if_position_exists(operand) if self._may_lack_position else operand
 
-    def _behind(self, operand: Core) -> Core:
-        """The same of what is asked of earlier ones."""
-        return self._if_there(operand)
+    def _in_past(self, operand: Core) -> Core:
+        """An operand as required at earlier positions, in any time model."""
+        return self._if_position_exists(operand)
 
-    def _if_there(self, operand: Core) -> Core:
-        """A formula that is unknown where there may be no position, as a proposition is anyway."""
+    def _if_position_exists(self, operand: Core) -> Core:
+        """`operand`, but unknown where there may be no position; literals are so already."""
         factory = self.factory
         if isinstance(operand, Literal) or self._measured:
             return operand  # what is measured is where there surely are positions
-        there = factory.leaf(Elapsed(0))  # true, but where there may be no position
-        whole = factory.all_of([factory.literal(there, Sense.TRUE), operand])
-        return factory.any_of([whole, factory.literal(there, Sense.FALSE)])
+        exists = factory.leaf(Elapsed(0))  # true; unknown where there may be no position
+        whole = factory.all_of([factory.literal(exists, Sense.TRUE), operand])
+        return factory.any_of([whole, factory.literal(exists, Sense.FALSE)])
 
-    def _both(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
-        """Both operands or one of them, with a sign; state formulas become one."""
+    def _junction_of(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
+        """The conjunction or disjunction of two operands with a sign, flattened."""
         args = [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
         return self.join_signed(args, conjunction)
 
     def join_signed(
         self, args: list[tuple[Formula, bool]], conjunction: bool, beside: Sequence[State] = ()
     ) -> Core:
-        """All operands, each with its sign, or one of them; `beside` are further ones."""
+        """The conjunction, or disjunction, of signed operands and of the states in `beside`.
+
+        All operands without future operators are joined into a single proposition.
+        """
         factory = self.factory
         present = [(f, sign) for f, sign in args if not has_future(f)]
         parts = [self.core(f, sign) for f, sign in args if has_future(f)]
@@ -207,18 +213,21 @@ class Lowering:
             whole = (factory.state_all if conjunction else factory.state_any)([*beside, *states])
             literal = factory.literal(whole, Sense.TRUE)
             if present:
-                self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
+                self.origins.setdefault(literal, Origin(_rejoined(present, conjunction), True))
             parts.append(literal)
         return (factory.all_of if conjunction else factory.any_of)(parts)
 
 
-def _is_step(formula: Formula) -> bool:
-    """Whether it is reported although they wrote `rise` or `fall`."""
+def _keeps_origin(formula: Formula) -> bool:
+    """Whether a rewritten node is an origin: the `Y` that `rise` and `fall` expand to."""
     return isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS
 
 
 def flattened(formula: Formula, sign: bool, conjunction: bool) -> list[tuple[Formula, bool]]:
-    """The operands of nested conjunctions (or disjunctions), each with its sign."""
+    """The operands of nested conjunctions (or disjunctions), each with its sign.
+
+    Negations are pushed inwards: `a -> b` is the disjunction of `a` (negative) and `b`.
+    """
     match formula:
         case Unary(op=UnaryOp.NOT, operand=operand):
             return flattened(operand, not sign, conjunction)
@@ -232,8 +241,8 @@ def flattened(formula: Formula, sign: bool, conjunction: bool) -> list[tuple[For
             return [(formula, sign)]
 
 
-def _spelled(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
-    """Formulas with signs as one formula of the language."""
+def _rejoined(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
+    """Signed formulas joined to one formula of the language, for display."""
     op = BinaryOp.AND if conjunction else BinaryOp.OR
     signed = [f if sign else Unary(UnaryOp.NOT, f, span=f.span) for f, sign in parts]
     whole = signed[0]
@@ -244,9 +253,10 @@ def _spelled(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
 
 
 def expanded(core: Core) -> Core:
-    """The formula with past operators expanded, so that its literals are leaves.
+    """The formula with its propositions expanded, so that literals read leaves.
 
-    Tests of whether a proposition is known are not expanded.
+    Two-valued tests of knowledge (`sure`, doubt, KNOWN_FALSE, `φ and not φ`) stay whole, and so do
+    measured windows and comparisons.
     """
     return _Expanding().core(core)
 
@@ -282,7 +292,7 @@ class _Expanding:
             case Until(left=left, right=right, low=low, high=high):
                 return factory.until(self.core(left), self.core(right), low, high)
             case Release(left=Literal(sense=Sense.KNOWN_FALSE) as over, right=right):
-                # An episode: where it is over it owes nothing, however near that was.
+                # An episode: its end satisfies `R` at that position too, whatever the robustness.
                 ended = self.core(over)
                 return factory.release(ended, factory.any_of([ended, self.core(right)]), 0, None)
             case Release(left=left, right=right, low=low, high=high):
@@ -302,7 +312,7 @@ class _Expanding:
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case StateOp.AMOUNT | StateOp.COMPARED | StateOp.PASSED:
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
-            case StateOp.AND if _asks_what_is_known(state):
+            case StateOp.AND if _tests_unknown(state):
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case StateOp.NOT:
                 return self.state(state.args[0], not positive)
@@ -320,14 +330,15 @@ class _Expanding:
                 assert_never(state.op)
 
 
-def _asks_what_is_known(state: State) -> bool:
-    """Whether it is `φ and not φ`, as `rvmon.logic.three_valued` says that something is unknown."""
+def _tests_unknown(state: State) -> bool:
+    """Whether a conjunction is `φ and not φ`, by which `three_valued` tests for unknown."""
     args = set(state.args)
     denied = (arg.args[0] for arg in state.args if arg.op is StateOp.NOT)
     return any(
         args.issuperset(one.args if one.op is StateOp.AND else (one,))
         for one in denied
         if one.op is not StateOp.LEAF
-        # Nobody else takes an atom and its negation alike before the birth of its signals.
+        # An atom may also be conjoined with its negation by the author of a specification; only
+        # a test of this module reads both with the same value before the birth of the signals.
         or (isinstance(one.leaf, Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
     )

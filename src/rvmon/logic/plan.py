@@ -1,4 +1,4 @@
-"""What the core is given: the formulas, inputs and automata of some requirements."""
+"""The plan of a run of the core: the formulas, inputs and automata of some requirements."""
 
 from __future__ import annotations
 
@@ -26,33 +26,32 @@ from rvmon.trace.sample import Scalar
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlannedRule:
-    """One requirement.
+    """One requirement, lowered and ready to be packed.
 
     Attributes:
         requirement: as checked.
-        trigger: what starts its attempts; `None` if that is the end of the trace.
-        required: by an attempt.
-        alphabet: of what it owes.
-        automaton: judges its attempts; `None` if a delay network does.
-        in_runs: whether its open attempts are kept in runs.
-        again: of a `whenever`, not FALSE where an episode goes on after a failure; `None`: nothing
-            is asked.
-        unborn: of a level `whenever`, TRUE while something of its consequent had no value.
-        determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
-        hidden: judges the attempts in doubt `upon` the trigger; `None` if there are none. Its own
-            trigger is UNKNOWN where an attempt in doubt starts, if none runs; it runs until that
-            is FALSE.
-        noted: the leaves of which a record says the values; they are nodes of the graph.
-        doubted: as `hidden`, where it is not known whether there is such an instance.
-        running: of an episode with captured values, what is FALSE where it is over.
-        blurs: of attempts with captured values, UNKNOWN where another may have begun, whose values
-            may be others; `None`: none may.
-        blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
-        asked: further state formulas that are asked for their values.
-        caught: that numbers are known which are captured off windows.
-        stepped: whether no chain of windows is to judge it.
-        traced: whether somebody asks where attempts go in its automaton; it is stepped.
-        measured: what it owes as far as that is measured; `None`: it is not.
+        trigger: starts an attempt; `None` if the end of the trace does.
+        required: the formula an attempt must satisfy.
+        alphabet: of `required`.
+        automaton: judges the attempts; `None` if a network does.
+        in_runs: whether its open attempts are kept in runs (`automaton.moves_in_runs`).
+        again: of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it
+            never resumes, or the requirement is no `whenever`.
+        unborn: of a level `whenever`, TRUE while a signal of its consequent had no value.
+        determined: TRUE once the trigger was TRUE or FALSE; `None` if that is not tracked.
+        hidden: judges the attempts in doubt of an `upon`; `None` if there are none. An attempt in
+            doubt starts where its trigger is UNKNOWN and none is open, and ends where it is FALSE.
+        noted: the leaves whose values a record shows; they are nodes of the graph.
+        doubted: the same as `hidden`, for an instance that may not exist.
+        running: of an episode with captured values, FALSE where it is over.
+        blurs: of attempts with captured values, UNKNOWN where another attempt, with other values,
+            may have begun; `None` if that cannot be.
+        blurs_anywhere: whether, in an instance with an unknown key, one may have begun anywhere.
+        asked: further state formulas whose values are needed.
+        captures_known: TRUE where the numbers captured from windows are known.
+        stepped: whether it must be judged by stepping attempts, not as a chain of windows.
+        traced: whether the path of attempts through the automaton is needed; implies `stepped`.
+        measured: `required` in the form that preserves robustness; `None` if that is not computed.
     """
 
     requirement: Requirement
@@ -71,43 +70,43 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
-    caught: tuple[State, ...] = ()
+    captures_known: tuple[State, ...] = ()
     stepped: bool = False
     traced: bool = False
     measured: Core | None = None
 
     @property
     def states(self) -> Iterator[State]:
-        """The state formulas that are asked for their values."""
+        """The state formulas whose values are needed; may repeat."""
         named = (self.trigger, self.again, self.unborn, self.determined, self.running, self.blurs)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
         yield from self.asked
-        yield from self.caught
+        yield from self.captures_known
         for beside in (self.hidden, self.doubted):
             if beside is not None:
                 yield from beside.states
 
     @property
     def captured(self) -> tuple[str, ...]:
-        """The names of the values that each attempt has: of `for each`, then of `let`."""
+        """The names of the captured values of an attempt: of `for each`, then of `let`."""
         each = self.requirement.for_each
         names = [capture.name for capture in self.requirement.captures]
         return (*(() if each is None else (each.name,)), *names)
 
     @property
     def is_apart(self) -> bool:
-        """Whether its attempts or instances have values, and so propositions, of their own."""
+        """Whether attempts or instances have captured values, and so valuations, of their own."""
         return bool(self.captured)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Uses:
-    """What is asked of a signal or event beside its present value.
+    """The uses of a signal or event beside its present value.
 
     Attributes:
-        history: the last two updates matter (`prev`, `delta`, `rate`, `changed`).
-        marked: whether there is an update matters (`updated`, `changed`).
+        history: whether the last two updates are read (`prev`, `delta`, `rate`, `changed`).
+        marked: whether the fact of an update is read (`updated`, `changed`).
     """
 
     history: bool = False
@@ -115,11 +114,11 @@ class Uses:
 
 
 class Watch(NamedTuple):
-    """A formula that is watched.
+    """A formula counted for coverage: a bin, or an occasion at which bins are sampled.
 
     Attributes:
         state: the formula.
-        is_pulse: whether it is over at the next position.
+        is_pulse: whether it is a pulse, true at single positions.
     """
 
     state: State
@@ -128,11 +127,11 @@ class Watch(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WatchGroup:
-    """A coverpoint, or the cross of several: an item of it is a watch of each axis.
+    """A coverpoint, or a cross of several; an item is a combination of one watch of each axis.
 
     Attributes:
-        axes: the numbers of watches; items are counted through from the last axis on.
-        occasion: the number of what says where it is looked at; `None`: everywhere.
+        axes: ranges of watch numbers; items are numbered with the last axis fastest.
+        occasion: the watch at which the group is sampled; `None` for every change.
     """
 
     axes: tuple[range, ...]
@@ -140,7 +139,7 @@ class WatchGroup:
 
     @property
     def looks_where(self) -> Iterable[int]:
-        """The watches that have it look where they change."""
+        """The watches on whose change the group is sampled."""
         return chain.from_iterable(self.axes) if self.occasion is None else (self.occasion,)
 
 
@@ -153,15 +152,15 @@ class Plan:
         rules: in the order of the file.
         graph: their state formulas, shared.
         gap: ticks between two positions; `None` if only samples are positions.
-        signals: names of which something is kept; the place of a name is its number.
+        signals: all names of the specification; the index of a name is its number.
         events: the same.
-        uses: by name, of those that are read, here or by what begins with what is remembered here.
-        units: of the requirements with captured values, one each.
-        asked: all rules, those of the units among them, in the order of the file.
-        truths: formulas of which it is kept where they are true.
-        watches: formulas that are bins, or occasions at which bins are looked at.
-        groups: what is counted of them.
-        constants: captured values that are known while the plan is made; `None` is unknown.
+        uses: by name, for the names that this plan reads, also to capture values.
+        units: one plan for each requirement with captured values.
+        asked: all rules, with those of the units, in the order of the file.
+        truths: formulas whose truth over the whole trace is kept.
+        watches: the bins of coverage, and the occasions at which they are sampled.
+        groups: the coverpoints and crosses over them.
+        constants: captured values that are known already; `None` is unknown.
     """
 
     spec: CheckedSpec
@@ -180,29 +179,29 @@ class Plan:
 
     @property
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:
-        """All that has attempts of its own, with the number of the rule that it belongs to.
-
-        The rules themselves come first, then what judges their attempts in doubt.
-        """
+        """The rules, then the judges of their attempts in doubt, each with its rule's number."""
         rules = [*enumerate(self.rules)]
         beside = [(owner, one) for owner, rule in rules for one in (rule.hidden, rule.doubted)]
         return rules + [(owner, one) for owner, one in beside if one is not None]
 
     @property
     def judged(self) -> tuple[PlannedRule, ...]:
-        """The rules, then those that judge the attempts in doubt of some of them."""
+        """`judges` without the numbers."""
         return tuple(rule for _, rule in self.judges)
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """Share the state formulas of requirements and see what they ask of the input."""
+    """The plan of requirements in one part: state formulas shared, uses of the input collected."""
     states = (state for rule in rules for state in rule.states)
     captured = [one.value for rule in rules for one in rule.requirement.captures]
     return replace(_shared(spec, states, captured), rules=tuple(rules), asked=tuple(rules))
 
 
 def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """As `plan_of`, those with captured values apart: each attempt or instance is its own run."""
+    """As `plan_of`, with a unit for each requirement with captured values.
+
+    Each attempt or instance of a unit is a run of its own.
+    """
     shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
     return replace(shared, units=units, asked=tuple(rules))
@@ -225,21 +224,21 @@ def plan_of_watches(
 
 
 def _shared(spec: CheckedSpec, states: Iterable[State], captured: Iterable[Numeric] = ()) -> Plan:
-    """The plan of state formulas that nobody asks for yet."""
+    """A plan with the graph of state formulas, and nothing judged or counted yet."""
     graph = graph_of(states)
     names = (tuple(spec.signals), tuple(spec.events))
     return Plan(spec, (), graph, spec.gap, *names, _uses_of(graph, captured))
 
 
 def _uses_of(graph: Graph, captured: Iterable[Numeric]) -> dict[str, Uses]:
-    """What is asked of signals and events."""
+    """By name, the uses of signals and events; `captured` are the expressions of `let`."""
     found = {
         name: _uses([graph.nodes[place] for place in places], name)
         for name, places in graph.by_name.items()
     }
     amounts = (node.amount for node in graph.nodes)
     windows = (one.value for one in amounts if isinstance(one, WindowValue))
-    # A window reads its number though what is measured can never be, so that no leaf does.
+    # The value of a window is no leaf of the graph, so its names have to be added.
     for expression in (*captured, *(value for value in windows if value is not None)):
         for name in inputs_of(expression):
             found.setdefault(name, Uses())

@@ -1,8 +1,8 @@
-"""Progression: steps a residual by a letter, by time alone, and by the end of the trace.
+"""Progression: steps a residual by a letter, by time alone, and to the end of the trace.
 
-Where all propositions are known, a residual and its negation are both two-valued.
+`Duals` negates residuals, which is possible where every proposition is known.
 
-Source: AUTOMATA 1; after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
+Source: AUTOMATA 1; after Bacchus and Kabanza 1998, with clock ages instead of shrinking bounds.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Phase(Enum):
 
 
 def phase(node: Until | Release, age: int) -> Phase:
-    """Where `age` lies relative to the window of `node`."""
+    """Where an age in ticks lies relative to the window of `node`."""
     if age < node.low:
         return Phase.BEFORE
     return Phase.INSIDE if node.high is None or age <= node.high else Phase.OVER
@@ -51,17 +51,17 @@ def step(
 ) -> Residual:
     """The residual after a position.
 
-    In the result, clocks below `len(ages)` are the old ones, and `len(ages)` is a new one that was
-    started at this position.
+    In the result, clocks below `len(ages)` are the old ones, and clock `len(ages)` was started at
+    this position.
 
     Args:
-        residual: what was required before.
-        ages: of each clock at this position.
-        read: what a literal is at this position; itself as an atom, if it is to stay open.
-        limit: the greatest number of clauses, if there is to be one.
+        residual: the residual before the position.
+        ages: of each clock at this position, ticks.
+        read: the value of a literal at this position; the literal itself as an atom keeps it open.
+        limit: the greatest number of clauses; `None` for no limit.
 
     Raises:
-        TooManyClausesError: the result, or something on the way to it, may have more clauses.
+        TooManyClausesError: the result, or an intermediate one, may have more clauses.
     """
     stepper = _Step(ages, read, limit)
     made = {atom: stepper.atom(atom) for clause in residual for atom in clause}
@@ -102,7 +102,7 @@ class _Step:
         return either(right, waiting) if until else both(right, waiting, self.limit)
 
     def instance(self, node: Core) -> Residual:
-        """What `node` owes if it is instantiated at this position."""
+        """The residual of `node` instantiated at this position."""
         found = self.made.get(node)
         if found is None:
             found = self.made[node] = self._instance(node)
@@ -129,7 +129,7 @@ class _Step:
             case Until() | Release():
                 return self.window(node, len(self.ages), phase(node, 0))
             case Since() | Previous():
-                raise AssertionError("what lies ahead of the past is judged by the network")
+                raise AssertionError("a past operator above a future one is left to the network")
             case _:
                 assert_never(node)
 
@@ -140,16 +140,16 @@ def instance(node: Core, read: ReadLiteral) -> Residual:
 
 
 def opened(node: Until | Release, clock: int) -> Atom:
-    """The rest of a window that has opened: without its start, and without a clock if unbounded."""
+    """The atom inside its window: lower bound 0, and no clock if there is no upper bound."""
     return node.opened or node, NO_CLOCK if node.high is None else clock
 
 
 def after(residual: Residual, ages: Sequence[int]) -> Residual:
-    """The residual after time has passed without a position: windows that are over are settled.
+    """The residual after time has passed without a position: closed windows are decided.
 
     Args:
-        residual: what is required after the last position.
-        ages: of each clock at the instant that time has reached.
+        residual: the residual after the last position.
+        ages: of each clock now, ticks.
     """
     settled: dict[Atom, Residual] = {}
     for clause in residual:
@@ -162,7 +162,7 @@ def after(residual: Residual, ages: Sequence[int]) -> Residual:
 
 
 def value(residual: Residual) -> int:
-    """The truth value of the prefix that left this residual."""
+    """The truth value of a prefix that leads to this residual."""
     if residual == HOLDS:
         return TRUE
     return UNKNOWN if residual else FALSE
@@ -172,14 +172,14 @@ def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
     """Whether the rule for the end of a trace makes the residual true.
 
     Args:
-        residual: what is required, after all windows that are over were settled.
-        ages: of each clock at the end of the trace.
+        residual: the residual with all closed windows decided (`after`).
+        ages: of each clock at the end of the trace, ticks.
     """
     return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)
 
 
 def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
-    """An unbounded `R` whose window has opened (SEMANTICS 3, The end)."""
+    """Whether the atom is an unbounded `R` whose window has opened (SEMANTICS 3, The end)."""
     node, clock = atom
     if not isinstance(node, Release) or node.high is not None:
         return False
@@ -187,11 +187,12 @@ def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
 
 
 class Duals:
-    """Builds residuals over known propositions only, so that each has a negation.
+    """Builds residuals under the assumption that every proposition is known, and negates them.
 
-    What it makes has literals of two senses only (`is known to be false` is `is false` there), and
-    their propositions are no combinations of others. What lies ahead of an operator of the past is
-    taken to be as it should: with that, what it makes is not equivalent but weaker.
+    Literals of the result have the senses TRUE and FALSE only (KNOWN_FALSE is FALSE if everything
+    is known), and their propositions are no Boolean combinations. A past operator above a future
+    one is replaced by true in either polarity, so a result that has one is only implied by the
+    original.
     """
 
     def __init__(self) -> None:
@@ -199,16 +200,16 @@ class Duals:
         self._made: dict[tuple[Core, bool], Core] = {}
 
     def affirmed(self, residual: Residual) -> Residual:
-        """The residual itself."""
+        """The residual, rebuilt over known propositions."""
         return frozenset(
             frozenset(self._atom(atom, True) for atom in clause) for clause in residual
         )
 
     def denied(self, residual: Residual, limit: int) -> Residual:
-        """The negation of a residual.
+        """The negation of a residual, rebuilt over known propositions.
 
         Raises:
-            TooManyClausesError: it may have more than `limit` clauses.
+            TooManyClausesError: the negation may have more than `limit` clauses.
         """
         result = HOLDS
         for clause in residual:
@@ -225,7 +226,7 @@ class Duals:
         return made, clock
 
     def of(self, node: Core, positive: bool) -> Core:
-        """A formula or its negation."""
+        """A formula (`positive`) or its negation, rebuilt over known propositions."""
         key = (node, positive)
         found = self._made.get(key)
         if found is None:
@@ -256,7 +257,7 @@ class Duals:
                 assert_never(node)
 
     def _state(self, state: State, positive: bool) -> Core:
-        """A state formula as a combination of what is read off the input, or off the past."""
+        """A state formula, or its negation, over literals of leaves and of past operators."""
         match state.op:
             case StateOp.NOT:
                 return self._state(state.args[0], not positive)

@@ -1,6 +1,6 @@
 """Minimises automata: fewer locations, age regions, clocks and classes of letters.
 
-Source: partition refinement after Moore 1956; clocks that are not read again after Daws and Yovine
+Source: partition refinement after Moore 1956; elimination of dead clocks after Daws and Yovine
 1996, Reducing the number of clock variables of timed automata.
 """
 
@@ -16,17 +16,17 @@ from rvmon.logic.letters import LetterClasses, LetterDiagram
 from rvmon.logic.residual import NO_CLOCK, Residual
 
 Label = Callable[[Residual], Hashable]
-"""What is reported of a residual; locations of which it differs are kept apart."""
+"""The reported part of a residual: locations that differ in it are not merged."""
 
 Edge = tuple[int, tuple[int, ...]]
 Row = tuple[tuple[Edge | None, ...], int, int]
-"""Per class of letters the edge, or `None` where no run comes; the value in time, at the end."""
+"""Per class of letters the edge (`None`: unreachable); then the time value and the end value."""
 
 Regions = tuple[int, ...]
 
 
 @dataclass(slots=True)
-class _Place:
+class _DraftLocation:
     """A location under minimisation: its residual, clock regions and outgoing edges."""
 
     residual: Residual
@@ -39,8 +39,8 @@ def reduce(automaton: Automaton, label: Label | None = None) -> Automaton:
 
     Args:
         automaton: as constructed.
-        label: key that merged locations must share, so that what is shown stays right; clocks are
-            kept then, too. `None`: only verdicts are preserved.
+        label: key that merged locations must share, so that explanations stay right; clocks are
+            then kept too. `None`: only verdicts are preserved.
     """
     draft = _Draft(automaton)
     while draft.merge(label) or draft.drop_cuts() or (label is None and draft.drop_clocks()):
@@ -59,23 +59,23 @@ class _Draft:
         ]
         edges.append(None)  # for −1
         width = automaton.classes
-        self.places: list[_Place] = []
+        self.drafts: list[_DraftLocation] = []
         for location, base in zip(automaton.locations, automaton.bases, strict=True):
             rows: dict[Regions, Row] = {}
             for row, regions in enumerate(_vectors(location.cuts), base):
                 numbers = automaton.edges[row * width : (row + 1) * width]
                 values = automaton.time_values[row], automaton.end_values[row]
                 rows[regions] = (tuple(map(edges.__getitem__, numbers)), *values)
-            self.places.append(_Place(location.residual, location.cuts, rows))
+            self.drafts.append(_DraftLocation(location.residual, location.cuts, rows))
 
     # Locations.
 
     def merge(self, label: Label | None) -> bool:
-        """Make equivalent locations one; returns whether there were any."""
-        blocks = self._numbered([self._look(index, label) for index in range(len(self.places))])
+        """Merge equivalent locations; returns whether there were any."""
+        blocks = self._numbered([self._key(index, label) for index in range(len(self.drafts))])
         while True:
             finer = self._numbered(
-                [(blocks[index], self._moves(index, blocks)) for index in range(len(self.places))]
+                [(blocks[index], self._moves(index, blocks)) for index in range(len(self.drafts))]
             )
             if max(finer) == max(blocks):
                 break
@@ -84,10 +84,10 @@ class _Draft:
             blocks = self._with_initial(blocks)
         chosen: dict[int, int] = {}
         for index, block in enumerate(blocks):
-            # Nobody asks what is open in the initial location: the other one speaks for both.
+            # The residual of the initial location is never reported: keep that of the other one.
             if block not in chosen or chosen[block] == self.initial:
                 chosen[block] = index
-        if len(chosen) == len(self.places):
+        if len(chosen) == len(self.drafts):
             return False
         kept = sorted(chosen.values())
         renamed = {blocks[index]: new for new, index in enumerate(kept)}
@@ -100,18 +100,18 @@ class _Draft:
             new = (renamed[blocks[edge[0]]], edge[1])
             return known.setdefault(new, new)
 
-        self.places = [self.places[index] for index in kept]
+        self.drafts = [self.drafts[index] for index in kept]
         self._rewrite(lambda _, edge: moved(edge))
         return True
 
-    def _look(self, index: int, label: Label | None) -> Hashable:
+    def _key(self, index: int, label: Label | None) -> Hashable:
         """The initial key of partition refinement."""
         if index <= PASSED or index == self.initial:
             return index
-        place = self.places[index]
-        values = tuple(row[1:] for row in place.rows.values())
-        labelled = None if label is None else label(place.residual)
-        return place.cuts, values, end_clauses(place.residual), labelled
+        draft = self.drafts[index]
+        values = tuple(row[1:] for row in draft.rows.values())
+        labelled = None if label is None else label(draft.residual)
+        return draft.cuts, values, end_clauses(draft.residual), labelled
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
         """The successors of a location, up to the current partition."""
@@ -123,16 +123,16 @@ class _Draft:
                 seen[key] = (blocks[edge[0]], edge[1])
             return seen[key]
 
-        return tuple(tuple(map(move, edges)) for edges, _, _ in self.places[index].rows.values())
+        return tuple(tuple(map(move, edges)) for edges, _, _ in self.drafts[index].rows.values())
 
     def _with_initial(self, blocks: list[int]) -> list[int]:
-        """Merge the initial location with one of equal successors, if no attempt stays in it."""
+        """Merge the initial location into one with equal successors, if no edge returns to it."""
         initial = self.initial
-        if initial <= PASSED or self.places[initial].cuts or self._is_entered(initial):
+        if initial <= PASSED or self.drafts[initial].cuts or self._is_entered(initial):
             return blocks
         moves = self._moves(initial, blocks)
-        for index in range(PASSED + 1, len(self.places)):
-            same = not self.places[index].cuts and self._moves(index, blocks) == moves
+        for index in range(PASSED + 1, len(self.drafts)):
+            same = not self.drafts[index].cuts and self._moves(index, blocks) == moves
             if index != initial and same:
                 return [blocks[index] if old == blocks[initial] else old for old in blocks]
         return blocks
@@ -141,44 +141,44 @@ class _Draft:
         """Whether an edge leads to a location."""
         return any(
             edge is not None and edge[0] == index
-            for place in self.places
-            for edges, _, _ in place.rows.values()
+            for draft in self.drafts
+            for edges, _, _ in draft.rows.values()
             for edge in edges
         )
 
     @staticmethod
-    def _numbered(looks: list[Hashable]) -> list[int]:
+    def _numbered(keys: list[Hashable]) -> list[int]:
         numbers: dict[Hashable, int] = {}
-        return [numbers.setdefault(look, len(numbers)) for look in looks]
+        return [numbers.setdefault(key, len(numbers)) for key in keys]
 
     # Regions.
 
     def drop_cuts(self) -> bool:
-        """Merge regions in which all is the same; returns whether there were any."""
+        """Merge neighbouring regions with equal rows; returns whether there were any."""
         found = False
-        for place in self.places:
-            for clock in range(len(place.cuts)):
+        for draft in self.drafts:
+            for clock in range(len(draft.cuts)):
                 cut = 0
-                while cut < len(place.cuts[clock]):
-                    joined = _joined(place, clock, cut)
+                while cut < len(draft.cuts[clock]):
+                    joined = _rows_without(draft, clock, cut)
                     if joined is None:
                         cut += 1
                     else:
-                        place.cuts = _without(place.cuts, clock, cut)
-                        place.rows = joined
+                        draft.cuts = _without(draft.cuts, clock, cut)
+                        draft.rows = joined
                         found = True
         return found
 
     # Clocks.
 
     def drop_clocks(self) -> bool:
-        """Leave out the clocks that are not read again; returns whether there were any."""
+        """Drop the clocks that are not read again; returns whether there were any."""
         live = self._live_clocks()
         kept = [
-            [clock for clock in range(len(place.cuts)) if (index, clock) in live]
-            for index, place in enumerate(self.places)
+            [clock for clock in range(len(draft.cuts)) if (index, clock) in live]
+            for index, draft in enumerate(self.drafts)
         ]
-        if all(len(own) == len(place.cuts) for own, place in zip(kept, self.places, strict=True)):
+        if all(len(own) == len(draft.cuts) for own, draft in zip(kept, self.drafts, strict=True)):
             return False
 
         def moved(index: int, edge: Edge | None) -> Edge | None:
@@ -189,31 +189,31 @@ class _Draft:
             return target, tuple(s if s < 0 else kept[index].index(s) for s in chosen)
 
         self._rewrite(moved)
-        for place, own in zip(self.places, kept, strict=True):
+        for draft, own in zip(self.drafts, kept, strict=True):
             number = {old: new for new, old in enumerate(own)}
-            place.residual = frozenset(
+            draft.residual = frozenset(
                 frozenset((node, number.get(clock, NO_CLOCK)) for node, clock in clause)
-                for clause in place.residual
+                for clause in draft.residual
             )
-            place.rows = {
-                tuple(regions[clock] for clock in own): row for regions, row in place.rows.items()
+            draft.rows = {
+                tuple(regions[clock] for clock in own): row for regions, row in draft.rows.items()
             }
-            place.cuts = tuple(place.cuts[clock] for clock in own)
+            draft.cuts = tuple(draft.cuts[clock] for clock in own)
         return True
 
     def _live_clocks(self) -> set[tuple[int, int]]:
-        """The live clocks: those whose age is read in a location, or later."""
+        """The live clocks, as (location, clock): their age is read there or later."""
         live = {
             (index, clock)
-            for index, place in enumerate(self.places)
-            for clock in range(len(place.cuts))
-            if place.cuts[clock]
-            or any(clock == test[0] for c in end_clauses(place.residual) for test in c)
+            for index, draft in enumerate(self.drafts)
+            for clock in range(len(draft.cuts))
+            if draft.cuts[clock]
+            or any(clock == test[0] for c in end_clauses(draft.residual) for test in c)
         }
         passed_on = {
             (index, edge)
-            for index, place in enumerate(self.places)
-            for edges, _, _ in place.rows.values()
+            for index, draft in enumerate(self.drafts)
+            for edges, _, _ in draft.rows.values()
             for edge in edges
             if edge is not None
         }
@@ -227,10 +227,10 @@ class _Draft:
         return live
 
     def _rewrite(self, moved: Callable[[int, Edge | None], Edge | None]) -> None:
-        for index, place in enumerate(self.places):
-            for regions, (edges, time_value, end_value) in place.rows.items():
+        for index, draft in enumerate(self.drafts):
+            for regions, (edges, time_value, end_value) in draft.rows.items():
                 made = {edge: moved(index, edge) for edge in set(edges)}
-                place.rows[regions] = (
+                draft.rows[regions] = (
                     tuple([made[edge] for edge in edges]),
                     time_value,
                     end_value,
@@ -239,8 +239,8 @@ class _Draft:
     # Tables.
 
     def tables(self) -> Automaton:
-        """The minimised automaton, with letters merged that no location distinguishes any more."""
-        rows = [row for place in self.places for row in _in_order(place)]
+        """The minimised automaton, with letter classes merged that no row distinguishes."""
+        rows = [row for draft in self.drafts for row in _in_order(draft)]
         columns: dict[tuple[Edge | None, ...], int] = {}
         new_class = [
             columns.setdefault(column, len(columns))
@@ -251,7 +251,7 @@ class _Draft:
         for place_row in zip(*columns, strict=True):
             for edge in place_row:
                 edges.append(-1 if edge is None else number.setdefault(edge, len(number)))
-        locations = tuple(Location(place.residual, place.cuts) for place in self.places)
+        locations = tuple(Location(draft.residual, draft.cuts) for draft in self.drafts)
         bases, strides, _ = layout_of(locations)
         source = self.source
         return Automaton(
@@ -280,9 +280,9 @@ def _vectors(cuts: tuple[tuple[int, ...], ...]) -> Iterator[Regions]:
     return product(*(range(len(own) + 1) for own in cuts))
 
 
-def _in_order(place: _Place) -> Iterator[Row]:
-    for regions in _vectors(place.cuts):
-        yield place.rows[regions]
+def _in_order(draft: _DraftLocation) -> Iterator[Row]:
+    for regions in _vectors(draft.cuts):
+        yield draft.rows[regions]
 
 
 def _without(
@@ -292,22 +292,22 @@ def _without(
     return (*cuts[:clock], own[:cut] + own[cut + 1 :], *cuts[clock + 1 :])
 
 
-def _joined(place: _Place, clock: int, cut: int) -> dict[Regions, Row] | None:
-    """The rows without a cut; `None` if the regions on its sides differ."""
+def _rows_without(draft: _DraftLocation, clock: int, cut: int) -> dict[Regions, Row] | None:
+    """The rows without a cut; `None` if the regions on its two sides differ."""
     made: dict[Regions, Row] = {}
-    for regions, row in place.rows.items():
+    for regions, row in draft.rows.items():
         region = regions[clock]
         key = (*regions[:clock], region - (region > cut), *regions[clock + 1 :])
         known = made.get(key)
-        both = row if known is None else _either(known, row)
+        both = row if known is None else _merged_row(known, row)
         if both is None:
             return None
         made[key] = both
     return made
 
 
-def _either(one: Row, other: Row) -> Row | None:
-    """A row that replaces both, if there is one; an unreachable entry matches any."""
+def _merged_row(one: Row, other: Row) -> Row | None:
+    """A row that replaces both; `None` if they differ. An unreachable entry matches any edge."""
     if one == other:
         return one
     if one[1:] != other[1:]:

@@ -1,4 +1,4 @@
-"""Residuals: what an attempt still owes, as a reduced disjunctive normal form of timed atoms.
+"""Residuals: the formula an attempt has yet to satisfy, as a reduced DNF of timed atoms.
 
 Source: AUTOMATA 1; reduced DNFs of monotone functions are their prime implicants (Quine 1952).
 """
@@ -13,20 +13,20 @@ NO_CLOCK = -1
 """The clock of an atom that does not depend on when it was instantiated."""
 
 Atom = tuple[Literal | Next | Until | Release, int]
-"""A subformula and the clock that measures its age: clocks count from the oldest, from 0.
+"""A subformula and the clock of its age; clocks are numbered from 0, oldest first.
 
-A literal occurs only where a step is computed for all letters at once.
+Literals are atoms only while a step is computed for all letters at once.
 """
 
 Clause = frozenset[Atom]
 Residual = frozenset[Clause]
-"""A disjunction of conjunctions of atoms, none of which can be dropped."""
+"""A disjunction of conjunctions of atoms, without redundant clauses or atoms."""
 
 HOLDS: Residual = frozenset([frozenset()])
 FAILS: Residual = frozenset()
 
 _MOST_PAIRS = 1 << 10
-"""So many pairs of clauses are reduced at most, if few may be kept."""
+"""The most pairs of clauses that `both` reduces under a limit, whatever the limit."""
 
 
 class TooManyClausesError(Exception):
@@ -34,12 +34,12 @@ class TooManyClausesError(Exception):
 
 
 def _follows(atom: Atom, clause: Clause) -> bool:
-    """Whether another atom of `clause` implies `atom`, whatever comes and wherever the trace ends.
+    """Whether another atom of `clause` implies `atom` for every continuation and every end.
 
-    All are pending. `U[0,b]`: the earlier deadline implies the later one; `R[0,b]`: the later one
-    the earlier. `U[a,inf)`: the later implies the earlier, and also the opened window. For
-    `R[a,inf)` the logic says the opposite of the rule for the end, by which only an opened window
-    counts: neither implies.
+    All atoms are pending. Of `U[0,b]` the earlier deadline implies the later one, of `R[0,b]` the
+    later implies the earlier. Of `U[a,inf)` the later implies the earlier, and also the opened
+    window. Of `R[a,inf)` neither implies the other: logically the earlier is stronger, but at the
+    end of a trace only an opened window counts as true.
     """
     node, clock = atom
     match node:
@@ -90,7 +90,7 @@ def _conjunction(clause: Clause) -> Clause:
 
 
 def _reduced(clauses: Iterable[Clause]) -> Residual:
-    """Without the clauses that imply others; `clauses` are conjunctions without implied atoms."""
+    """The residual of clauses without implied atoms: clauses that imply another one are dropped."""
     ordered = sorted(clauses, key=len)
     if ordered and not ordered[0]:
         return HOLDS
@@ -108,7 +108,7 @@ def _reduced(clauses: Iterable[Clause]) -> Residual:
 
 
 def _rigid(clause: Clause) -> Clause:
-    """The atoms that follow from no other: a clause that implies this one has them, too."""
+    """The atoms that no other atom implies; a clause that implies this one must contain them."""
     return frozenset([atom for atom in clause if not isinstance(atom[0], (Until, Release))])
 
 
@@ -125,7 +125,7 @@ def substitute(
         TooManyClausesError: an intermediate result may have more than `limit` clauses.
     """
     found: set[Clause] = set()
-    # What is met on the way depends on the order: whether it keeps to a limit must not.
+    # Sets iterate in any order; whether an intermediate result exceeds the limit must not vary.
     ordered = residual if limit is None else sorted(residual, key=_in_order)
     for clause in ordered:
         made: Residual = frozenset([clause.difference(values)])

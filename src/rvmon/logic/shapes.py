@@ -2,9 +2,9 @@
 
 Locations with different residuals stay apart, so that a run can be explained by its location.
 
-An automaton depends on the order of the bounds, and on their distances where these are small: an
-age that `construct` meets is 0 or a bound, plus one tick per step taken after it. So bounds that
-lie far apart are replaced by small ones in the same order, and put back afterwards.
+An automaton depends on the order of the bounds, and on their distances only where these are small:
+an age that `construct` meets is 0 or a bound, plus one tick per step taken after it. So bounds that
+lie far apart are replaced by evenly spaced ones in the same order, and put back afterwards.
 """
 
 from __future__ import annotations
@@ -33,36 +33,40 @@ from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
 
 _APART = 1 << 10
-"""Bounds that are replaced lie so many ticks apart, and from 0, or more."""
+"""The least distance in ticks between neighbouring bounds, and from 0, for them to be replaced."""
 
 _STRIDE = 1 << 20
-"""So far apart are those that stand in for them."""
+"""The distance in ticks between the bounds that replace them."""
 
 _Key: TypeAlias = tuple[object, ...]
 
 
 class Shapes:
-    """The reduced automata of a specification, those of one shape made once."""
+    """The reduced automata of a specification, constructed once per shape."""
 
     def __init__(self) -> None:
         self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
         self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
 
     def reduced(self, required: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
-        """The automaton of a formula; `None` if it has none, or that does not close.
+        """The automaton of a formula; `None` if the formula looks back or does not close.
 
-        Its alphabet and residuals speak of the propositions of whichever formula was first asked
-        for, of those that are equal but for propositions; see `residuals`.
+        Of formulas that differ in propositions only, the automaton has the alphabet and residuals
+        of whichever came first; `residuals` translates them.
 
         Args:
-            required: see `rvmon.logic.construct.construct`; so are the others.
-            alphabet: of that formula.
+            required: as for `rvmon.logic.construct.construct`.
+            alphabet: the alphabet of that formula.
             budget: when to give up.
         """
         return self._found(required, alphabet, budget)[0]
 
     def residuals(self, required: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
-        """What a formula owes in each location of its automaton, which it has; see `reduced`."""
+        """The residual of each location of a formula's automaton, over its own propositions.
+
+        Raises:
+            ValueError: `reduced` gives no automaton for it.
+        """
         automaton, nodes = self._found(required, alphabet, budget)
         if automaton is None:
             raise ValueError("it has no automaton")
@@ -96,11 +100,11 @@ class Shapes:
             others = _with_bounds(nodes, stand_ins)
             made, steps = _constructed(others, alphabet, budget)
             is_same = all(old == new for old, new in stand_ins.items())
-            # The oldest clock may be as much older than the youngest as there are clocks.
+            # Clocks differ in age by a tick each: the oldest may lead by the number of clocks.
             is_general = is_same or steps + budget.clocks < _APART
             self._shapes[shape] = (made, others) if is_general else None
         found = self._shapes[shape]
-        if found is None:  # then it matters how far they are apart
+        if found is None:  # the distances of its bounds matter after all
             return _constructed(nodes, alphabet, budget)[0]
         automaton, others = found
         if automaton is None:
@@ -112,7 +116,7 @@ class Shapes:
 def _constructed(
     nodes: Sequence[Core], alphabet: Alphabet, budget: Budget
 ) -> tuple[Automaton | None, int]:
-    """The reduced automaton of the last of some nodes, and how far behind a bound an age was."""
+    """The reduced automaton of the last node, and the most ticks by which an age passed a bound."""
     ages: set[int] = set()
     try:
         made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages), _itself)
@@ -126,7 +130,7 @@ def _itself(residual: Residual) -> Residual:
 
 
 def _nodes(required: Core) -> list[Core]:
-    """A formula and all that it is made of, operands first."""
+    """A formula and its subformulas, operands first."""
     found: dict[int, Core] = {}
     stack = [required]
     while stack:
@@ -138,14 +142,14 @@ def _nodes(required: Core) -> list[Core]:
 
 
 def _parts(node: Core) -> Iterator[Core]:
-    """The operands of a node, and what is left of its window once that is open."""
+    """The operands of a node, and its `opened` form."""
     yield from parts_of(node)
     if isinstance(node, Until | Release) and node.opened is not None:
         yield node.opened
 
 
 def _bounds(node: Core) -> Iterator[int]:
-    """The bounds of a node."""
+    """The ages, other than 0, at which the window of a node opens and is over."""
     if isinstance(node, Until | Release):
         if node.low:
             yield node.low
@@ -163,7 +167,7 @@ def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
 def _description(
     nodes: Sequence[Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
 ) -> Iterator[object]:
-    """The key of a shape: the formula without the names of its propositions."""
+    """The key of a shape: the formula with numbered propositions and stand-in bounds."""
     place = {id(node): number for number, node in enumerate(nodes)}
     digits = {state: number for number, state in enumerate(alphabet.propositions)}
     for node in nodes:
@@ -204,14 +208,14 @@ def _with_bounds(nodes: Sequence[Core], stand_ins: Mapping[int, int]) -> Sequenc
 
 
 def _renamed(residual: Residual, own: Mapping[int, Any]) -> Residual:
-    """A residual with the nodes that others stood in for, which are found by their `id`."""
+    """A residual over other nodes; `own` maps the `id()` of each present node to its new one."""
     return frozenset(
         frozenset((own[id(node)], clock) for node, clock in clause) for clause in residual
     )
 
 
 def _put_back(automaton: Automaton, own: Mapping[int, Any], bounds: Mapping[int, int]) -> Automaton:
-    """An automaton with the nodes and bounds of a formula that others stood in for."""
+    """An automaton with stand-in nodes and bounds replaced by those of the actual formula."""
     locations = tuple(
         Location(
             _renamed(location.residual, own),

@@ -1,4 +1,4 @@
-"""State formulas: present and past only, so their value is known at once; and what atoms read."""
+"""State formulas (present and past only, valued at each position) and the inputs atoms read."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rvmon.spec.checked.formula import (
 
 
 def operands(expression: Numeric) -> Iterator[Numeric]:
-    """What an expression is made of, without the operations."""
+    """The non-arithmetic leaves of a numeric expression."""
     match expression:
         case Arithmetic(args=args):
             for arg in args:
@@ -36,7 +36,7 @@ def operands(expression: Numeric) -> Iterator[Numeric]:
 
 
 def signals_of(atom: SignalAtom | Compare) -> dict[str, bool]:
-    """The signals that an atom reads; of each, whether it asks for an update after its birth.
+    """The signals an atom reads; the value says whether it needs an update after the birth.
 
     Source: SEMANTICS, section 1 (Birth).
     """
@@ -50,7 +50,7 @@ def signals_of(atom: SignalAtom | Compare) -> dict[str, bool]:
 
 
 def reads_fields(atom: SignalAtom | Compare) -> bool:
-    """Whether it speaks of the payload of an event."""
+    """Whether an atom reads a payload field of an event."""
     return isinstance(atom, Compare) and any(
         isinstance(part, FieldValue) for part in (*operands(atom.left), *operands(atom.right))
     )
@@ -91,7 +91,7 @@ class Unborn:
     """Some signal has had no known value yet; two-valued.
 
     Attributes:
-        signals: by name, whether an update after the first known value is asked for, too.
+        signals: names, and whether an update after the first known value is needed as well.
     """
 
     signals: tuple[tuple[str, bool], ...]
@@ -104,21 +104,21 @@ class Lost:
 
 @dataclass(frozen=True, slots=True)
 class Lapsed:
-    """It is not known any more which values an attempt has captured; two-valued."""
+    """The captured values of the attempt have become uncertain; two-valued."""
 
 
 InputState = Lost | Unborn | Lapsed
-"""What speaks of what is known, not of what is there."""
+"""Leaves about the state of knowledge, not about values of the input."""
 
 Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
-"""What has a name in a spec."""
+"""Leaves that can be written in a specification."""
 
 Leaf = InputState | Shown | Constant | Elapsed
-"""What is read off the input; spans are dropped, so that equal leaves are one."""
+"""A leaf of a state formula; without spans, so that equal leaves are interned as one."""
 
 
 class StateOp(Enum):
-    """Operators of state formulas, the least set that expresses all of SEMANTICS 1 to 3."""
+    """Operators of state formulas, a minimal set that expresses SEMANTICS 1 to 3."""
 
     LEAF = "leaf"
     NOT = "not"
@@ -129,32 +129,32 @@ class StateOp(Enum):
     AMOUNT = "amount"
     PASSED = "passed"
     COMPARED = "compared"
-    """A comparison of windows; its operands: whether the rest is known, and then these."""
+    """A comparison between windows; operands: `known` of the other sides, then the windows."""
     SURE = "sure"
     """Two-valued: the operand is TRUE."""
     DOUBT = "doubt"
-    """Whether a trigger may have been hidden: UNKNOWN at each position at which an attempt may
-    start, or not; TRUE at the others of a stretch behind the first of these; else FALSE."""
+    """Whether a trigger may have been hidden: UNKNOWN where it is uncertain whether an attempt
+    starts, TRUE at the other positions of that stretch from its first such one, else FALSE."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """A state formula, made by `Factory`: equal ones are the same object.
+    """A state formula, interned by `Factory`: equal ones are the same object.
 
     Attributes:
-        id: position in the order of making; operands come before what they are part of.
+        id: creation order; operands have smaller ids than the operators above them.
         op: the operator.
         args: its operands.
         leaf: what a `LEAF` reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
-        amount: of `AMOUNT`, what is measured; its operands are those of the state. A window alone
-            is TRUE where it is known, and has a number.
+        amount: of `AMOUNT`, the measured window, with or without a limit; its operands are `args`.
+            Without a limit the state is TRUE where the window's number is known.
         compared: of `COMPARED`, the comparison.
-        passed: of `PASSED`, what time is asked for; the operand says whether it is known.
-        unborn: of a `LEAF` over signals, the truth that it has before their birth.
-        pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
-        every: of `DOUBT`, whether no trigger is sure.
+        passed: of `PASSED`, the instant and duration compared; `args` says whether it is known.
+        unborn: of a `LEAF` over signals, its truth value before their birth.
+        pulse: of `DOUBT`, whether the trigger is a pulse (starts an attempt wherever it is true).
+        every: of `DOUBT`, whether even a TRUE trigger counts as uncertain.
     """
 
     id: int

@@ -1,6 +1,7 @@
 """The state formulas of requirements as one graph with shared nodes.
 
-Instances of a `for each`, and attempts with captured values, depend on nodes of this graph.
+Here, too: which nodes depend on captured values, and on which events the instances of a `for each`
+depend.
 """
 
 from __future__ import annotations
@@ -67,15 +68,15 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Graph:
-    """The nodes, operands first.
+    """State formulas as a directed acyclic graph; a place is an index into `nodes`.
 
     Attributes:
-        nodes: the state formulas.
-        index: their places in `nodes`.
-        operands: per node the places of its operands.
-        parents: per node the places of those it is an operand of.
-        by_name: per signal and event, the leaves that read it.
-        stateful: the nodes with memory, and those that change by time alone.
+        nodes: the state formulas, operands first.
+        index: the place of each state formula.
+        operands: per node, the places of its operands.
+        parents: per node, the places of the nodes of which it is an operand.
+        by_name: per signal and event, the places of the leaves that read it.
+        stateful: places of the nodes with memory, or that change by time alone.
         remembers_captured: whether a node with memory depends on captured values.
     """
 
@@ -89,7 +90,7 @@ class Graph:
 
 
 def begun_by(state: State) -> str | None:
-    """The captured instant before which a window has no members; `None`: there is none."""
+    """The name of the captured instant at which a window begins; `None` if there is none."""
     if state.amount is None:
         return None
     begun = [part.passed for part in _members(state) if part.passed and part.passed.begins]
@@ -97,7 +98,10 @@ def begun_by(state: State) -> str | None:
 
 
 def begins_with_attempt(state: State) -> bool:
-    """Whether a window has no members before an attempt, and nothing else of it is captured."""
+    """Whether a window begins at a captured instant and reads no other captured value.
+
+    Such a window needs no memory from before its attempt.
+    """
     if state.amount is None or begun_by(state) is None:
         return False
     others = [part for part in _members(state) if not (part.passed and part.passed.begins)]
@@ -107,7 +111,7 @@ def begins_with_attempt(state: State) -> bool:
 
 
 def _members(state: State) -> Sequence[State]:
-    """What all has to be so where a window has a member."""
+    """The conjuncts that must be true at a position for it to be a member of the window."""
     members = state.args[0]
     return members.args if members.op is StateOp.AND else (members,)
 
@@ -133,7 +137,7 @@ def leaf_texts(
     for place, state in enumerate(graph.nodes):
         above = [graph.nodes[parent].op for parent in graph.parents[place]]
         if above and all(op is StateOp.COMPARED for op in above):
-            continue  # what is compared says it
+            continue  # the comparison above it shows the value
         leaf = state.leaf or state.compared
         if isinstance(leaf, Shown) and not _is_captured(leaf):
             own = found.setdefault(_text_of(leaf), {})
@@ -144,13 +148,13 @@ def leaf_texts(
 
 
 def _is_captured(leaf: Shown) -> bool:
-    """Whether it reads nothing but captured values."""
+    """Whether a comparison reads neither input nor windows: captured values and constants only."""
     sides = (leaf.left, leaf.right) if isinstance(leaf, Compare) else ()
     return bool(sides) and not inputs_of(*sides) and not windows_in(*sides)
 
 
 def _text_of(leaf: Shown) -> str:
-    """A leaf in the language; what compares a number with itself asks whether that is known."""
+    """A leaf in the language; `x == x` is `known(x)`."""
     match leaf:
         case Compare(op=CompareOp.EQ, left=left, right=right) if left == right:
             return f"known({format_numeric(left)})"
@@ -162,9 +166,9 @@ def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State])
     """The nodes that matter once every signal is born and every trigger was true or false.
 
     Args:
-        graph: of the roots at least.
-        roots: the state formulas that are asked for.
-        determined: what is true from then on.
+        graph: has all the roots.
+        roots: the state formulas whose values are needed.
+        determined: the formulas that are TRUE from then on.
     """
     settled: list[int | None] = []
     for state, operands in zip(graph.nodes, graph.operands, strict=True):
@@ -182,7 +186,7 @@ def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State])
 
 
 def _settled(state: State, operands: Sequence[int | None]) -> int | None:
-    """The truth that a node has from then on; `None`: it goes on changing."""
+    """The constant truth value of a node from then on; `None` if it goes on changing."""
     known = [one for one in operands if one is not None]
     match state.op:
         case StateOp.LEAF:
@@ -214,12 +218,12 @@ def _all_of(roots: Iterable[State]) -> set[State]:
 
 
 def leaf_count(roots: Iterable[State]) -> int:
-    """How many leaves of state formulas are read off the input."""
+    """The number of leaves of the roots that can be written in a specification."""
     return sum(isinstance(state.leaf, Shown) for state in _all_of(roots))
 
 
 def graph_of(roots: Iterable[State]) -> Graph:
-    """The graph of some state formulas."""
+    """The graph of the roots and all their subformulas."""
     nodes = tuple(sorted(_all_of(roots), key=lambda state: state.id))
     index = {state: place for place, state in enumerate(nodes)}
     operands = tuple(tuple(index[arg] for arg in state.args) for state in nodes)
@@ -256,14 +260,14 @@ def graph_of(roots: Iterable[State]) -> Graph:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What the instances of a requirement depend on.
+    """The dependencies of the instances of a `for each` requirement; a key is an instance's value.
 
     Attributes:
-        own: the nodes whose value depends on the instance's, or that read its event.
-        fields: by event, the field that has to have the value; else it does not concern it.
-        others: the names that concern all instances.
-        is_fresh: whether one can be made from what an instance of no value remembers.
-        begins: whether nothing starts in it but where its event occurs.
+        own: the nodes that depend on the key, or that read the event of the `for each`.
+        fields: by event, the field that must equal the key for it to concern an instance.
+        others: the names whose updates concern all instances.
+        is_fresh: whether an instance can be forked from the memory of an instance without a key.
+        begins: whether an attempt starts only where the event of the `for each` occurs.
     """
 
     own: frozenset[int]
@@ -274,10 +278,10 @@ class Reach:
 
 
 def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: bool) -> Reach:
-    """What the instances of a requirement depend on.
+    """The dependencies of the instances of a requirement.
 
-    Occurrences of its event that an instance of no value sees are unknown, and so are comparisons
-    of their fields, with whatever value.
+    For an instance without a key, occurrences of the event are unknown, and so are comparisons of
+    its fields with any value.
     """
     event = each.value.event
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
@@ -299,15 +303,15 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
 
 
 def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, FieldValue]:
-    """By event, the field whose value says which instance it concerns; other events concern all.
+    """By event, the field that selects the instance it concerns; other events concern them all.
 
-    What else is said of such an event is said together with that: wherever the field has another
-    value, the conjunction is FALSE as if it did not occur.
+    An event has such a field if every leaf over it compares the field with the key, or is conjoined
+    with a leaf that does: for any other instance the conjunction is FALSE, as without the event.
 
     Args:
-        graph: of the whole requirement.
-        each: of that.
-        asked: the state formulas of which somebody asks the values.
+        graph: the graph of the whole requirement.
+        each: its `for each` clause.
+        asked: the state formulas whose values are used; a bare leaf among them must be exact.
     """
     found = {each.value.event: each.value}
     roots = {graph.index[state] for state in asked}
@@ -331,14 +335,14 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, Fi
 
 
 def varying(graph: Graph) -> frozenset[int]:
-    """The nodes whose value depends on captured values, or on whether these are known."""
+    """The nodes that depend on captured values, or on whether these are still certain."""
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
     reads = [n for n, leaf in leaves.items() if isinstance(leaf, Lapsed) or captured_names(leaf)]
     return above(graph, reads)
 
 
 def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
-    """Some nodes and all nodes that depend on them."""
+    """Some nodes with all that depend on them."""
     found = set(leaves)
     for place, operands in enumerate(graph.operands):
         if not found.isdisjoint(operands):
@@ -347,7 +351,7 @@ def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
 
 
 def _compared(leaf: Leaf, event: str, name: str) -> FieldValue | None:
-    """The field of an event that a leaf compares with a captured value, if it asks no more."""
+    """The field of an event if the leaf is `event.field == name`, for a captured `name`."""
     match leaf:
         case Compare(CompareOp.EQ, FieldValue() as field, Captured(name=found)):
             pass

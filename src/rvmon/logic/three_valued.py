@@ -1,7 +1,7 @@
 """Translates formulas of the present and past from four truth values to three.
 
 Before its signals are born a proposition has a fourth value, unborn. No monitor represents it: the
-context of a formula fixes what unborn counts as, and the formula is rewritten accordingly.
+context of a formula fixes the value that replaces unborn, and the formula is rewritten for it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rvmon.logic.formula import Factory
-from rvmon.logic.four_valued import Four, same
+from rvmon.logic.four_valued import Four, always_read_as
 from rvmon.logic.state_formula import (
     FALSE,
     TRUE,
@@ -47,10 +47,11 @@ class Reader(Reading[Four]):
     """Translates formulas of the present and past to state formulas.
 
     Args:
-        factory: where they are made.
+        factory: makes the state formulas.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
-        measured: whether the result must have the robustness of the formula, not only its truth
-            value; that takes more formulas.
+        measured: whether the result must preserve the robustness of the formula, not only its
+            truth value; that takes larger formulas.
+        held: whether every tick is a position.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
@@ -67,16 +68,16 @@ class Reader(Reading[Four]):
         self.period = period
         self.measured = measured
         self.held = held
-        self._in_truth = Reader(factory, period) if measured else self
+        self._truth_reader = Reader(factory, period) if measured else self
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
-        """The state formula in which each unborn proposition, not the whole, counts as `unborn`.
+        """The state formula with each unborn proposition, not the whole, replaced by `unborn`.
 
-        A proposition is an atom or an operator of the past.
+        A proposition is an atom or a past operator with its operands.
         """
         key = id(formula), unborn
-        if key not in self._literals:  # what `<->` is expressed by has each operand twice
+        if key not in self._literals:  # rewriting `<->` duplicates its operands
             self._literals[key] = formula, self._literal(formula, unborn)
         return self._literals[key][1]
 
@@ -94,9 +95,9 @@ class Reader(Reading[Four]):
                 return self.four(formula).read(unborn)
 
     def four(self, formula: Formula) -> Four:
-        """A formula with its four values."""
+        """The four-valued reading of a formula."""
         match formula:
-            # The instant before and a whole stretch have births of their own.
+            # Rewriting these would lose the birth at the previous position, or of the window.
             case Unary(op=UnaryOp.RISE, operand=operand):
                 arg = self.four(operand)
                 return self._all([arg, self.no(self._before(arg))])
@@ -104,7 +105,7 @@ class Reader(Reading[Four]):
                 arg = self.four(operand)
                 return self._all([self.no(arg), self._before(arg)])
             case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
-                return self._held(self.four(operand), self._in_truth.four(operand), interval)
+                return self._held(self.four(operand), self._truth_reader.four(operand), interval)
             case Unary() | Binary():
                 return read(formula, self.four, self)
             case Amount() if self.measured and formula.has_distance(held=self.held):
@@ -115,51 +116,51 @@ class Reader(Reading[Four]):
                 return self._compared(formula)
             case Passed(known=known):
                 value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
-                return self._born_with(value, (self._unborn(known),))
+                return self._unborn_until(value, (self._unborn(known),))
             case Constant(value=value):
                 return self.constant(value)
             case _:
                 return self._atom(formula)
 
     def _amount(self, formula: Amount) -> Four:
-        """A window beside a limit: unborn members add nothing; the limit must be born first."""
+        """A window against a limit: unborn members add nothing; unborn until the limit is born."""
         states = [
-            self._in_truth.four(part).read(UNKNOWN if part is formula.known else FALSE)
+            self._truth_reader.four(part).read(UNKNOWN if part is formula.known else FALSE)
             for part in formula.operands
         ]
         value = self.factory.amount(formula, *states)
-        return self._born_with(value, map(self._unborn, formula.born_with))
+        return self._unborn_until(value, map(self._unborn, formula.born_with))
 
     def _compared(self, formula: Compare) -> Four:
-        """Of windows: unknown where one has no number, or something else is not known."""
+        """A comparison of windows: unknown where a side has no known number."""
         factory, leaf = self.factory, without_spans(formula)
         parts = [part for side in (leaf.left, leaf.right) for part in operands(side)]
         known = [itself(part) for part in parts if isinstance(part, Read)]
         states, asked = [self.four(one).read(UNKNOWN) for one in known], [*map(self._unborn, known)]
         for window in windows_in(leaf.left, leaf.right):
-            own = (self._in_truth.four(part).read(FALSE) for part in window.operands)
+            own = (self._truth_reader.four(part).read(FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
             for unborn in map(self._unborn, window.born_with):
-                if window.measured is Measured.AGO:  # it was not, so long ago
+                if window.measured is Measured.AGO:  # the birth must lie that far back
                     ago, born = window.window or 0, factory.negation(unborn)
                     early = factory.since(factory.state_true, born, ago, ago)
                     unborn = factory.negation(early)
                 asked.append(unborn)
-        return self._born_with(factory.compared(leaf, *dict.fromkeys(states)), asked)
+        return self._unborn_until(factory.compared(leaf, *dict.fromkeys(states)), asked)
 
     def _unborn(self, part: SignalAtom | Compare) -> State:
-        """Whether some signal that is read is unborn."""
+        """Two-valued: some signal that `part` reads is unborn."""
         if isinstance(part, Compare) and windows_in(part.left, part.right):
             return self._compared(part).unborn
         signals = tuple(sorted(signals_of(part).items()))
         return self.factory.leaf(Unborn(signals)) if signals else self.factory.state_false
 
-    def _born_with(self, value: State, asked: Iterable[State]) -> Four:
-        """A value that is unborn until everything in `asked` is born."""
+    def _unborn_until(self, value: State, asked: Iterable[State]) -> Four:
+        """A value that is unborn while some of `conditions` (each "is unborn") is true."""
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
-            return Four(factory, same(value), mortal=False)
+            return Four(factory, always_read_as(value), born_late=False)
 
         def read(reading: int) -> State:
             if reading == UNKNOWN:
@@ -168,59 +169,59 @@ class Reader(Reading[Four]):
                 return factory.state_any([value, unborn])
             return factory.state_all([value, factory.negation(unborn)])
 
-        return Four(factory, read, fades=True, unborn=unborn)
+        return Four(factory, read, stays_born=True, unborn=unborn)
 
     def _atom(self, atom: Atom) -> Four:
         factory = self.factory
         leaf = without_spans(atom)
         if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
-            return Four(factory, lambda _: factory.leaf(leaf), mortal=False)
+            return Four(factory, lambda _: factory.leaf(leaf), born_late=False)
         unborn = None if reads_fields(leaf) else self._unborn(leaf)
         return Four(
             factory,
             lambda reading: factory.leaf(leaf, reading),
-            fades=unborn is not None,
+            stays_born=unborn is not None,
             unborn=unborn,
         )
 
-    # The operators that all others are made of.
+    # The primitive operators of `Reading`; the others are rewritten to them.
 
     def constant(self, value: bool) -> Four:
         """A constant."""
         state = self.factory.state_true if value else self.factory.state_false
-        return Four(self.factory, same(state), mortal=False)
+        return Four(self.factory, always_read_as(state), born_late=False)
 
     def no(self, arg: Four) -> Four:
-        """Not born where its operand is not."""
+        """Negation: unborn where its operand is."""
         if arg.negated is not None:
             return arg.negated
         negation = self.factory.negation
         made = Four(
             self.factory,
             lambda unborn: negation(arg.read(TRUE - unborn)),
-            mortal=arg.mortal,
-            fades=arg.fades,
+            born_late=arg.born_late,
+            stays_born=arg.stays_born,
             unborn=arg._unborn,
         )
         made.negated = arg
         return made
 
     def both(self, left: Four, right: Four) -> Four:
-        """Not born where an operand is not, none is false, and none is unknown."""
+        """Conjunction: unborn where an operand is, and none is false or unknown."""
         return self._all([left, right])
 
     def next(self, _: Four) -> Four:
-        """It does not occur."""
+        """Unreachable: formulas here have no future operators."""
         raise AssertionError("future operators were sorted out")
 
     def until(self, *_: object) -> Four:
-        """It does not occur."""
+        """Unreachable: formulas here have no future operators."""
         raise AssertionError("future operators were sorted out")
 
     def _all(self, args: Sequence[Four]) -> Four:
         factory = self.factory
         args = [part for arg in args for part in arg.parts]
-        # What was lost is not excused by what is not there: with it, the whole is unknown.
+        # Unborn and unknown is unknown: lost input is not excused by a signal yet to be born.
         unborn = self._some_unborn(arg.unborn for arg in args)
 
         def read(reading: int) -> State:
@@ -232,7 +233,7 @@ class Reader(Reading[Four]):
             born_or_not_true = [factory.negation(unborn), factory.negation(joined)]
             return factory.state_all([joined, factory.state_any(born_or_not_true)])
 
-        return Four(factory, read, mortal=any(arg.mortal for arg in args), parts=args)
+        return Four(factory, read, born_late=any(arg.born_late for arg in args), parts=args)
 
     def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
         """All of some, FALSE where one is not born: by any distance, unless one was lost."""
@@ -242,7 +243,7 @@ class Reader(Reading[Four]):
         return factory.state_all([*(arg.read(UNKNOWN) for arg in args), born])
 
     def _some_unborn(self, unborn: Iterable[State]) -> State:
-        """Two-valued: something is not born; what is read off the input is one leaf."""
+        """Two-valued: some of `unborn` is true; all `Unborn` leaves are merged into one."""
         factory = self.factory
         states, signals = [], dict[str, bool]()
         for state in unborn:
@@ -256,29 +257,30 @@ class Reader(Reading[Four]):
         return factory.state_any(states)
 
     def since(self, left: Four, right: Four, interval: Interval) -> Four:
-        """`since` passes over positions at which an operand is unborn."""
+        """`since`, which skips positions where an operand is unborn."""
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
             return self.constant(False)
         value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
-        if low > 0 or right.mortal:
+        if low > 0 or right.born_late:
             value = self._or_lost(value, left, right, low, high)
-        if not right.mortal:
-            return Four(factory, same(value), mortal=False)
-        if right.fades and low == 0:
-            # In an outage before the first sample it may be born, or not.
+        if not right.born_late:
+            return Four(factory, always_read_as(value), born_late=False)
+        if right.stays_born and low == 0:
+            # `sure`: an outage before the first sample leaves it open whether it is born.
             unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])
         else:
             born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
             some = factory.since(factory.state_true, factory.state_true, low, high)
             unborn = factory.state_all([factory.negation(born), some])
-        return self._besides(value, unborn)
+        return self._unborn_where(value, unborn)
 
     def _or_lost(self, value: State, left: Four, right: Four, low: int, high: int | None) -> State:
-        """A `since` that is unknown where its right side was lost throughout the window.
+        """`value`, but unknown where the right side is never known in the window though born.
 
-        That may not be born, then; so it is not false, though the left side be.
+        There a false left side alone does not make it false: what was lost may have been unborn,
+        and unborn positions are skipped.
         """
         factory = self.factory
         if left.read(TRUE) is factory.state_true:
@@ -292,8 +294,8 @@ class Reader(Reading[Four]):
         lost = [factory.negation(once(known)), once(factory.negation(right.unborn))]
         return factory.state_any([value, factory.state_all([*lost, factory.unknown])])
 
-    def _besides(self, value: State, unborn: State) -> Four:
-        """The formula that is not born where `unborn` says so; `value` is FALSE there."""
+    def _unborn_where(self, value: State, unborn: State) -> Four:
+        """The formula that is unborn where `unborn` is TRUE; `value` must be FALSE there."""
         factory = self.factory
 
         def read(reading: int) -> State:
@@ -308,13 +310,13 @@ class Reader(Reading[Four]):
         """`previous` is unborn where its operand was."""
         factory = self.factory
         value = factory.previous(arg.read(FALSE))
-        if not arg.mortal:
-            return Four(factory, same(value), mortal=False)
-        return self._besides(value, factory.previous(arg.unborn))
+        if not arg.born_late:
+            return Four(factory, always_read_as(value), born_late=False)
+        return self._unborn_where(value, factory.previous(arg.unborn))
 
     def _before(self, arg: Four) -> Four:
-        """What it was at the position before: false if not born, as what lies before the trace."""
-        return Four(self.factory, same(self.previous(arg).read(FALSE)), mortal=False)
+        """The value at the previous position; FALSE if unborn there, or if there is none."""
+        return Four(self.factory, always_read_as(self.previous(arg).read(FALSE)), born_late=False)
 
     def _held(self, arg: Four, truth: Four, interval: Interval | None) -> Four:
         """`held` is unborn unless its operand was born throughout."""
@@ -322,9 +324,9 @@ class Reader(Reading[Four]):
         elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
         value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
         missing = self._historically(truth.missing, interval)
-        if not arg.mortal:
+        if not arg.born_late:
             lost = factory.state_all([missing, factory.negation(missing)])
-            return Four(factory, same(factory.state_any([value, lost])), mortal=False)
+            return Four(factory, always_read_as(factory.state_any([value, lost])), born_late=False)
 
         def read(unborn: int) -> State:
             if unborn == TRUE:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
 
-# Recordings in columns are judged without a monitor: a name is imported when it is asked for.
+# Names are imported on first use: judging recordings in columns needs none of these modules.
 _HOMES = {
     "CompiledRequirement": "rvmon.monitor.compile",
     "CompiledSpec": "rvmon.monitor.compiled_spec",

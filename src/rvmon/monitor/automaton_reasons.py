@@ -26,11 +26,11 @@ from rvmon.verdict import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """The part of an explanation that decisions share if they differ in instants only.
+    """The explanation shared by decisions that differ only in instants.
 
     Attributes:
-        cause: of the decision; `None` if no other decision was possible.
-        sentence: a template for the cause.
+        cause: the cause of the decision; `None` if no other decision was possible.
+        sentence: the template for the cause.
     """
 
     cause: Cause | None
@@ -45,9 +45,10 @@ class Finding:
 
 
 class Reasons:
-    """Explains the decisions of one requirement; explanations are cached.
+    """Explains the decisions of one requirement.
 
-    What was required, in which of its windows, and the letter: no more matters to a reason.
+    An explanation depends only on the location, the age regions of its clocks, the letter and the
+    verdict; it is cached by these.
     """
 
     def __init__(self, compiled: CompiledRequirement) -> None:
@@ -59,14 +60,14 @@ class Reasons:
         self._deadlines: dict[int, int | None] = {}
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
-        """For each clock of a location, the ages at which a window opens or is over, ascending."""
+        """For each clock of a location, the ages (ticks) at which a window opens or is over."""
         cuts = self._cuts.get(location)
         if cuts is None:
             cuts = self._cuts[location] = location_of(self._residuals[location]).cuts
         return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        """What is reported of a decision."""
+        """The finding for a decision at `t`, taken in state `before` with `letter`."""
         location, anchors = before
         ages = zip(self.cuts(location), anchors, strict=True)
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
@@ -86,7 +87,7 @@ class Reasons:
         return Finding(cause, self.words.sentence(cause, verdict))
 
     def deadline(self, before: Token) -> int | None:
-        """The last instant before time alone settles what was required; see `Attempt`."""
+        """The last instant before time alone decides the residual; see `Attempt.deadline`."""
         location, anchors = before
         if len(anchors) != 1:
             return deadline(self._residuals[location], anchors)
@@ -108,9 +109,9 @@ def explained(
     """Explain why an attempt was decided.
 
     Args:
-        reasons: of the requirement.
-        before: state of the run at the position before the decision.
-        letter: at the decision.
+        reasons: the explanations of the requirement.
+        before: state of the deciding run at the position before the decision.
+        letter: the letter of that run at the decision.
         verdict: the decision.
         t: instant of the decision, ticks.
         triggered: instant of the trigger, ticks.
@@ -131,7 +132,7 @@ class MachineRuns:
     """The two runs of an automaton for one attempt, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:
-        residuals: what is owed in each location.
+        residuals: the residual of each location.
         position: the last position at which the runs were stepped.
         gap: ticks between two positions; `None` if only samples are positions.
     """
@@ -161,16 +162,15 @@ class MachineRuns:
         )
 
     def _alone(self, token: Token) -> tuple[int, bool] | None:
-        """The value that a run takes if only time passes, and the last instant before it does."""
+        """The last instant before time alone decides a run, and its value; `None` if never."""
         if token[0] <= PASSED:
             return None
         return settled_alone(self.residuals[token[0]], token[1])
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
-        """`P` or `F` if every continuation brings an attempt to it; never folded into its verdict.
+        """See `Judged`; never folded into the verdict.
 
-        What was unknown stays so: `P` if the run that takes it for the worse passes anyway, `F` if
-        the one that takes it for the better fails.
+        `P` if the pessimistic run passes on every continuation, `F` if the optimistic one fails.
         """
         known = (now - 1) // 2
         if self._value(attempt, attempt.worse, known) is True:
@@ -181,7 +181,7 @@ class MachineRuns:
         location, anchors = token
         if location <= PASSED:
             return location != FAILED
-        # Positions that change nothing are not visited.
+        # The core skips positions that change nothing: advance to the last one known.
         gap = self.gap or 1
         at = self.position + max(known - self.position, 0) // gap * gap
         ages = [at - anchor for anchor in anchors]

@@ -1,6 +1,6 @@
-"""Finds the part of a requirement that decided an attempt, and words it in one sentence.
+"""Finds the part of a requirement that decided an attempt, and renders it as one sentence.
 
-Decisions that differ only in instants share one sentence, a template with places for these.
+Decisions that differ only in instants share one sentence, a template with placeholders.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from rvmon.logic.state_formula import FALSE, TRUE, State
 from rvmon.trace.time import format_instant, format_ticks
 
 AT_DECISION = -2
-"""The start of what was instantiated at the instant of the decision; no clock has this number."""
+"""The `start` of an obligation that was instantiated at the decision; not a clock number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +38,10 @@ class Cause:
 
     Attributes:
         node: the obligation, or the literal if none lies above it.
-        start: when the obligation was instantiated. For an automaton the number of the clock that
-            started then, `NO_CLOCK` for the trigger, `AT_DECISION` for the decision itself; for a
-            network the instant, ticks.
-        over: whether the window ran out; else `literal` decided at the instant of the decision.
+        start: when the obligation was instantiated: for a network the instant in ticks; for an
+            automaton the number of the clock started then, `NO_CLOCK` for the trigger, or
+            `AT_DECISION`.
+        over: whether the decision is that its window closed.
         literal: the proposition that decided it, if a single one did.
     """
 
@@ -52,11 +52,12 @@ class Cause:
 
 
 class CauseFinder:
-    """Looks for the cause of a decision.
+    """Finds the cause of a decision of an automaton.
 
     Args:
-        valuation: the truths of the propositions at the decision, as the deciding run takes them.
-        ages: of the clocks at the decision.
+        valuation: the truth values of the propositions at the decision, as the deciding run reads
+            them.
+        ages: the ages of the clocks at the decision, ticks.
         verdict: the decision.
         by_time: whether time alone decided, without a letter.
     """
@@ -76,7 +77,7 @@ class CauseFinder:
         self.wanted = HOLDS if verdict else FAILS
 
     def of(self, residual: Residual) -> Cause | None:
-        """The cause of a decision, which this residual became; `None` if it is constant."""
+        """The cause of the decision of this residual; `None` if it is constant."""
 
         def decided(atom: Atom) -> bool:
             alone: Residual = frozenset([frozenset([atom])])
@@ -122,14 +123,14 @@ class CauseFinder:
                 return None
             case And(args=args) | Or(args=args):
                 decided = [arg for arg in args if instance(arg, self._read) == self.wanted]
-                # What is required over time says more than what was only asked for besides.
+                # A temporal operand explains more than a literal beside it.
                 decided.sort(key=lambda arg: isinstance(arg, Literal))
                 causes = (self._of_instance(arg) for arg in decided)
                 return next((cause for cause in causes if cause is not None), None)
             case Literal() | Next() | Until() | Release():
                 return self._of_atom(node, AT_DECISION)
             case Since() | Previous():
-                raise AssertionError("a residual holds nothing of the past")
+                raise AssertionError("a residual has no past operators")
             case _:
                 assert_never(node)
 
@@ -141,10 +142,10 @@ class Base(Enum):
     """The instant of the decision."""
 
     START = 1
-    """The instant at which what decided was instantiated."""
+    """The instant at which the deciding obligation was instantiated."""
 
     AGE = 2
-    """A duration: the time from that to the decision."""
+    """A duration: the time from `START` to `DECISION`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,8 +164,8 @@ class Place:
         """The value of the placeholder.
 
         Args:
-            decided: the instant of the decision, ticks; or an array of such instants.
-            start: the instant at which what decided was instantiated; or as many.
+            decided: the instant of the decision, ticks, or an array of instants.
+            start: the instant at which the deciding obligation was instantiated, or an array.
         """
         match self.base:
             case Base.DECISION:
@@ -179,13 +180,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Turned:
-    """A placeholder: `was` or `became` true or false, as the proposition did at the decision.
+    """A placeholder: whether a proposition `was` or `became` true or false at the decision.
 
-    It did not become so if it was at the trigger: with that, `whenever` may make one proposition of
-    it, which is otherwise while the trigger is not known.
+    The history of the proposition is not enough: `whenever` may merge it with the trigger, and the
+    merged proposition also changes with that. It did not become so if it was so at the trigger.
 
     Attributes:
-        proposition: which.
+        proposition: the proposition.
         text: its text in the specification.
         seen: `true` or `false`.
     """
@@ -205,8 +206,8 @@ class LastWith:
     """A placeholder: when a proposition last had a truth value.
 
     Attributes:
-        proposition: of which.
-        value: the truth.
+        proposition: the proposition.
+        value: the truth value.
         verb: `been true`, `been false` or `occurred`.
         lasting: whether the value can last longer than single instants.
     """
@@ -229,7 +230,7 @@ class TruthValues:
         words: of them, as the core noted them: of each since when it has this truth, and when it
             was last another than FALSE, and than TRUE; `NEVER` if it was not.
         places: by proposition the place of its truth, and of its words.
-        at_trigger: by text, the truth value of what the requirement reads at the trigger.
+        at_trigger: by text of a leaf, its truth value at the trigger.
     """
 
     origin: int
@@ -245,7 +246,7 @@ class TruthValues:
         return self.words[self.places[proposition][1]]
 
     def last_with(self, proposition: State, value: int, t: int) -> int | None:
-        """The last position up to `t`, not before the present one, with a value."""
+        """The last position up to `t`, the present one, at which it had a truth value."""
         place, at = self.places[proposition]
         if self.truths[place] == value:
             return t
@@ -259,7 +260,7 @@ NEVER = -(1 << 63)
 Part = str | Place | Turned | AfterTrigger | LastWith
 
 Sentence = tuple[Part, ...]
-"""Its parts in order."""
+"""A sentence template: text and placeholders in order."""
 
 
 def rendered(
@@ -269,13 +270,13 @@ def rendered(
 
     Args:
         sentence: the template.
-        decided: its instant, ticks.
-        start: the instant at which what decided was instantiated, ticks.
+        decided: the instant of the decision, ticks.
+        start: the instant at which the deciding obligation was instantiated, ticks.
         triggered: the instant of the trigger of the attempt, ticks.
         flow: truth values at the decision.
     """
 
-    def told(t: int) -> str:
+    def instant_text(t: int) -> str:
         return format_instant(t, flow.origin)
 
     def part(one: Part) -> str:
@@ -284,13 +285,13 @@ def rendered(
                 return one
             case Place(base=base):
                 ticks = one.ticks(decided, start)
-                return format_ticks(ticks) if base is Base.AGE else told(ticks)
+                return format_ticks(ticks) if base is Base.AGE else instant_text(ticks)
             case Turned(proposition=proposition, seen=seen):
                 since = flow.since(proposition)
                 was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
                 verb = "became" if start < since == decided and not was_so else "was"
-                long = f" (since {told(since)})" if since < decided else ""
-                return f"{verb} {seen} at {told(decided)}{long}"
+                long = f" (since {instant_text(since)})" if since < decided else ""
+                return f"{verb} {seen} at {instant_text(decided)}{long}"
             case AfterTrigger():
                 if start != triggered or start == decided:
                     return ""
@@ -298,14 +299,14 @@ def rendered(
             case LastWith(proposition=proposition, value=value, verb=verb):
                 last = flow.last_with(proposition, value, decided)
                 if last is None and flow.begun is not None:
-                    return f"it had not {verb} since {told(flow.begun)}"
+                    return f"it had not {verb} since {instant_text(flow.begun)}"
                 if last is None:
                     return f"it had never {verb} before"
                 if last == decided:
-                    return f"it came at {told(last)}, too late"
+                    return f"it came at {instant_text(last)}, too late"
                 if flow.gap == 1 and one.lasting:
-                    return f"it had {verb} until {told(last + 1)}"
-                return f"it had last {verb} at {told(last)}"
+                    return f"it had {verb} until {instant_text(last + 1)}"
+                return f"it had last {verb} at {instant_text(last)}"
             case _:
                 assert_never(one)
 

@@ -25,25 +25,25 @@ from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
 MOST_SEEN = 19
-"""So many truth values, seen at the trigger, fit into a number of 32 bits."""
+"""The most truth values at the trigger that the core packs into 32 bits."""
 
 _BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
-"""What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
+"""The budget of the automata for attempts in doubt: they are rarely used, so kept small."""
 
 
 class CompiledRequirement:
     """One requirement, compiled; each derived form is built at its first use.
 
     Attributes:
-        rank: its place in the file.
-        spec: the specification that it is of.
+        rank: its index in the file.
+        spec: the specification it belongs to.
         requirement: as checked.
         obligation: its formulas.
-        alphabet: of the obligation.
+        alphabet: the alphabet of the obligation.
         gap: ticks between two positions; `None` if only samples are positions.
         beside: the requirement whose attempts in doubt this one judges; `None` for an ordinary one.
-        measured: builds the obligation for robustness: the same truth, but with the comparisons
-            kept apart whose distances are measured.
+        measured: the obligation for robustness: logically equivalent, but with the comparisons
+            whose distances are measured kept apart.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class CompiledRequirement:
         try:
             return reduce(construct(self._required, self.alphabet, self._budget), self.words.label)
         except DoesNotCloseError as error:
-            return error.with_traceback(None)  # which would keep the frames of whoever asked
+            return error.with_traceback(None)  # a traceback would keep the caller's frames alive
 
     @property
     def automaton(self) -> Automaton | None:
@@ -86,12 +86,12 @@ class CompiledRequirement:
 
     @cached_property
     def shaped(self) -> Automaton | None:
-        """Its automaton as the core has it, which those of its shape share; `None`: as above."""
+        """The automaton for the core, shared by all requirements of its shape; `None`: as above."""
         return self._shapes.reduced(self._required, self.alphabet, self._budget)
 
     @cached_property
     def shaped_residuals(self) -> Sequence[Residual]:
-        """What is required in the locations of that."""
+        """The residual of each location of `shaped`."""
         return self._shapes.residuals(self._required, self.alphabet, self._budget)
 
     @property
@@ -104,7 +104,7 @@ class CompiledRequirement:
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
     def in_runs(self, automaton: Automaton | None) -> bool:
-        """Whether its open attempts are kept in runs if an automaton of it judges them."""
+        """Whether the open attempts of an automaton are kept in runs (`moves_in_runs`)."""
         requirement = self.requirement
         return (
             automaton is not None
@@ -122,7 +122,7 @@ class CompiledRequirement:
 
     @cached_property
     def doubted(self) -> CompiledRequirement | None:
-        """The same where no trigger is sure."""
+        """The same for an instance of `for each` that may not exist."""
         return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
 
     def _beside(
@@ -148,12 +148,12 @@ class CompiledRequirement:
 
     @cached_property
     def reach(self) -> int | None:
-        """Of its network, as `reach_of` says it."""
+        """`reach_of` its network, ticks."""
         return reach_of(self.network_plan)
 
     @cached_property
     def measured_required(self) -> Core:
-        """The obligation for robustness, with past operators expanded to be measured, too."""
+        """The obligation for robustness, with past operators expanded so that they are measured."""
         return expanded(self.measured.required)
 
     @cached_property
@@ -165,7 +165,8 @@ class CompiledRequirement:
     def counts_alone(self) -> bool:
         """Whether its attempts start independently of how earlier ones end.
 
-        Episodes go on after a failure; what is in doubt leaves no record if it is met.
+        Not so for episodes, which resume after a failure, nor for attempts in doubt, which have no
+        record if they are met.
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
         bare = self.requirement.for_each is None and not self.requirement.captures
@@ -173,12 +174,12 @@ class CompiledRequirement:
 
     @cached_property
     def forecaster(self) -> Forecaster:
-        """Tells what is still possible for its open attempts."""
+        """Forecasts the verdicts of its open attempts; its cache is shared by all of them."""
         return Forecaster()
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
-        """What it reads of the input, with its text."""
+        """The leaves whose values its records show, with their text; see `leaf_texts`."""
         determined = (self.beside or self).obligation.determined
         return leaf_texts(self._read, () if determined is None else (determined,))
 
@@ -210,7 +211,7 @@ class CompiledRequirement:
 
     @cached_property
     def words(self) -> Words:
-        """Names its parts."""
+        """Words its parts in explanations."""
         return Words(self.obligation.origins)
 
 
@@ -218,7 +219,7 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
     """The requirements of a specification, compiled, by id.
 
     Raises:
-        RvmonError: one cannot be monitored; which one and why is in the message.
+        RvmonError: one cannot be monitored; the message says which one and why.
     """
     factory, shapes = Factory(), Shapes()
     made = {}

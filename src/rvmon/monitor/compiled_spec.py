@@ -1,6 +1,6 @@
-"""A specification compiled for the core: requirements on first use, plans cached on disk.
+"""A specification compiled for the core: requirements on first use, packed plans cached on disk.
 
-Packed plans are kept in the user's cache folder: data, of which nothing is executed.
+Cached plans are plain data; nothing in them is executed.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 class CompiledSpec:
-    """A specification from which any number of monitors can be built.
+    """A compiled specification, from which any number of monitors can be built.
 
     Attributes:
         checked: as checked.
-        is_kept: whether packed plans are kept in the user's cache folder.
-        forms: packed plans made so far, by the options they depend on.
+        is_kept: whether packed plans are cached in the user's cache folder.
+        forms: derived objects made so far, such as packed plans, by the options they depend on.
     """
 
     def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
@@ -39,20 +39,20 @@ class CompiledSpec:
         """The compiled requirements by id.
 
         Raises:
-            RvmonError: one cannot be monitored; which one and why is in the message.
+            RvmonError: one cannot be monitored; the message says which one and why.
         """
-        # What compiles them is imported now: some recordings are judged without it.
+        # Imported on use: with a cached plan, recordings are judged without the compiler.
         from rvmon.monitor.compile import compiled_requirements
 
         return compiled_requirements(self.checked)
 
     def chosen(self, only: Collection[str] | None) -> Sequence[CompiledRequirement]:
-        """Some requirements in the order of the file."""
+        """The requirements with these ids (`None`: all), in the order of the file."""
         wanted = self.requirements.keys() if only is None else frozenset(only)
         return [one for name, one in self.requirements.items() if name in wanted]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Compiled again elsewhere: what was made here stays here.
+        # Only the checked specification is pickled; the other process compiles it again.
         again = partial(CompiledSpec, is_kept=self.is_kept)
         return again, (self.checked,)
 
@@ -70,12 +70,12 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """A packed plan, as it is kept in the cache.
+    """A packed plan, as it is cached.
 
     Attributes:
         data: the packed plan.
         single: events of which only one payload can be judged at one instant.
-        readers: by name that is read, the ids of the requirements that do.
+        readers: by signal and event, the ids of the requirements that read it.
     """
 
     data: bytes
@@ -114,7 +114,7 @@ class Place:
         return found if key == self._key.encode() else None
 
     def write(self, made: Kept) -> None:
-        """Keep a plan; a failure to write is ignored, as the plan can be made again."""
+        """Write the entry; a failure is ignored, as the plan can be made again."""
         if self._path is not None:
             names = json.dumps([sorted(made.single), made.readers])
             keep(self._path, b"\n".join([self._key.encode(), names.encode(), made.data]))

@@ -1,4 +1,4 @@
-"""Judges, or measures the robustness of, a finished trace of any source."""
+"""Judges finished traces from any source, and measures their robustness."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ def judge_source(
         compiled: the specification.
         source: the recording.
         only: ids of the requirements; `None`: all.
-        decided: called with all attempts that were decided before a fault of the recording.
+        decided: called with the attempts decided before an error in the recording.
 
     Raises:
-        RvmonError: a requirement is beyond the core.
+        RvmonError: a requirement exceeds the limits of the core.
         TraceError: the recording cannot be read.
     """
     planned = planned_core(compiled, only)
@@ -59,8 +59,8 @@ def open_trace(
     """Open a trace as a recording, and check that it has the names that requirements read.
 
     Raises:
-        MissingNameError: it is in columns, and lacks a name that a requirement reads.
-        TraceError: it cannot be read.
+        MissingNameError: the recording lacks a name that a requirement reads.
+        TraceError: the recording cannot be read.
         UnknownNameError: a name that it may lack is not declared.
     """
     ordered = checked.max_delay is None
@@ -105,7 +105,7 @@ def evaluate_apart(compiled: CompiledSpec, trace: Any, **options: Any) -> Report
 
 
 _ROWS = 4096
-"""So many are measured, and their figures taken, at once: they suit a cache of the processor."""
+"""Rows measured before their figures are collected, so that these fit the processor's cache."""
 
 
 def margins_of(
@@ -125,7 +125,7 @@ def margins_of(
         reading: how it is read.
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last sample.
-        streams: whether to measure each position, too.
+        streams: whether to measure every position besides the attempts.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
@@ -138,16 +138,15 @@ def margins_of(
 def judge_and_measure(
     compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
 ) -> Report:
-    """Judge a recording, and give each attempt its robustness.
+    """Judge a recording, with the robustness of each attempt; otherwise as `judge_source`.
 
-    The recording is read once: each piece is measured, then judged. Arguments and errors are those
-    of `judge_source`.
+    The recording is read once: each piece is measured, then judged.
     """
     run = _Run(compiled, source, only, streams=False)
 
     def shown(pieces: Iterator[Any]) -> Iterator[Any]:
         for piece in source.shown(pieces):
-            _take_to_end(run, source, piece)  # nobody may come back behind the last one
+            _take_to_end(run, source, piece)  # before the yield: the last one may not be resumed
             yield piece
 
     report = judge_source(compiled, replace(source, shown=shown), only, decided)
@@ -156,7 +155,7 @@ def judge_and_measure(
 
 
 def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
-    """Judge a piece up to the end of the trace."""
+    """Measure a piece up to the end of the trace."""
     until = source.until if source.is_cut else None
     if isinstance(piece, Sample):
         if until is None or piece.t <= until:

@@ -1,4 +1,4 @@
-"""Explains undecided attempts: what they wait for, and which unknown input left them open."""
+"""Explains undecided attempts: their open obligations, and the unknown input behind them."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Doubt:
 
 
 def outage_in_words(outage: Outage, origin: int) -> str:
-    """In words: from when to when a signal was unknown, and why; counted from an origin, ticks."""
+    """From when to when a signal was unknown, and why; instants relative to `origin` (ticks)."""
     name = f"`{outage.name}`"
     if outage.why is HealthKind.ABSENT:
         return f"{name} has no source"
@@ -76,7 +76,7 @@ def outage_in_words(outage: Outage, origin: int) -> str:
         if outage.until is None:
             return f"{name} never had a value"
         return f"{name} had no value before {format_instant(outage.until, origin)}"
-    # What is stale is so a tick after the time that it is given.
+    # A signal is stale from one tick after its time limit: show the limit.
     since = format_instant(outage.since - (outage.why is HealthKind.STALE), origin)
     end = "on" if outage.until is None else f"to {format_instant(outage.until, origin)}"
     match outage.why:
@@ -104,11 +104,13 @@ class Explanation:
 def earlier(
     worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, cannot_pass: bool
 ) -> int | None:
-    """When time alone decides an attempt: the pessimistic run passes, or the optimistic fails.
+    """The last instant before time alone decides an attempt; `None` if it never does.
+
+    It decides if the pessimistic run passes or the optimistic run fails.
 
     Args:
-        worse: the value that time alone gives the pessimistic run, and when.
-        better: the same of the optimistic run.
+        worse: for the pessimistic run, the last instant before time decides it, and its value.
+        better: the same for the optimistic run.
         cannot_pass: whether the attempt can no longer pass.
     """
     found = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
@@ -117,7 +119,7 @@ def earlier(
 
 
 def still_required(required: str, end: int | None, origin: int) -> str:
-    """What an undecided attempt waits for, or was waiting for when the trace ended."""
+    """The clause that names the open obligation, now or when the trace ended at `end`."""
     when = "" if end is None else f" when the recording ended at {format_instant(end, origin)}"
     return f"still required{when}: {required}"
 
@@ -126,19 +128,19 @@ def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
     """Which of some names have had no value so far, but those that the doubt names."""
-    told = set() if doubt is None else {one.name for one in doubt.outages}
-    found = (outages[name] for name in sorted(set(names) & outages.keys() - told))
+    named = set() if doubt is None else {one.name for one in doubt.outages}
+    found = (outages[name] for name in sorted(set(names) & outages.keys() - named))
     return tuple(one for one in found if one.why is HealthKind.MISSING)
 
 
 def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
-    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
+    """The clauses for signals that have had no value so far; `end` as for `still_required`."""
     ended = "" if end is not None else " so far"
     return "".join(f"; {outage_in_words(one, origin)}{ended}" for one in outages)
 
 
 def longer(required: Core, triggered: int, end: int | None) -> str:
-    """By how much a finished trace would have had to be longer to decide an attempt."""
+    """The clause by how much a longer trace would have decided an attempt; "" before the end."""
     if end is None:
         return ""
     reach = horizon(required)
@@ -168,7 +170,7 @@ class Undecided:
         better: state of the optimistic run.
         doubt: when and why the two diverged, or why the trigger itself is in doubt.
         unborn: names that it reads and that had no value so far.
-        sure: whether its trigger was TRUE.
+        sure: whether its trigger was TRUE, so that it is not in doubt.
         cannot_pass: whether it cannot pass, as its episode ended before all its signals were born.
         cut: whether its captured values are no longer certain.
     """
@@ -189,24 +191,24 @@ class Judged(Protocol):
     """The judge of an attempt (automaton or network), in its state at a stamp."""
 
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
-        """What an undecided attempt waits for, or why it can wait no more; see `why_open`."""
+        """The open obligation of an attempt, or why none is left; see `why_open`."""
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
-        """What every continuation brings an open attempt to, where that is known."""
+        """The verdict that every continuation leads to; `None` if they differ or it is unknown."""
 
 
 def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = None) -> Explanation:
-    """What an undecided attempt waits for; one in doubt waits for nothing but to be met.
+    """Why an attempt is undecided; an attempt in doubt has no deadline, as it cannot fail.
 
     Args:
-        judged: what judges it.
-        attempt: undecided.
-        now: twice the instant that time has come to, one more if its letter is known.
+        judged: its judge.
+        attempt: the attempt.
+        now: the present stamp: twice the instant in ticks, plus one if its letter is known.
         end: the last instant of the trace, if it has ended.
     """
     if attempt.sure:
         why = judged.why_open(attempt, now, end)
-        # What is required of signals without a value does not fail, and time gives them none.
+        # Obligations on unborn signals do not fail, and time alone gives these no value.
         is_unborn = attempt.cannot_pass and not attempt.cut
         return replace(why, deadline=None) if is_unborn else why
     if attempt.worse[0] == FAILED:
@@ -217,7 +219,7 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
 
 
 def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
-    """What every continuation brings an open attempt to, where that is known; `now` as above.
+    """The verdict that every continuation leads to; `None` if unknown. `now` as for `why_open`.
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
@@ -225,14 +227,14 @@ def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
 
 
 def why_settled(decision: Decision, policy: EndPolicy) -> str:
-    """How the end of the trace settled an attempt."""
+    """The reason of an attempt that the end of the trace settled."""
     if decision is Decision.HELD_TO_END:
         return "held to the end of the trace"
     return f"settled by `at end: {policy}`"
 
 
 def why_nothing(*, cut: bool) -> Explanation:
-    """Why an attempt that is over stays undecided whatever follows."""
+    """Why an attempt that has ended stays undecided whatever follows."""
     if cut:
         return Explanation("it is not known which values it captured")
     return Explanation("it was over before all that it speaks of had a value")

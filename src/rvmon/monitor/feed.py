@@ -1,4 +1,4 @@
-"""What every monitor can be told: samples in order of time, that time passes, what was lost."""
+"""The input side of every monitor: samples in order of time, the passing of time, and outages."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ class Feed:
 
     @property
     def is_direct(self) -> bool:
-        """Whether the core may take the next sample itself, as there is no more to do with it."""
+        """Whether the core may take the next sample directly: none is held back or awaited."""
         return self._intake is None and not self.losses.awaits_sample
 
     def is_too_late(self, t: int) -> bool:
-        """Whether a sample at an instant comes later than it may be late."""
+        """Whether a sample at `t` exceeds `max delay`."""
         return self._intake is not None and self._intake.is_too_late(t)
 
     def take(self, t: int, values: Mapping[str, Value]) -> None:
@@ -61,32 +61,32 @@ class Feed:
             self._core.advance(self._intake.floor)
 
     def advance(self, t: int) -> None:
-        """Learn that no sample before an instant will come."""
+        """Note that no sample before `t` (ticks) will come."""
         if self._intake is not None:
             self._judge_all(self._intake.settle(t))
         self._core.advance(t)
 
     def close(self) -> None:
-        """Learn that no sample will come."""
+        """Note that no further sample will come."""
         if self._intake is not None:
             self._judge_all(self._intake.close())
 
     def lose(self, names: Iterable[str] | None, since: int, until: int | None, why: str) -> None:
-        """Have names lost; see `rvmon.monitor.feed.FedMonitor.lose_ns`."""
+        """Begin an outage, and end it if `until` is given; see `FedMonitor.lose_ns`."""
         self._turn(self.losses.lose(names, since, until, why))
 
     def find(self, names: Iterable[str] | None, at: int) -> None:
-        """Have them lost no more behind an instant."""
+        """End the outage of names at `at` (ticks, inclusive)."""
         self._turn(self.losses.find(names, at))
 
     def miss(self, names: Iterable[str] | None, why: str) -> None:
-        """Have them lost between the last sample and the next."""
+        """Begin an outage at the last sample that ends with the next one."""
         _, last, _ = self._core.times()
         since = last if self._intake is None else self._intake.newest
         self._turn(self.losses.miss(names, since, why))
 
     def _turn(self, turns: Sequence[Turn]) -> None:
-        """Have names lost or found now, or when what is held back is judged so far."""
+        """Apply turns now, or, if samples are held back, in order with these."""
         if self._intake is None:
             self._judge_all(turns)
         else:
@@ -101,34 +101,34 @@ class Feed:
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if not self._core.judge(t, self._planned.plain(t, values), True):
-            raise ValueError("the core does not take a sample that was checked")
+            raise ValueError("the core refused a sample that was validated")
 
     def health(self) -> list[Health]:
-        """What was found of samples on their way, and what was lost."""
+        """The findings of intake, then those about outages and late samples."""
         held = [] if self._intake is None else of_intake(self._intake)
         return [*held, *self.losses.health()]
 
     def state(self) -> Mapping[str, Any]:
-        """What is held back and lost, as JSON has it."""
+        """The state of intake and losses as JSON values."""
         held = None if self._intake is None else self._intake.state()
         return {"intake": held, "losses": self.losses.state()}
 
-    def take_up(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` gave.
+    def restore_state(self, state: Mapping[str, Any]) -> None:
+        """Restore a state from `state`.
 
         Raises:
-            SnapshotError: it fits no such run.
+            SnapshotError: the state is of a run with other options.
         """
         intake = state["intake"]
         if (intake is None) != (self._intake is None):
             raise SnapshotError("the snapshot is damaged: it holds samples back that nobody awaits")
         if self._intake is not None:
-            self._intake.take_up(intake, self.check, self.losses.known)
-        self.losses.take_up(state["losses"])
+            self._intake.restore_state(intake, self.check, self.losses.known)
+        self.losses.restore_state(state["losses"])
 
 
 T = TypeVar("T")
-"""What is decided or settled by a call: attempts, figures."""
+"""The results of a call: decided attempts, or final robustness figures."""
 
 
 class FedMonitor(ABC, Generic[T]):
@@ -141,12 +141,12 @@ class FedMonitor(ABC, Generic[T]):
         step: a function that takes one sample: its time in seconds, and values by name; otherwise
             as `step_ns`.
         step_ns: the same at ticks, later than all samples before; it returns what the sample
-            decided, of more than 4,096 attempts a sequence that makes each as it is read. The
-            values are what was updated or occurred: signals by value, `None` or NaN if it became
-            unknown; events `True`, or their payload. It raises `TimeOrderError` if the
-            time is not later, or an `advance` ruled it out; `TraceError` for a name or a value that
-            the specification does not know, or a time that is no whole number; `OverlapError` if
-            another call is under way. In all cases the monitor is as it was.
+            decided; more than 4,096 attempts come as a sequence that makes each on access. The
+            values are the updates and occurrences: of a signal its value, `None` or NaN if it
+            became unknown; of an event `True`, or its payload. It raises `TimeOrderError` if the
+            time is not later or was excluded by `advance`; `TraceError` for a name or value unknown
+            to the specification, or a time that is no whole number; `OverlapError` if another call
+            is in progress. In all cases the monitor is unchanged.
     """
 
     step: Callable[[float, Mapping[str, Any]], Sequence[T]]
@@ -155,28 +155,28 @@ class FedMonitor(ABC, Generic[T]):
 
     @abstractmethod
     def _tell(self, tell: Callable[[], None]) -> Sequence[T]:
-        """Make a call, and no other until it is over; what it decided."""
+        """Run `tell` exclusively; returns what it decided."""
 
     @abstractmethod
-    def _taken_time(self, t: int) -> int:
-        """A time that was given, as a plain integer; it raises if the run is finished."""
+    def _checked_time(self, t: int) -> int:
+        """A time argument as a plain integer; raises `TraceError` if the run is finished."""
 
     def _take_at(self, t: float, values: Mapping[str, Any]) -> Sequence[T]:
-        """Take a sample at seconds."""
+        """Take a sample at `t` seconds."""
         if type(values) is not dict and not isinstance(values, Mapping):
             raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
         return self.step_ns(ticks_of_seconds(t), values)
 
     def advance(self, t: float) -> Sequence[T]:
-        """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
+        """State that no sample before `t` (seconds) will come; see `advance_ns`."""
         return self.advance_ns(ticks_of_seconds(t))
 
     def advance_ns(self, t_ns: int) -> Sequence[T]:
-        """Say that no sample before `t_ns` will come, and return what this decided.
+        """State that no sample before `t_ns` will come; returns what this decided.
 
-        A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
+        A sample at `t_ns` stays legal. An instant before the present one has no effect.
         """
-        return self._tell(lambda: self._feed.advance(self._taken_time(t_ns)))
+        return self._tell(lambda: self._feed.advance(self._checked_time(t_ns)))
 
     def lose(
         self,
@@ -186,7 +186,7 @@ class FedMonitor(ABC, Generic[T]):
         *,
         why: str = "lost",
     ) -> Sequence[T]:
-        """Say that names are lost from `since` on (seconds); see `lose_ns`."""
+        """Report an outage of names from `since` on (seconds); see `lose_ns`."""
         end = None if until is None else ticks_of_seconds(until)
         return self.lose_ns(names, ticks_of_seconds(since), end, why=why)
 
@@ -198,24 +198,25 @@ class FedMonitor(ABC, Generic[T]):
         *,
         why: str = "lost",
     ) -> Sequence[T]:
-        r"""Say that a source may have said anything of some names, and nobody heard it.
+        r"""Report an outage: a stretch in which updates of some names may have been lost.
 
-        From `since_ns` on these signals and events are unknown, whatever samples say of them: an
-        event up to the last instant at which it is lost, a signal up to its first update then or
-        later. Under `max delay D` the stretch is wider by D on both sides. What was judged already
-        stands; the requirements that read one of the names are not `P` or `NT` any more then.
+        Within it these signals and events are unknown, whatever samples arrive: an event to the
+        end of the outage, a signal until its first update at or after that end. Under
+        `max delay D` the outage is wider by D on both sides. If it reaches back before what has
+        been judged, that stands, but requirements that read one of the names are no longer `P` or
+        `NT`.
 
         Args:
             names: signals and events; `None`: all.
-            since_ns: the first instant at which they are lost, ticks.
-            until_ns: the last one, to which time has come then; `None`: when `found_ns` says so.
-            why: a phrase for people, for the input health: the same for all losses of one kind.
+            since_ns: the first instant of the outage, ticks.
+            until_ns: the last instant, ticks; `None`: until `found_ns` reports it.
+            why: a phrase for the input health; use the same for all losses of one kind.
 
         Returns:
-            What this decided.
+            The results that this decided.
 
         Raises:
-            UnknownNameError: there is no such signal or event; nothing changed.
+            UnknownNameError: a name is not declared; nothing changed.
 
         Source: SEMANTICS, sections 1 (Outage) and 6 (Too late).
 
@@ -230,58 +231,58 @@ class FedMonitor(ABC, Generic[T]):
         """
 
         def lose() -> None:
-            end = None if until_ns is None else self._taken_time(until_ns)
-            self._feed.lose(names, self._taken_time(since_ns), end, why)
+            end = None if until_ns is None else self._checked_time(until_ns)
+            self._feed.lose(names, self._checked_time(since_ns), end, why)
 
         return self._tell(lose)
 
     def found(self, names: Iterable[str] | None, at: float) -> Sequence[T]:
-        """Say that `at` (seconds) is the last instant at which names are lost; see `found_ns`."""
+        """Report that the outage of names ended at `at` (seconds); see `found_ns`."""
         return self.found_ns(names, ticks_of_seconds(at))
 
     def found_ns(self, names: Iterable[str] | None, at_ns: int) -> Sequence[T]:
-        """Say that `at_ns` is the last instant at which names are lost; otherwise as `lose_ns`.
+        """Report that `at_ns` is the last instant of the outage of names; otherwise as `lose_ns`.
 
-        Those that are not lost stay as they are.
+        Names without an outage are not affected.
         """
-        return self._tell(lambda: self._feed.find(names, self._taken_time(at_ns)))
+        return self._tell(lambda: self._feed.find(names, self._checked_time(at_ns)))
 
     def miss(self, names: Iterable[str] | None = None, *, why: str = "lost") -> Sequence[T]:
-        """Say that something was lost between the last sample and the next one.
+        """Report that input without a usable stamp was lost between the last sample and the next.
 
-        It is `lose_ns` from the one to the other, for what arrives damaged and without a stamp.
-        Before the first sample nobody knows since when: no requirement is `P` or `NT` then.
+        It is `lose_ns` from the one to the other. Before the first sample its beginning is not
+        known, so no requirement is `P` or `NT` any more.
 
         Args:
-            names: signals and events that it may have spoken of; `None`: all.
-            why: a phrase for people, for the input health: the same for all losses of one kind.
+            names: signals and events that it may have updated; `None`: all.
+            why: a phrase for the input health; use the same for all losses of one kind.
         """
 
         def miss() -> None:
-            self._taken_time(0)
+            self._checked_time(0)
             self._feed.miss(names, why)
 
         return self._tell(miss)
 
     def late(self, names: Iterable[str] | None, t: float, *, why: str = "left out") -> None:
-        """Say that a sample at `t` (seconds) came too late; see `late_ns`."""
+        """Report a sample at `t` (seconds) that came too late; see `late_ns`."""
         self.late_ns(names, ticks_of_seconds(t), why=why)
 
     def late_ns(self, names: Iterable[str] | None, t_ns: int, *, why: str = "left out") -> None:
-        """Say that a sample came behind what has been judged, so that it is not judged.
+        """Report a sample that came after its instant had been judged, so that it is left out.
 
-        The requirements that read one of the names are not `P` or `NT` any more in this run;
-        records stay as they were given, and what fails, fails. Under `max delay` the monitor finds
-        by itself what is later than that.
+        Requirements that read one of its names are no longer `P` or `NT` in this run; records
+        already given stay, and failures still count. Under `max delay` the monitor itself reports
+        samples that exceed the delay.
 
         Args:
-            names: of the sample; `None`: it cannot be read.
+            names: the names of the sample; `None`: it cannot be read.
             t_ns: its instant, ticks.
-            why: a phrase for people, for the input health: the same for all losses of one kind.
+            why: a phrase for the input health; use the same for all losses of one kind.
 
         Raises:
-            UnknownNameError: there is no such signal or event; nothing changed.
+            UnknownNameError: a name is not declared; nothing changed.
 
         Source: SEMANTICS, section 6 (Too late).
         """
-        self._tell(lambda: self._feed.losses.come_late(names, self._taken_time(t_ns), why))
+        self._tell(lambda: self._feed.losses.come_late(names, self._checked_time(t_ns), why))

@@ -1,4 +1,4 @@
-"""Input health of a run: names that were not known for a while, samples that were lost or late."""
+"""Input health of a run: unknown values, names that were stale or absent, losses, late samples."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class HealthLog:
-    """Counts unknown values as they come.
+    """Counts unknown values by name and kind.
 
     Attributes:
         began: the instant of the first sample; `None` before it.
@@ -34,7 +34,7 @@ class HealthLog:
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
 
     def note(self, t: int, values: Mapping[str, Value]) -> None:
-        """Look through a sample that was taken."""
+        """Count the unknown values of a sample."""
         if self.began is None:
             self.began = t
         for name, value in values.items():
@@ -47,13 +47,20 @@ class HealthLog:
                             self._add(f"{name}.{field}", name, scalar, t)
 
     def add(self, kind: HealthKind, shown: str, name: str, times: NDArray[Any]) -> None:
-        """Count unknown values at instants, in order, of a name that is shown so."""
+        """Count unknown values of a signal, or of a field `shown` of event `name`.
+
+        Args:
+            kind: the kind of unknown value.
+            shown: the name to report.
+            name: the signal or event.
+            times: int64[n] ticks, ascending.
+        """
         if len(times):
             count, first = self._seen.get((kind, shown, name), (0, int(times[0])))
             self._seen[kind, shown, name] = (count + len(times), first)
 
     def add_count(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
-        """Take so many unknown values that were counted, none being known before."""
+        """Set the count of a name, for which nothing was counted before; `first` is in ticks."""
         if count:
             self._seen[kind, shown, name] = (count, first)
 
@@ -62,7 +69,7 @@ class HealthLog:
         count, first = self._seen.get(key, (0, t))
         self._seen[key] = (count + 1, first)
 
-    def told(
+    def entries(
         self,
         planned: PlannedCore,
         run: native.Monitor,
@@ -70,14 +77,14 @@ class HealthLog:
         first: Mapping[str, int | None],
         further: Iterable[Health] = (),
     ) -> tuple[Health, ...]:
-        """All findings, by name with the requirements that read it.
+        """All entries, sorted by name, each with the requirements that read the name.
 
         Args:
             planned: the plan of the requirements.
-            run: is finished.
+            run: finished.
             absent: the names without a source.
             first: by signal, the instant of its first update, ticks; `None`: there was none.
-            further: what was found elsewhere.
+            further: entries found elsewhere.
         """
         readers, names = planned.readers, list(planned.numbers)
         found = [
@@ -103,7 +110,7 @@ class HealthLog:
 
 
 def of_intake(intake: Intake) -> list[Health]:
-    """What was found of samples that were held back, whoever reads them."""
+    """Entries about samples held back: conflicting values, and samples judged early."""
     found = intake.conflicts.health()
     if intake.crowded is not None:
         count, first = intake.crowded
@@ -113,7 +120,7 @@ def of_intake(intake: Intake) -> list[Health]:
 
 
 class Findings:
-    """Looks through what is judged."""
+    """Collects input health while a recording is judged."""
 
     def __init__(self, checked: CheckedSpec, planned: PlannedCore, absent: frozenset[str]) -> None:
         self._log = HealthLog()
@@ -121,25 +128,25 @@ class Findings:
         self._absent = absent
         signals = [name for name in planned.readers if name in checked.signals]
         self._first: dict[str, int | None] = dict.fromkeys(signals)
-        self._to_come = set(signals) - absent
+        self._awaited = set(signals) - absent
 
     def note_sample(self, t: int, values: Mapping[str, Value]) -> None:
-        """Look through a sample."""
+        """Take account of a sample."""
         self._log.note(t, values)
-        for name in self._to_come & values.keys():
-            self._come(name, t)
+        for name in self._awaited & values.keys():
+            self._arrived(name, t)
 
     def note_batch(self, batch: Batch) -> None:
-        """Look through rows."""
+        """Take account of rows."""
         from rvmon.readers.batch import unknown_rows
 
         times = batch.times
         if self._log.began is None:
             self._log.began = int(times[0])
-        for name in self._to_come & batch.signals.keys():
+        for name in self._awaited & batch.signals.keys():
             row = batch.signals[name].first_said
             if row is not None:
-                self._come(name, int(times[row]))
+                self._arrived(name, int(times[row]))
         columns = dict(batch.signals)
         for event, one in batch.events.items():
             columns |= {f"{event}.{field}": cells for field, cells in one.fields.items()}
@@ -150,13 +157,13 @@ class Findings:
             for is_nan, at in unknown_rows(batch, cells, is_signal=is_signal):
                 self._log.add(HealthKind.NAN if is_nan else HealthKind.NONE, shown, name, at)
 
-    def _come(self, name: str, t: int) -> None:
+    def _arrived(self, name: str, t: int) -> None:
         self._first[name] = t
-        self._to_come.discard(name)
+        self._awaited.discard(name)
 
     def found(self, run: native.Monitor) -> tuple[Health, ...]:
-        """All findings, once the run is finished."""
-        return self._log.told(self._planned, run, self._absent, self._first)
+        """All entries, once the run is finished."""
+        return self._log.entries(self._planned, run, self._absent, self._first)
 
 
 def health_of_run(
@@ -174,28 +181,31 @@ def health_of_run(
             first[name] = None if came < -TIME_LIMIT else came
         log.add_count(HealthKind.NONE, shown, name, none_count, none_first)
         log.add_count(HealthKind.NAN, shown, name, nan_count, nan_first)
-    return log.told(planned, run, absent, first, further)
+    return log.entries(planned, run, absent, first, further)
 
 
 ANY = "samples"
-"""What input health is said of where it is not known what was lost."""
+"""The name of an entry where the lost names are not known."""
 
 _UNREAD = ""
-"""For names that no requirement reads: in sampled time what is lost of them is a position."""
+"""Stands for all names that no requirement reads: in sampled time, losing one loses a position."""
 
 
-_MOST_TOLD = 1_000
-"""With more entries of input health, reasons that were not heard of are told as one."""
+_MOST_ENTRIES = 1_000
+"""Beyond this many entries, new reasons are counted together as "for other reasons"."""
 
 
 class Losses:
-    """Has names of a run lost and found, and keeps what is said of it (SEMANTICS 1 and 6).
+    """Tracks the outages of names and late samples of a run (SEMANTICS 1 and 6).
+
+    `lose`, `find`, `miss` and `end_missed` return the turns to apply, now or in order with the
+    samples held back; `turn` applies one to the core.
 
     Args:
         checked: the specification.
         planned: the plan of its requirements.
-        core: the run.
-        intake: holds samples back; `None`: nothing does.
+        core: the run of the core.
+        intake: holds samples back; `None` if none are.
     """
 
     def __init__(
@@ -216,13 +226,13 @@ class Losses:
 
     @property
     def awaits_sample(self) -> bool:
-        """Whether what was missed ends with the next sample."""
+        """Whether an outage of `miss` is open, which ends with the next sample."""
         return bool(self._missed)
 
     def lose(
         self, names: Iterable[str] | None, since: int, until: int | None, why: str
     ) -> Sequence[Turn]:
-        """What is to be done so that names are lost; see `rvmon.monitor.feed.FedMonitor`."""
+        """The turns of an outage; see `rvmon.monitor.feed.FedMonitor.lose_ns`."""
         some = self._named(names)
         self._note(HealthKind.DROPPED, None if names is None else some, since, why)
         if until is None:
@@ -230,13 +240,13 @@ class Losses:
         return self._stretch(some, since, until)
 
     def find(self, names: Iterable[str] | None, at: int) -> Sequence[Turn]:
-        """What is to be done so that they are lost no more behind an instant."""
+        """The turns that end outages of names at `at` (ticks, inclusive)."""
         some = self._named(names) & self._lost
         self._lost -= some
         return self._end(some, at)
 
     def miss(self, names: Iterable[str] | None, since: int | None, why: str) -> Sequence[Turn]:
-        """What is to be done as a sample was lost behind `since`; `None`: before all others."""
+        """The turns of an outage from sample `since` (ticks) to the next; `None`: no sample yet."""
         some = self._named(names)
         if since is None:
             self.come_late(names, 0, why)
@@ -246,18 +256,21 @@ class Losses:
         return self._stretch(some, since + (self._intake is None), None)
 
     def end_missed(self, t: int) -> Sequence[Turn]:
-        """What is to be done before the next sample, which is at `t`."""
+        """The turns that end the outages of `miss`, before the next sample, at `t`."""
         some, self._missed = self._missed, set()
         return self._end(some, t - (self._intake is None))
 
     def come_late(self, names: Iterable[str] | None, t: int, why: str) -> None:
-        """A sample with such names came behind what was judged, or (`None`) may have."""
+        """Report a late sample at `t` with these names (`None`: unknown) to the core."""
         some = None if names is None else self._named(names)
         self._note(HealthKind.LATE, some, t, why)
         self._core.late(None if some is None else self._numbers(some), t)
 
     def turn(self, one: Turn) -> None:
-        """Have the core lose or find names; all before was judged."""
+        """Apply a turn to the core; all samples before it must have been judged.
+
+        Outages of a name may overlap: only the first beginning and the last end reach the core.
+        """
         was = {name for name in one.names if self._stretches[name]}
         self._stretches.update(dict.fromkeys(one.names, 1 if one.lost else -1))
         some = {name for name in one.names if bool(self._stretches[name]) is not (name in was)}
@@ -268,7 +281,7 @@ class Losses:
             tell(numbers, one.t)
 
     def _stretch(self, names: set[str], since: int, until: int | None) -> Sequence[Turn]:
-        """From when to when they are lost, as far as that is not judged yet."""
+        """The turns of an outage, cut to what is not judged yet; what is judged counts as late."""
         if not names:
             return ()
         delay, floor = self._delay_and_floor()
@@ -287,7 +300,7 @@ class Losses:
         return [Turn(max(at + delay, floor), tuple(sorted(names)), lost=False)]
 
     def _delay_and_floor(self) -> tuple[int, int]:
-        """By how much stretches are wider, and the first instant that is not judged yet."""
+        """The ticks by which outages are widened, and the first instant not judged yet."""
         if self._intake is not None:
             return self._intake.delay, self._intake.floor
         _, last, reached = self._core.times()
@@ -295,7 +308,7 @@ class Losses:
         return 0, behind if reached is None else max(behind, reached)
 
     def _named(self, names: Iterable[str] | None) -> set[str]:
-        """Names as far as a requirement reads them; `_UNREAD` if none does.
+        """The names that a requirement reads, of the given ones; `_UNREAD` if none is read.
 
         Raises:
             UnknownNameError: one is not declared.
@@ -305,21 +318,21 @@ class Losses:
         return {*known} if asked is None else {*(asked & known)} or {_UNREAD}
 
     def known(self, names: Iterable[Any]) -> set[str]:
-        """Names that are lost in a snapshot; it raises `KeyError` if one cannot be."""
+        """Validate names from a snapshot; raises `KeyError` for an unknown one."""
         return {name for name in names if name == _UNREAD or self._planned.numbers[name] >= 0}
 
     def _numbers(self, names: Iterable[str]) -> list[int]:
         return [self._planned.numbers[name] for name in names if name != _UNREAD]
 
     def _note(self, kind: HealthKind, names: Iterable[str] | None, t: int, why: str) -> None:
-        if len(self._seen) >= _MOST_TOLD and not any(why == known for _, _, known in self._seen):
+        if len(self._seen) >= _MOST_ENTRIES and not any(why == known for _, _, known in self._seen):
             why = "for other reasons"
         for name in (ANY,) if names is None else sorted({*names} - {_UNREAD}):
             count, first = self._seen.get((kind, name, why), (0, t))
             self._seen[kind, name, why] = (count + 1, min(first, t))
 
     def health(self) -> list[Health]:
-        """What was lost, and why."""
+        """Entries about losses and late samples, with the reasons given."""
         readers = {ANY: tuple(self._planned.packed.ids), **self._planned.readers}
         return [
             Health(kind, name, count, first, readers.get(name, ()), why)
@@ -327,7 +340,7 @@ class Losses:
         ]
 
     def state(self) -> Mapping[str, Any]:
-        """What is lost, as JSON has it."""
+        """The state as JSON values."""
         return {
             "lost": sorted(self._lost),
             "missed": sorted(self._missed),
@@ -335,8 +348,8 @@ class Losses:
             "seen": [[*key, *found] for key, found in self._seen.items()],
         }
 
-    def take_up(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` gave."""
+    def restore_state(self, state: Mapping[str, Any]) -> None:
+        """Restore a state from `state`."""
         self._lost, self._missed = self.known(state["lost"]), self.known(state["missed"])
         for name in self.known(state["stretches"]):
             self._stretches[name] = whole_ticks(state["stretches"][name])

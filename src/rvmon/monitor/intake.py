@@ -1,4 +1,4 @@
-"""Samples as they arrive: valid or not, equal stamps, and what may be late."""
+"""Intake of samples: validation, merging of equal stamps, and reordering of late samples."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
 
 WAYS_TO_SETTLE = ("now", "next")
-"""When a sample is taken for complete: at once, or when another stamp follows."""
+"""When a sample counts as complete: at once, or when the next stamp arrives."""
 
 MOST_HELD = 65_536
-"""So many samples at most wait for late ones; with more, the oldest are judged early."""
+"""The most samples held back for late ones; beyond it, the oldest are judged early."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +34,15 @@ class Intake:
     """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
 
     Args:
-        delay: how much later than the newest sample one may come, ticks.
+        delay: `max delay`, how far behind the newest sample another may come, ticks.
         events: the names that are events.
 
     Attributes:
-        floor: no sample before this instant is taken any more.
+        floor: samples before this instant are refused; all before it has been released.
         conflicts: signals that got two values at one instant.
-        newest: the latest instant of a sample; `None`: none came.
-        crowded: samples judged early because too many waited: how many, and the first's instant.
+        newest: the latest instant of a sample; `None` before the first.
+        crowded: the number of samples judged early because too many were held, and the instant of
+            the first of them; `None` if there were none.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
@@ -51,16 +52,16 @@ class Intake:
         self.conflicts = Conflicts()
         self.newest: int | None = None
         self.crowded: tuple[int, int] | None = None
-        # What turns at an instant does so before the sample there.
+        # A heap of (instant, is sample, order of arrival, item): turns precede samples.
         self._held: list[tuple[int, bool, int, Mapping[str, Value] | Turn]] = []
         self._taken = 0
 
     def is_too_late(self, t: int) -> bool:
-        """Whether a sample at an instant comes later than it may be late."""
+        """Whether a sample at `t` exceeds the allowed delay; always False without one."""
         return self.delay > 0 and t < self.floor
 
     def take(self, t: int, values: Mapping[str, Value]) -> list[Sample | Turn]:
-        """Take a sample; returns what is settled by it, in order.
+        """Take a sample; returns the samples and turns that are complete now, in order.
 
         Raises:
             TimeOrderError: it comes before the floor; nothing changed.
@@ -81,7 +82,7 @@ class Intake:
         return ready
 
     def turn(self, turns: Sequence[Turn]) -> None:
-        """Take what turns at the floor or later."""
+        """Take turns at the floor or later; they are released in order with the samples."""
         for one in turns:
             self._hold(one.t, one)
 
@@ -90,7 +91,7 @@ class Intake:
         heappush(self._held, (t, not isinstance(what, Turn), self._taken, what))
 
     def settle(self, t: int) -> list[Sample | Turn]:
-        """Learn that no sample before `t` will come; returns what is settled, in order."""
+        """Raise the floor to `t`; returns the samples and turns before it, in order."""
         self.floor = max(self.floor, t)
         ready: list[Sample | Turn] = []
         neighbours: list[Sample] = []
@@ -105,7 +106,7 @@ class Intake:
         return [*ready, *coalesce(neighbours, self.events, self.conflicts)]
 
     def state(self) -> Mapping[str, Any]:
-        """What is held, as JSON has it."""
+        """The state as JSON values."""
         held: list[list[Any]] = []
         turns: list[list[Any]] = []
         for t, _, place, what in self._held:
@@ -122,21 +123,21 @@ class Intake:
             "turns": turns,
         }
 
-    def take_up(
+    def restore_state(
         self,
         state: Mapping[str, Any],
         check: Callable[[int, Any], Mapping[str, Value]],
         known: Callable[[Iterable[Any]], set[str]],
     ) -> None:
-        """Hold what `state` gave.
+        """Restore a state.
 
         Args:
-            state: as JSON has it.
-            check: of the values of a sample.
-            known: of the names that are lost or found.
+            state: from `state`.
+            check: validates the values of a sample at an instant.
+            known: validates the names of a turn.
 
         Raises:
-            TraceError: a sample is none of the specification.
+            TraceError: a sample has a name or value unknown to the specification.
         """
         self.floor, self.crowded = _integer(state["floor"]), _counted(state["crowded"])
         self.newest = None if state["newest"] is None else _integer(state["newest"])
@@ -144,22 +145,22 @@ class Intake:
             count, first = _counted(found) or (0, 0)
             self.conflicts.add(str(name), first, count)
         for t, place, values in state["held"]:
-            self._hold_again(whole_ticks(t), place, check(whole_ticks(t), values))
+            self._hold_restored(whole_ticks(t), place, check(whole_ticks(t), values))
         for t, place, names, lost in state["turns"]:
             turn = Turn(whole_ticks(t), tuple(known(names)), lost is True)
-            self._hold_again(turn.t, place, turn)
+            self._hold_restored(turn.t, place, turn)
 
-    def _hold_again(self, t: int, place: Any, what: Mapping[str, Value] | Turn) -> None:
+    def _hold_restored(self, t: int, place: Any, what: Mapping[str, Value] | Turn) -> None:
         heappush(self._held, (t, not isinstance(what, Turn), _integer(place), what))
         self._taken = max(self._taken, place)
 
     def close(self) -> list[Sample | Turn]:
-        """Learn that no sample will come; returns all that is held, in order."""
+        """Release all that is held, in order: no further sample will come."""
         return self.settle(TIME_LIMIT)
 
 
 def _counted(found: Any) -> tuple[int, int] | None:
-    """How many there were and the first's instant, as JSON has it."""
+    """A pair of count and first instant from JSON; `None` stays `None`."""
     if found is None:
         return None
     count, first = found
@@ -173,12 +174,12 @@ def _integer(number: Any) -> int:
 
 
 def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
-    """Refuse a sample at `t` ticks that does not come behind what was taken.
+    """Refuse a sample that is not later than the previous one, or that an `advance` excluded.
 
     Args:
-        t: its instant.
-        last: that of the sample before; `None`: there was none.
-        reached: the instant that time has come to.
+        t: its instant, ticks.
+        last: the instant of the previous sample; `None` before the first.
+        reached: the instant reached by `advance`; `None` if there was none.
 
     Raises:
         TimeOrderError: it is not later, or an `advance` ruled it out.
@@ -224,10 +225,10 @@ class Validator:
         self._declared = declared
 
     def check(self, t: int, values: Mapping[str, Any]) -> Mapping[str, Value]:
-        """The sample in plain Python values, without what is no update.
+        """The sample in plain Python values, without entries that are no update.
 
         Raises:
-            TraceError: a name or a value that the specification does not know; it is named.
+            TraceError: a name or value is unknown to the specification; the message names it.
         """
         if not isinstance(values, Mapping):
             raise TraceError(

@@ -1,4 +1,4 @@
-"""Calls of a monitor, one at a time, and who is called with what they decide."""
+"""Mutual exclusion of the calls of a monitor, and callbacks for the attempts they decide."""
 
 from __future__ import annotations
 
@@ -31,11 +31,16 @@ class Listeners:
     ) -> Callable[[], None]:
         """Register a callback.
 
+        Args:
+            callback: takes an attempt.
+            changed: called when a callback was added or removed.
+            failures_only: whether it is called for failed attempts only.
+
         Returns:
-            A function without arguments that ends this; to call it again does nothing.
+            A function without arguments that unregisters it; idempotent.
 
         Raises:
-            RvmonError: it cannot be called.
+            RvmonError: `callback` is not callable.
         """
         if not callable(callback):
             raise RvmonError(f"expected a function that takes an attempt, found {callback!r}")
@@ -50,10 +55,10 @@ class Listeners:
         return stop
 
     def call(self, decided: Sequence[Attempt]) -> None:
-        """Call the callbacks, which may call the monitor: the call that decided is over.
+        """Call the callbacks; they may call the monitor, as the deciding call has ended.
 
         Raises:
-            Exception: what a callback raised, when all were called; several as a group.
+            Exception: raised by a callback, after all have been called; several as a group.
         """
         if not self._callbacks:
             return
@@ -78,16 +83,16 @@ BEFORE_ALL = 1 - TIME_LIMIT
 
 
 def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
-    """Verdicts of which those that are not `F` are `I`."""
+    """The verdicts with everything that is not `F` turned into `I`."""
     return {name: fold([verdict], complete=False) for name, verdict in verdicts.items()}
 
 
 def capped(report: Report, interrupted: int) -> Report:
-    """A report without verdicts that are not known, and why.
+    """The report of an interrupted run: verdicts that are not `F` are `I`, with a health entry.
 
     Args:
-        report: of the run.
-        interrupted: how far it had come when a call was interrupted, ticks.
+        report: the report of the run.
+        interrupted: the instant reached when a call was interrupted, ticks.
     """
     first = None if interrupted == BEFORE_ALL else interrupted
     remark = "what followed was not evaluated in full"
@@ -100,37 +105,36 @@ R = TypeVar("R")
 
 
 class OneCall:
-    """Refuses a call that comes while another is under way, from whatever thread.
+    """Runs calls one at a time; a call during another one, from any thread, is refused.
 
     Args:
-        core: the run that calls are made on; it takes no samples by itself meanwhile.
+        core: the run of the core, which also refuses samples during a call.
 
     Attributes:
-        began: the instant of the first sample, when the last call came; `None`: there was none.
-        reached: how far the run had come then, ticks.
-        interrupted: how far it had come when a call was interrupted or failed; `None`: none was.
+        began: the instant of the first sample before the latest call, ticks; `None`: none.
+        reached: the instant the run had reached then, ticks.
+        interrupted: the instant reached when a call was interrupted or failed; `None`: none was.
     """
 
     def __init__(self, core: native.Monitor) -> None:
         self._core = core
         self._turn: dict[None, object] = {}
-        self._spared: BaseException | None = None
+        self._harmless: BaseException | None = None
         self.interrupted: int | None = None
         self.note_times()
 
     def note_times(self) -> None:
-        """Note how far the run has come."""
+        """Update `began` and `reached`."""
         self.began, _, self.reached = self._core.times()
 
     def __call__(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-        """Make a call, and no other until it is over.
+        """Run `call` exclusively.
 
         Raises:
-            OverlapError: another one is under way.
+            OverlapError: another call is in progress.
         """
-        # An interrupt strikes where a call begins or ends. So that none can come between taking the
-        # turn and seeing that it is given back, one call takes it within the `try`, and none is
-        # needed to know whose it is, or to give it back.
+        # KeyboardInterrupt is raised at function call boundaries. So the turn is taken by a single
+        # call (`setdefault`) inside the `try`, and checked and released without any call.
         own = object()
         try:
             if self._turn.setdefault(None, own) is not own or not self._core.hold(True):
@@ -143,31 +147,30 @@ class OneCall:
         except RvmonError:
             raise
         except BaseException as error:
-            # No function is called up to the mark: another interrupt cannot come before it.
-            if self.interrupted is None and error is not self._spared:
+            # No function is called before this assignment, so no second interrupt can preempt it.
+            if self.interrupted is None and error is not self._harmless:
                 self.interrupted = BEFORE_ALL if self.reached is None else self.reached
             raise
         finally:
-            self._spared = None
-            # Threads that run at once may give it back between a look whether it is there and
-            # another whose it is.
+            self._harmless = None
+            # Not `get`: another thread may release its turn between two lookups.
             try:
                 if self._turn[None] is own:
                     del self._turn[None]
             except KeyError:
                 pass
 
-    def spare(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-        """Make a part of the call under way that changes nothing, whatever it raises."""
+    def unchanging(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+        """Run a part of the present call that changes no state: its failure is no interruption."""
         try:
             return call(*args, **kwargs)
         except BaseException as error:
-            self._spared = error
+            self._harmless = error
             raise
 
 
 def overlap() -> OverlapError:
-    """The error of a call that comes while another is under way."""
+    """The error of a call during another one."""
     return OverlapError(
         "another call of this monitor is under way, in another thread or in what a signal handler "
         "has interrupted; this one was not taken: give each thread a monitor of its own, or hold "

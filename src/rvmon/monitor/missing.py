@@ -1,4 +1,4 @@
-"""Names that requirements read and that a recording in columns lacks."""
+"""Checks that a recording has the names that requirements read, and suggests mappings if not."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from rvmon.readers.joined import Joined
 
 _SHOWN = 8
-"""Columns that are listed where none is like a name."""
+"""The most unread columns listed where none resembles a name."""
 
 
 def names_read(
     spec: CheckedSpec, only: Collection[str] | None, *, coverage: bool = False
 ) -> dict[str, tuple[str, ...]]:
-    """The signals and events that requirements read, each with the ids of those.
+    """The signals and events that are read, each with the ids of the requirements that read it.
 
     Args:
         spec: the specification.
-        only: ids of the requirements; default all.
-        coverage: whether what coverpoints and crosses read is wanted as well.
+        only: ids of the requirements; `None`: all.
+        coverage: whether to include the coverpoints and crosses.
     """
     found: dict[str, list[str]] = {}
     for name, requirement in spec.requirements.items():
@@ -53,22 +53,22 @@ def expect_names(
     allowed: bool | Iterable[str],
     coverage: bool = False,
 ) -> tuple[str, ...]:
-    """Refuse a recording that lacks what is read.
+    """Refuse a recording that lacks a name that is read.
 
     Args:
         spec: the specification.
-        recording: of which nothing but the names is looked at.
-        mapped: by declared name the column or topic that a person named.
-        only: ids of the requirements; default all.
-        allowed: the names that it may lack; whether all.
-        coverage: whether what coverpoints and crosses read counts.
+        recording: only its names are used.
+        mapped: by declared name, the column or topic that the user mapped to it.
+        only: ids of the requirements; `None`: all.
+        allowed: the names that it may lack; True for all, False for none.
+        coverage: whether to include the names that coverpoints and crosses read.
 
     Returns:
-        The names that it lacks, all of which it may.
+        The names that it lacks, all of them allowed.
 
     Raises:
-        MissingNameError: it lacks others, too; each is shown with the column that is most like it.
-        UnknownNameError: a name that it may lack is not declared.
+        MissingNameError: it lacks a name that is not allowed; the message suggests columns.
+        UnknownNameError: a name in `allowed` is not declared.
     """
     some = None if isinstance(allowed, bool) else sources_asked(spec, allowed)
     names = recording.names
@@ -88,7 +88,7 @@ def expect_names(
         close = {name: most_like(mapped.get(name, name), free) for name in refused}
         paths = [column for column in free if "/" in column or "." in column]
         if len(refused) == len(paths) == 1 and not close[refused[0]]:
-            close[refused[0]] = paths[0]  # the one topic for the one name
+            close[refused[0]] = paths[0]  # a single missing name, a single unread topic
         raise MissingNameError(place + "\n".join(_listed(lacking, close, free, mapped, what)))
     return tuple(lacking)
 
@@ -120,9 +120,9 @@ def _listed(
 
 
 def most_like(name: str, columns: Sequence[str]) -> str:
-    """The column that was probably meant by a name; empty if none is like it.
+    """The column that a name probably means; "" if none resembles it.
 
-    Case, what stands in brackets or behind a path, and units at the end are passed over.
+    Case, separators, text in brackets, leading path segments and trailing units are ignored.
 
     >>> most_like("speed", ["t2", "/base/Speed [m/s]"]), most_like("speed", ["speed_m_s"])
     ('/base/Speed [m/s]', 'speed_m_s')
@@ -143,7 +143,7 @@ def most_like(name: str, columns: Sequence[str]) -> str:
 
 
 def _forms(name: str) -> list[str]:
-    """A name without what people write differently, the most faithful form first."""
+    """Normalised forms of a name, the most specific first."""
     plain = re.sub(r"(?<=.)\s*[\[({<].*", "", name).strip().casefold()
     segments = [part for part in re.split(r"[/.:\\]", plain) if part] or [plain]
     forms = ["".join(segments[start:]) for start in range(len(segments))]

@@ -1,4 +1,4 @@
-"""The online monitor of a specification: a run of the core, and what Python adds to it."""
+"""The online monitor of a specification: a run of the core, with intake, callbacks and reports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rvmon.monitor.health import health_of_run
 from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
 from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
-from rvmon.monitor.snapshot import Options, document_of, put_back, written
+from rvmon.monitor.snapshot import Options, document_of, restored_state, snapshot_of
 from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict import Verdict, fold
@@ -25,19 +25,19 @@ from rvmon.verdict.report import Report
 
 
 class Monitor(FedMonitor[Attempt]):
-    """Judges a stream of samples; made by `rvmon.monitor.monitor`.
+    """Judges a stream of samples; made by `build_monitor`.
 
-    What takes one sample is a function of the core, which gives samples back to Python for a closer
-    look that are no plain values in a `dict`, or refused.
+    On the fast path `step` is a function of the core itself. It hands a sample to Python only if
+    that is no `dict` of plain values, or if it refuses it.
 
     Args:
         planned: the plan of the requirements.
         compiled: the specification.
-        options: what was asked for.
+        options: the options of `build_monitor`.
 
     Attributes:
         compiled: the specification.
-        options: what was asked for.
+        options: the options of `build_monitor`.
     """
 
     def __init__(self, planned: PlannedCore, compiled: CompiledSpec, options: Options) -> None:
@@ -47,7 +47,7 @@ class Monitor(FedMonitor[Attempt]):
         self._planned = planned
         declared = frozenset((*checked.signals, *checked.events))
         self._absent = frozenset() if sources is None else declared - sources
-        self._core = planned.monitor(self._absent, self._take_at, self._look_closer, self._many)
+        self._core = planned.monitor(self._absent, self._take_at, self._take_refused, self._many)
         if options.keep is not None:
             self._core.keep(options.keep)
         self._listeners = Listeners()
@@ -60,7 +60,7 @@ class Monitor(FedMonitor[Attempt]):
         return self._core
 
     def reset(self) -> None:
-        """Forget the run; the next sample starts another. Callbacks stay."""
+        """Discard the run; the next sample starts another. Callbacks stay registered."""
         self._one_call(self._begin)
 
     def _begin(self) -> None:
@@ -73,14 +73,14 @@ class Monitor(FedMonitor[Attempt]):
         self._attend()
 
     def _attend(self) -> None:
-        """Let the core take samples itself, unless somebody listens or there is more to do."""
+        """Bind `step` to the core, unless callbacks are registered or the feed holds samples."""
         if self._feed.is_direct and not self._listeners:
             self.step, self.step_ns = self._core.step, self._core.step_ns
         else:
             self.step, self.step_ns = self._take_at, self._take
 
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample, and call who listens."""
+        """Take a sample, and call the callbacks."""
         if self._feed.is_direct:
             decided = self._core.step_ns(t_ns, values)
         else:
@@ -88,18 +88,18 @@ class Monitor(FedMonitor[Attempt]):
         self._listeners.call(decided)
         return decided
 
-    def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample that the core has left; who called it reports what that decides."""
+    def _take_refused(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample that the core handed back; the core returns what it decides."""
         return self._one_call(self._step, t_ns, values)
 
     def _many(self, raw: tuple[bytes, bytes, bytes, Any]) -> Sequence[Attempt]:
-        from rvmon.monitor.records import recorded  # NumPy is needed for so many alone
+        from rvmon.monitor.records import recorded  # imports NumPy, which few attempts do not need
 
         return recorded(self._planned, raw, self._core.times()[0] or 0)
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        t_ns = self._taken_time(t_ns)
-        checked = self._one_call.spare(self._feed.check, t_ns, values)
+        t_ns = self._checked_time(t_ns)
+        checked = self._one_call.unchanging(self._feed.check, t_ns, values)
         if self._feed.is_too_late(t_ns):
             self._feed.losses.come_late(checked, t_ns, "left out")
         else:
@@ -137,11 +137,11 @@ class Monitor(FedMonitor[Attempt]):
         return self._listeners.add(callback, self._attend, failures_only=False)
 
     def on_failure(self, callback: Callback) -> Callable[[], None]:
-        """Have a function called with each attempt that fails; otherwise as `on_decided`."""
+        """Register a callback for each attempt that fails; otherwise as `on_decided`."""
         return self._listeners.add(callback, self._attend, failures_only=True)
 
     def _tell(self, tell: Callable[[], None]) -> Sequence[Attempt]:
-        """Make a call, and no other until it is over; who listens hears what it decided."""
+        """Run `tell` exclusively, and call the callbacks with what it decided."""
         decided = self._one_call(self._decided, tell)
         self._listeners.call(decided)
         return decided
@@ -151,24 +151,28 @@ class Monitor(FedMonitor[Attempt]):
         self._attend()
         return self._core.flush()
 
-    def _taken_time(self, t: int) -> int:
-        """A time that was given, as a plain integer."""
+    def _checked_time(self, t: int) -> int:
+        """A time argument as a plain integer.
+
+        Raises:
+            TraceError: the run is finished, or the time is no whole number.
+        """
         if self._report is not None:
             raise TraceError("the run is finished: call reset() before the next")
         return whole_ticks(t)
 
     def finish(self, t: float | None = None) -> Report:
-        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        """End the run at `t` seconds, if that is later than everything so far; see `finish_ns`."""
         return self.finish_ns(None if t is None else ticks_of_seconds(t))
 
     def finish_ns(self, t_ns: int | None = None) -> Report:
         """End the run and judge it.
 
         Args:
-            t_ns: the end of the trace in ticks, if it is later than all so far.
+            t_ns: the end of the trace in ticks, if that is later than everything so far.
 
         Returns:
-            The report; the same again if the run was finished before.
+            The report; a second call returns the same.
         """
         report, decided = self._one_call(self._finish, t_ns)
         self._listeners.call(decided)
@@ -178,7 +182,7 @@ class Monitor(FedMonitor[Attempt]):
         if self._report is not None:
             return self._report, ()
         if t_ns is not None:
-            t_ns = self._taken_time(t_ns)
+            t_ns = self._checked_time(t_ns)
         self._feed.close()
         end = self._core.finish(t_ns)
         decided = self._core.flush()
@@ -188,8 +192,8 @@ class Monitor(FedMonitor[Attempt]):
         return self._report, decided
 
     def _reported(self, end: int | None) -> Report:
-        """What is said of the run, which is over."""
-        from rvmon.monitor.records import report_of_run  # NumPy is needed at the end alone
+        """The report of the finished run."""
+        from rvmon.monitor.records import report_of_run  # imports NumPy, which steps do not need
 
         report = report_of_run(self._planned, self._core, self._one_call.began or 0, end)
         health = health_of_run(self._planned, self._core, self._absent, self._feed.health())
@@ -199,11 +203,11 @@ class Monitor(FedMonitor[Attempt]):
     def verdicts(self) -> Mapping[str, Verdict]:
         r"""The verdict of each requirement so far: the fold of the attempts decided by now.
 
-        `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
-        not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
-        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
-        a call that an interrupt tore, what has not failed is `I`.
-        A call costs what was decided since the last one.
+        `F` if an attempt has failed, else `P` if one has passed, else `NT`. Undecided attempts do
+        not count, so `finish` may turn a `P` or `NT` into `I` or `F`; an `F` is final. After
+        `finish` these are the verdicts of the report. After a call was interrupted, every
+        requirement that has not failed is `I`.
+        Cost: linear in the attempts decided since the previous call.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
@@ -226,48 +230,48 @@ class Monitor(FedMonitor[Attempt]):
             self._planned.packed.ids, self._core.counts(), strict=True
         ):
             seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
-            # What has passed was triggered: it is undetermined only if something came too late.
+            # A requirement that passed was triggered; then only late input leaves it undetermined.
             found[name] = fold(seen, complete=bool(determined or not seen))
         return found if self._one_call.interrupted is None else not_passed(found)
 
     def snapshot(self) -> bytes:
-        """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
+        """The state of the run as bytes, from which `Spec.restore` makes an equivalent monitor.
 
-        It holds the open attempts, held values, samples held back and all records so far, and no
-        code; another specification or version refuses it.
+        It contains open attempts, current values, samples held back and all records so far, and no
+        code. It can be restored only with the same specification and version of rvmon.
 
         Raises:
             SnapshotError: the run is finished.
         """
-        return self._one_call(self._put_away)
+        return self._one_call(self._snapshot)
 
     def __reduce__(self) -> NoReturn:
-        """Refused: pickles and copies would share or lack what is under way.
+        """Refused, as the state lives in the core; `snapshot` is the way.
 
         Raises:
-            RvmonError: always; it says what to do.
+            RvmonError: always.
         """
         raise RvmonError(
             "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
             "and spec.restore(data) makes a monitor of them, in this process or another"
         )
 
-    def _put_away(self) -> bytes:
+    def _snapshot(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
         state = {"interrupted": self._one_call.interrupted, **self._feed.state()}
-        return written(self.compiled, self.options, self._planned, self._core, state)
+        return snapshot_of(self.compiled, self.options, self._planned, self._core, state)
 
-    def take_up(self, document: Mapping[str, Any]) -> None:
+    def restore_state(self, document: Mapping[str, Any]) -> None:
         """Go on as the run of a snapshot; this monitor was just made as that was.
 
         Raises:
             SnapshotError: it fits no such monitor.
         """
-        state = put_back(document, self._planned, self._core)
+        state = restored_state(document, self._planned, self._core)
         interrupted = state["interrupted"]
         self._one_call.interrupted = None if interrupted is None else whole_ticks(interrupted)
-        self._feed.take_up(state)
+        self._feed.restore_state(state)
         self._attend()
         self._one_call.note_times()
 
@@ -277,7 +281,10 @@ class Monitor(FedMonitor[Attempt]):
         return self.open_counts()[1]
 
     def open_counts(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        """How many attempts of each requirement are open, and `open` or the oldest of it."""
+        """The number of open attempts per requirement, and `open`, or a few of the oldest.
+
+        With `most`, at most that many attempts, the oldest of each instance first in time.
+        """
         return self._one_call(self._open_counts, most)
 
     def _open_counts(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
@@ -294,7 +301,7 @@ class Monitor(FedMonitor[Attempt]):
 
     @property
     def next_due(self) -> int | None:
-        """The next instant (ticks) at which time alone can decide something."""
+        """The next instant (ticks) at which time alone can decide an attempt; `None` if none."""
         return self._one_call(self._next_due)
 
     def _next_due(self) -> int | None:
@@ -338,7 +345,7 @@ def build_monitor(
 
 
 def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
-    """The monitor that a snapshot was taken of.
+    """A monitor that continues the run of a snapshot.
 
     Raises:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
@@ -355,7 +362,7 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
             sources=sources,
             keep=document["keep"],
         )
-        monitor.take_up(document)
+        monitor.restore_state(document)
     except SnapshotError:
         raise
     except (RvmonError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""The sentences and details of a record that a network decided, or has open."""
+"""Explains attempts judged by a network: the sentence and the details of their records."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ from rvmon.verdict.attempt import Blame
 
 
 def required_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:
-    """What a formula at a position asks for, as text; empty if it is decided."""
-    return _Owing(network, words, origin).at(core, position)
+    """The pending part of a formula at a position, in words; "" if it is decided."""
+    return _PendingText(network, words, origin).at(core, position)
 
 
-class _Owing:
+class _PendingText:
     def __init__(self, network: Network, words: Words, origin: int) -> None:
         self.network = network
         self.words = words
@@ -66,7 +66,7 @@ class _Owing:
             case Until(high=high):
                 return self._own(core, "by", position, high)
             case Release(right=right, low=low, high=high):
-                spawned = self._spawned(right, position - (-low // self.gap))
+                spawned = self._first_pending(right, position - (-low // self.gap))
                 own = self._own(core, "until", position, high)
                 return all_of([spawned, own])
             case _:
@@ -78,8 +78,8 @@ class _Owing:
             return text
         return f"{text} {word} {format_instant(position * self.gap + high, self.origin)}"
 
-    def _spawned(self, core: Core, first: int) -> str:
-        """What the first position asks for, of those from `first` on that are not known."""
+    def _first_pending(self, core: Core, first: int) -> str:
+        """The pending part of a formula at its first undecided position from `first` on."""
         if isinstance(core, Literal | Constant):
             return ""
         position = self.network.first_unknown(core, first)
@@ -87,10 +87,10 @@ class _Owing:
 
 
 class NetworkCauseFinder:
-    """Looks for the cause of a decision, while what it brought is fresh.
+    """Finds the cause of a decision.
 
-    What decided became known at the very stamp of the decision, and so did all between it and the
-    formula.
+    The deciding literal became known at the very stamp of the decision, and so did every formula
+    between it and the root: the search descends along operands with that stamp ("fresh").
     """
 
     def __init__(self, network: Network, verdict: bool, at: int) -> None:
@@ -107,9 +107,9 @@ class NetworkCauseFinder:
             case Literal():
                 return Cause(core, position * self.gap, False, core)
             case And(args=args) | Or(args=args):
-                # What is required over time says more than what was only asked for besides.
+                # A temporal operand explains more than a literal beside it.
                 parts = sorted(args, key=lambda arg: isinstance(arg, Literal))
-                causes = (self.of(arg, position) for arg in parts if self._fresh(arg, position))
+                causes = (self.of(arg, position) for arg in parts if self._is_fresh(arg, position))
                 return next((cause for cause in causes if cause is not None), None)
             case Next(operand=operand):
                 return self._within(operand, position + 1, FAR)
@@ -139,21 +139,21 @@ class NetworkCauseFinder:
     def _of_part(
         self, core: Until | Release, part: Core, first: int, last: int, start: int
     ) -> Cause:
-        """What one operand has to do with the value of an operator that began at `start`."""
+        """The cause within an operand of an operator that was instantiated at `start`."""
         if isinstance(part, Literal):
             return Cause(core, start, False, part)
         return self._within(part, first, last) or Cause(core, start, False, None)
 
     def _within(self, core: Core, first: int, last: int) -> Cause | None:
-        """The cause at the first position of a window that brought the decision."""
+        """The cause at the first fresh position of a window; `None` if there is none."""
         position = self._when(core, first, last)
         return None if position is None else self.of(core, position)
 
-    def _fresh(self, core: Core, position: int) -> bool:
+    def _is_fresh(self, core: Core, position: int) -> bool:
         return self._when(core, position, position) is not None
 
     def _when(self, core: Core, first: int, last: int) -> int | None:
-        """The first position at which a formula got the decision's value at its stamp."""
+        """The first position at which a formula got the verdict's value at the decision's stamp."""
         if isinstance(core, Constant):
             return None
         positions = self.network.positions
@@ -175,12 +175,12 @@ class NetworkCauseFinder:
 
 
 MOST_ATTEMPTS = 32
-"""With more of a requirement open at once in a network, none is forecast."""
+"""With more open attempts of a requirement in a network than this, none is forecast."""
 
 WAITING = PASSED + 1
-"""In the place of a location: neither `FAILED` nor `PASSED`.
+"""The pseudo-location of a run in a network that is undecided.
 
-The token of an attempt is how it stands in a network, and the position whose value it is.
+The token of a run in a network is FAILED, PASSED or WAITING with the position it waits for.
 """
 
 
@@ -197,12 +197,12 @@ def explained_by_network(
 
     Args:
         compiled: the requirement.
-        network: that decided, as it stood then; `None` if there was none.
-        position: the instant of the position whose value was waited for, ticks.
+        network: the deciding network at the decision; `None` if no letters were kept.
+        position: the instant of the position whose value is the attempt's, ticks.
         verdict: the decision.
-        t: its instant.
-        triggered: that of the trigger.
-        flow: how the propositions stood.
+        t: the instant of the decision, ticks.
+        triggered: the instant of the trigger, ticks.
+        flow: truth values of the propositions at the decision, with their history.
     """
     found = None if network is None else network.truth(position)
     if network is None or found is None:
@@ -214,9 +214,9 @@ def explained_by_network(
     words, start = compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, flow)
     deadline = None
-    if t > position:  # else it required nothing yet
+    if t > position:  # else there was no obligation yet
         last = _settled_before(network, integer, found[1])
-        # What had long been settled when the attempt began was no deadline of it.
+        # A window that closed before the attempt began is no deadline of it.
         if last is not None and last >= position - 1:
             deadline = last
     sentence = rendered(words.sentence(cause, verdict), t, start, triggered, flow)
@@ -224,21 +224,21 @@ def explained_by_network(
 
 
 def _settled_before(network: Network, position: int, at: int) -> int | None:
-    """The last instant before time alone would have settled what became known at a stamp."""
+    """The last instant before time alone would have decided what became known at stamp `at`."""
     if at % 2 == 0:
-        return at // 2 - 1  # as it did: no letter of that instant was needed
+        return at // 2 - 1  # an even stamp: time alone did decide it
     alone = settled(network.alone_from(at - 1), position)
     return None if alone is None else alone[0]
 
 
 @dataclass(frozen=True, slots=True)
 class NetworkRuns:
-    """Networks at a moment, as `rvmon.monitor.explanation.Judged`.
+    """Both networks of an open attempt at a stamp, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:
-        worse: the network that takes the unknown for the worse; `None`: there is none.
-        better: the same for the better.
-        count: how many attempts are open in it.
+        worse: the network of the pessimistic run; `None` if no letters were kept.
+        better: the network of the optimistic run.
+        count: the number of attempts open in it.
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
@@ -248,7 +248,7 @@ class NetworkRuns:
     gap: int | None
 
     def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
-        """Two runs that wait, of which one may have come to its end by now."""
+        """The tokens of both runs, updated if the networks have decided one by now."""
         for network, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
             token = better if value else worse
             if network is None or token[0] != WAITING:
@@ -262,7 +262,7 @@ class NetworkRuns:
 
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
         """See `Judged`."""
-        del now  # the networks have come to it
+        del now  # the networks were evaluated for it
         network, token = self.worse, attempt.worse
         if token[0] == FAILED and attempt.better != attempt.worse:
             network, token = self.better, attempt.better
@@ -280,9 +280,9 @@ class NetworkRuns:
         return Explanation(reason, required, earlier(*alone, cannot_pass=attempt.cannot_pass))
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
-        """As of an automaton; `None`, too, where too much is undecided.
+        """See `Judged`; `None` also if too much is undecided.
 
-        Each attempt costs a search of its own, so there is none with more than `MOST_ATTEMPTS`.
+        Each attempt costs a search of its own, so nothing is forecast beyond `MOST_ATTEMPTS`.
         """
         del now
         if self.count > MOST_ATTEMPTS:
@@ -311,7 +311,7 @@ class NetworkRuns:
 
 
 def _alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
-    """What time alone makes of a run, and the last instant before that."""
+    """The last instant before time alone decides a run, and its value; `None` if it never does."""
     if network is None or token[0] != WAITING:
         return None
     return settled(network.alone, token[1][0] // network.positions.gap)

@@ -1,4 +1,4 @@
-"""Reasons, deadlines, what is required, forecasts: worked out from what the core has noted."""
+"""Decodes the notes of the core about attempts into reasons, deadlines, blame and forecasts."""
 
 from __future__ import annotations
 
@@ -45,17 +45,17 @@ _WHY = (
     *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
     *(HealthKind.MISSING, HealthKind.ABSENT),
 )
-"""In the order of `core.h` and `state.h`."""
+"""Reasons for unknown input, by their numbers in `core.h` and `state.h`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """What the core noted of an attempt; see `told.c`.
+    """A note of the core about an attempt; the layout of its words is described in `told.c`.
 
     Attributes:
-        words: of the note.
-        state: of the propositions at the decision; empty if nobody asks.
-        letters: by which a network judged; `None` if none did.
+        words: the int64 words of the note.
+        state: the words on leaves and propositions at the decision; empty if there are none.
+        letters: the letters a network was evaluated on; `None` for an automaton.
     """
 
     words: tuple[int, ...]
@@ -64,27 +64,27 @@ class Note:
 
     @property
     def kind(self) -> int:
-        """Whether it is of a decision, of an open attempt, of one that says nothing."""
+        """`_DECIDED`, `_OPEN`, or `_NOTHING` for an attempt that can no longer be decided."""
         return self.words[0] & 0xFF
 
     @property
     def flags(self) -> int:
-        """What else is said of it."""
+        """The flags `_NETWORK` to `_SURE`."""
         return self.words[0] >> 8 & 0xFFFF
 
     @property
     def judge(self) -> int:
-        """The number of its judge in the part."""
+        """The number of the attempt's judge in its part."""
         return self.words[0] >> 24 & 0xFFFF
 
     @property
     def at(self) -> int:
-        """The instant of the decision; of an open attempt a stamp."""
+        """The instant of the decision, ticks; of an open attempt the present stamp."""
         return self.words[2]
 
 
 def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -> Note:
-    """A note as the core gives it out."""
+    """A note from the pieces that the core gives with a single attempt."""
     return Note(
         _words(data),
         () if state is None else _words(state),
@@ -93,12 +93,12 @@ def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -
 
 
 def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Note:
-    """A note among all that were made of the records of a run.
+    """A note from the notes of all records of a run.
 
     Args:
-        notes: all of them.
-        place: of the note.
-        spans: the letters that they refer to.
+        notes: the notes of the run.
+        place: the index of the note's first word.
+        spans: the letters that notes refer to by number.
     """
     (head,) = unpack_from("=q", notes, 8 * place)
     words = unpack_from(f"={head >> 40}q", notes, 8 * place)
@@ -124,15 +124,15 @@ def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
 
 
 def words_for(count: int) -> int:
-    """How many words so many truths take."""
+    """The number of words that `count` packed truth values take."""
     return -(-count // _IN_WORD)
 
 
-class Told:
-    """Tells what the attempts of one judge of the core say beside their verdicts.
+class NoteExplainer:
+    """Explains the attempts of one judge of the core from their notes.
 
     Args:
-        compiled: the requirement, or what judges its attempts in doubt.
+        compiled: the requirement, or the judge of its attempts in doubt.
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
@@ -158,7 +158,7 @@ class Told:
     def _truth_values(
         self, note: Note, origin: int
     ) -> tuple[tuple[int, ...], tuple[int, ...], TruthValues]:
-        """The leaves, the propositions, and how these were."""
+        """Truth values of leaves and of propositions at the decision, and the latter's history."""
         words, texts = note.state, self._texts
         at = 2 + self._leaf_words
         leaves = truths(words[2:at], len(texts))
@@ -186,7 +186,7 @@ class Told:
         return sum(own[value] for own, value in zip(weights, values, strict=True))
 
     def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
-        """All that is said of an attempt beside its verdict and what it captured."""
+        """The explanatory fields of an attempt, by name; see `Attempt`."""
         seen: Mapping[str, Any] = {}
         forecast = None
         if note.kind == _NOTHING:
@@ -267,7 +267,7 @@ class Told:
         )
 
     def _networks(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
-        """Networks, two runs in them, and where the words of these end."""
+        """The networks of an open attempt, the tokens of both runs, and the index after these."""
         words = note.words
         position = (words[6],)
         judged = at_moment(
@@ -277,7 +277,7 @@ class Told:
         return judged, worse, better, at + 2
 
     def _machines(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
-        """The same of an automaton."""
+        """The same for an automaton."""
         words = note.words
         reached, gap = (note.at - 1) // 2, self._gap or 1
         worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
@@ -290,7 +290,7 @@ class Told:
         )
 
     def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
-        """What was not known."""
+        """Decode the outages of a note."""
         spec = self.compiled.spec
         names = (*spec.signals, *spec.events)
         found = []
@@ -307,7 +307,7 @@ class Told:
     def _doubt(
         self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[Outage]
     ) -> Doubt | None:
-        """What left an attempt open; `None`: nothing has."""
+        """Why the runs of an attempt diverged at `position`; `None` if they have not."""
         if position == NEVER:
             return None
         lost = {
@@ -343,42 +343,42 @@ def _instant(word: int) -> int | None:
 
 
 def _token(words: Sequence[int], at: int, width: int) -> tuple[Token, int]:
-    """A run that stands in some words, and what is behind it."""
+    """Decode the token of a run with `width` clocks; returns it with the index after it."""
     end = at + 1 + width
     return (words[at], tuple(words[at + 1 : end])), end
 
 
 class NotesReader:
-    """Reads the notes of all judges of a plan."""
+    """Explains the attempts of all judges of a plan."""
 
     def __init__(self, compiled: CompiledSpec, ids: Sequence[str]) -> None:
         self._compiled = compiled
         self._ids = ids
 
     @cached_property
-    def _told(self) -> Mapping[str, Sequence[Told]]:
-        """By requirement, the judges of its part."""
+    def _explainers(self) -> Mapping[str, Sequence[NoteExplainer]]:
+        """By requirement, the explainers of its part, by number of the judge."""
         gap = self._compiled.checked.gap
         chosen = self._compiled.chosen(self._ids)
         parts = [[one for one in chosen if not _is_apart(one)]]
         parts += [[one] for one in chosen if _is_apart(one)]
-        found: dict[str, Sequence[Told]] = {}
+        found: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
-            judges = [*part, *(beside for one in part for beside in _beside(one))]
-            told = [Told(one, gap) for one in judges]
-            found |= {one.requirement.id: told for one in part}
+            judges = [*part, *(beside for one in part for beside in _doubt_judges(one))]
+            explainers = [NoteExplainer(one, gap) for one in judges]
+            found |= {one.requirement.id: explainers for one in part}
         return found
 
     def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
-        """All that is said of an attempt beside its verdict and what it captured."""
-        return self._told[attempt.requirement][note.judge].details(attempt, note)
+        """The explanatory fields of an attempt, by name; see `Attempt`."""
+        return self._explainers[attempt.requirement][note.judge].details(attempt, note)
 
 
 def _is_apart(one: CompiledRequirement) -> bool:
     return bool(one.requirement.captures) or one.requirement.for_each is not None
 
 
-def _beside(one: CompiledRequirement) -> Sequence[CompiledRequirement]:
-    """What judges its attempts in doubt; the plan has it in this order."""
+def _doubt_judges(one: CompiledRequirement) -> Sequence[CompiledRequirement]:
+    """The judges of its attempts in doubt, in the order of the plan."""
     doubted = one.doubted if one.requirement.for_each is not None else None
     return [beside for beside in (one.hidden, doubted) if beside is not None]

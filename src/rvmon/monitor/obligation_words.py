@@ -1,4 +1,4 @@
-"""Causes and obligations in words."""
+"""Words causes of decisions and open obligations, in the text of the specification."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Blame
 
 _APART = 50
-"""Instants that are so many binary digits apart are distinguished."""
+"""Shift that keeps the anchors of different clocks, and so their deadlines, distinct in labels."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Atom:
-    """A proposition as people read of it.
+    """A required proposition, with the phrases for it in sentences.
 
     Attributes:
         quoted: its text.
-        positive: whether it has to be true.
-        is_event: whether it occurs, rather than being true.
-        lasting: whether what it has to be is more than a matter of single instants.
+        positive: whether it is required to be true, not false.
+        is_event: whether it is an event, which occurs rather than being true.
+        lasting: whether the required value can last longer than single instants.
     """
 
     quoted: str
@@ -47,43 +47,43 @@ class _Atom:
     lasting: bool
 
     def truth(self, right: bool) -> str:
-        """What it is if it is as it has to be, or is not."""
+        """The required truth value (`right`), or the other one."""
         return "true" if self.positive is right else "false"
 
     def was(self, right: bool) -> str:
-        """The same, as what was seen."""
+        """The same in the past tense, as an observation."""
         if self.is_event:
             return "occurred" if self.positive is right else "did not occur"
         return f"was {self.truth(right)}"
 
     def had_to(self, verb: str) -> str:
-        """What was required, with `be` or `stay`."""
+        """The requirement as a clause, with the verb `be` or `stay`."""
         if self.is_event:
             return "it had to occur" if self.positive else "it was not to occur"
         return f"it had to {verb} {self.truth(True)}"
 
     @property
     def kept(self) -> str:
-        """That it was all the time as it had to be."""
+        """The clause that it had the required value all along."""
         return self.was(True) if self.is_event else f"stayed {self.truth(True)}"
 
     @property
     def due(self) -> str:
-        """What had to come."""
+        """The clause that the required value had to come up."""
         if self.is_event:
             return "had to occur" if self.positive else "had to be absent"
         return "had to come true" if self.positive else "had to become false"
 
     @property
     def been(self) -> str:
-        """What it had done when it was last as it had to be."""
+        """The participle for when it last had the required value, as in "it had never occurred"."""
         if self.is_event and self.positive:
             return "occurred"
         return "been absent" if self.is_event else f"been {self.truth(True)}"
 
 
 class Words:
-    """Names the parts of one requirement as its text does."""
+    """Words the parts of one requirement by their origins in the specification."""
 
     def __init__(self, origins: Mapping[Core, Origin]) -> None:
         self._origins = dict(origins)
@@ -99,14 +99,14 @@ class Words:
         }
 
     def formula(self, node: Core) -> Formula | None:
-        """The formula of the spec that a node stands for; `None` if none does."""
+        """The formula of the specification that is the origin of a node; `None` if it has none."""
         origin = self._origins.get(node)
         if origin is None:
             return None
         return origin.formula if origin.positive else Unary(UnaryOp.NOT, origin.formula)
 
     def text(self, node: Core) -> str:
-        """A node as text of the spec."""
+        """A node in the language."""
         found = self._texts.get(node)
         if found is None:
             formula = self.formula(node)
@@ -115,12 +115,12 @@ class Words:
         return found
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
-        """The window of a node, in ticks after its start; of an opened one as it was before."""
+        """The window of a node in ticks after its start; of an opened one, the original window."""
         whole = self._windows.get(node, node)
         return whole.low, whole.high
 
     def sentence(self, cause: Cause, verdict: bool) -> Sentence:
-        """One sentence about a decision and all that have this cause."""
+        """The sentence template for the decisions that have this cause."""
         node = cause.node
         if cause.over and not isinstance(node, Literal):
             return self._window_over(node)
@@ -139,7 +139,7 @@ class Words:
         return (*seen, *self._asked(node, atom))
 
     def _in_time(self, node: Literal | Until | Release) -> Sentence:
-        """What is to be reported of what came true and ended an obligation."""
+        """The clause after a literal that came true and so ended an obligation."""
         if isinstance(node, Literal):
             return ()
         if isinstance(node, Release):
@@ -149,7 +149,7 @@ class Words:
         return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
 
     def _asked(self, node: Literal | Until | Release, atom: _Atom) -> Sentence:
-        """What was required of a proposition that was otherwise."""
+        """The clause after a literal that failed: what was required of it, and when."""
         if isinstance(node, Literal):
             return (f"; {atom.had_to('be')} then",)
         if isinstance(node, Until):
@@ -198,7 +198,7 @@ class Words:
         return "the consequent" if self.formula(node) is None else f"`{self.text(node)}`"
 
     def _atom(self, literal: Literal) -> _Atom:
-        """A proposition, and what it has to be for the literal to hold."""
+        """The required proposition of a literal."""
         origin = self._origins.get(literal)
         if origin is None:
             return _Atom("a proposition", literal.sense is Sense.TRUE, False, True)
@@ -206,12 +206,12 @@ class Words:
         while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
             formula, positive = formula.operand, not positive
         if isinstance(formula, Amount) and not positive:
-            formula, positive = Unary(UnaryOp.NOT, formula), True  # another comparison
+            formula, positive = Unary(UnaryOp.NOT, formula), True  # prints the negated comparison
         quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
         return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 
     def blame(self, cause: Cause, t: int, start: int, flow: TruthValues) -> Blame:
-        """What failed at `t`, instantiated at `start`."""
+        """The obligation that failed at `t`, instantiated at `start` (ticks)."""
         node = cause.node
         formula = self.formula(node)
         span = None if formula is None else formula.span
@@ -222,7 +222,7 @@ class Words:
             low, high = self.window(node)
             window = (start + low, None if high is None else start + high)
             if high is None and node in self._windows and not isinstance(node.left, Constant):
-                window = (t, None)  # open ones share one clock; the first may have been released
+                window = (t, None)  # opened instances are merged: the first may have been released
         at: tuple[int, ...] = ()
         if cause.literal is not None:
             at = (flow.since(cause.literal.proposition),)
@@ -230,7 +230,7 @@ class Words:
         return Blame(self.text(node), first, last, window, at)
 
     def required(self, residual: Residual, anchors: Sequence[int], origin: int) -> str:
-        """What a residual still asks for, as text of the spec."""
+        """A residual in words, with deadlines; `anchors` are the start instants of its clocks."""
         clauses = []
         for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
             parts = [
@@ -241,7 +241,7 @@ class Words:
         return ", or ".join(dict.fromkeys(clauses))
 
     def label(self, residual: Residual) -> tuple[str, int | None]:
-        """All that is reported of a residual, for clocks that were started at any time."""
+        """Key of everything reported of a residual, for any start instants of its clocks."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
         return self.required(residual, anchors, 0), deadline(residual, anchors)
@@ -257,7 +257,7 @@ class Words:
 
 
 def all_of(parts: Sequence[str]) -> str:
-    """Parts that are all required: none twice, nor without its deadline where it stands with one.
+    """A conjunction in words, without repetitions; a part with a deadline absorbs the one without.
 
     >>> all_of(["`p`", "`q` by 7 s", "`q`"])
     '`p` and `q` by 7 s'
@@ -268,7 +268,10 @@ def all_of(parts: Sequence[str]) -> str:
 
 
 def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool] | None:
-    """What time alone makes of what is required, and the last instant before; `None` if nothing."""
+    """The last instant (ticks) before time alone decides a residual, and the value it then has.
+
+    `None` if time alone never decides it.
+    """
     ends = {
         anchors[clock] + node.high
         for clause in residual
@@ -283,6 +286,6 @@ def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool
 
 
 def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
-    """The last instant before time alone settles what is required; see `Attempt`."""
+    """The last instant before time alone decides a residual; see `Attempt.deadline`."""
     found = settled_alone(residual, anchors)
     return None if found is None else found[0]

@@ -1,4 +1,4 @@
-"""Packs requirements as a plan of the core, with what is needed to hand it samples."""
+"""Packed plans, with the tables by which the core reads samples and attempts are decoded."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class CapturedValues:
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
-        """What an attempt captured, by name.
+        """The captured values of an attempt, by name.
 
         Args:
-            requirement: its number.
-            numbers: in their order, `None` where one is not known; there may be more.
+            requirement: the number of its requirement.
+            numbers: the captured numbers in order, `None` if unknown; surplus ones are ignored.
         """
         own = self._kinds[requirement].items()
         return {
@@ -89,14 +89,14 @@ def _kind(spec: CheckedSpec, value: Numeric, found: Mapping[str, Kind | None]) -
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
 DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
-"""In the order of `core.h`; so are the verdicts."""
+"""Decisions, and above verdicts, by their numbers in `core.h`."""
 
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
-"""In the order of `module_intake.h`."""
+"""Kinds by their numbers in `module_intake.h`."""
 
 Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
-"""What an attempt keeps: captured values, its note, how all stood then, letters but for the last
-piece of them, that; see `module_notes.h`."""
+"""The data an attempt keeps for its details: captured values, note, truth values at the decision,
+the letters but for their last piece, and that piece; see `module_notes.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,16 +104,17 @@ class PlannedCore:
     """A packed plan; makes monitors.
 
     Attributes:
-        packed: the plan as bytes, and the meaning of its numbers.
-        captured: reads the values that attempts captured.
-        numbers: of names: signals first, then events.
-        words: of signals, events, fields: a number for each label, or field.
-        kinds: of the same; of events they mean nothing.
+        packed: the plan as bytes, with the names of its numbers.
+        captured: decodes captured values.
+        numbers: by name, its number: signals first, then events.
+        words: per signal, event and field: of a label type the number of each label, of an event
+            that of each field, else `None`.
+        kinds: per signal, event and field, the kind of its values; meaningless for events.
         limits: of an event, whether only one payload of it can be judged at one instant; of a
             signal, whether that it is unknown is no update.
         single_payloads: the events of which only one payload can be judged at one instant.
-        readers: by name that is read, the ids of the requirements that do.
-        compiled: the specification, to tell of attempts; `None`: there are none.
+        readers: by signal and event, the ids of the requirements that read it.
+        compiled: the specification, to explain attempts; `None` for a plan without requirements.
     """
 
     packed: Packed
@@ -129,7 +130,7 @@ class PlannedCore:
     @property
     def _specification(self) -> CompiledSpec:
         if self.compiled is None:
-            raise ValueError("a plan of watches has no attempts to tell of")
+            raise ValueError("a plan without requirements has no attempts")
         return self.compiled
 
     def monitor(
@@ -143,9 +144,9 @@ class PlannedCore:
 
         Args:
             absent: the names without a source.
-            look_closer: judges the samples that are not plain values in a `dict`, at seconds.
-            look_closer_ns: the same at ticks.
-            many: makes a sequence of raw records, where thousands are decided at once; see
+            look_closer: takes the samples, stamped in seconds, that are no `dict` of plain values.
+            look_closer_ns: the same for stamps in ticks.
+            many: makes a lazy sequence of raw records, when thousands are decided at once; see
                 `rvmon.monitor.records.recorded`.
         """
         coming = {name: number for name, number in self.numbers.items() if name not in absent}
@@ -166,12 +167,12 @@ class PlannedCore:
         )
 
     def plain(self, t: int, values: Mapping[str, Value]) -> dict[str, Value]:
-        """A checked sample as the core takes it.
+        """A validated sample in the types that the core takes.
 
         Raises:
             TraceError: a whole number is too large.
         """
-        # It takes `str` alone, no subclasses of it, such as members of an enumeration.
+        # The core takes exact `str` only, no subclasses such as members of an enumeration.
         return {str.__str__(name): self._plain(name, value, t) for name, value in values.items()}
 
     def _plain(self, name: str, value: Value, t: int) -> Value:
@@ -190,7 +191,7 @@ class PlannedCore:
         }
 
     def instance(self, attempt: Attempt) -> object:
-        """The part of the details that all attempts of one instance share."""
+        """A key of the instance an attempt belongs to; with `let`, each attempt is one."""
         one = self._specification.checked.requirements[attempt.requirement]
         if one.captures:
             return attempt.requirement, attempt.in_doubt, attempt.number
@@ -198,7 +199,7 @@ class PlannedCore:
         return attempt.requirement, attempt.in_doubt, each
 
     def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
-        """The fields of an attempt that are not set in C."""
+        """The lazily computed fields of an attempt; called from C."""
         from rvmon.monitor.notes import note_of
 
         captured, *note = noted
@@ -207,18 +208,18 @@ class PlannedCore:
     def details(
         self, attempt: Attempt, captured: Sequence[float | None] | None, note: Note
     ) -> Mapping[str, Any]:
-        """The fields of an attempt that are not set in C.
+        """The lazily computed fields of an attempt.
 
         Args:
-            attempt: what is set in C.
-            captured: the values that it captured; `None`: it captures none.
-            note: what the core noted of it.
+            attempt: with its other fields set.
+            captured: its captured values; `None` if its requirement captures none.
+            note: the note of the core about it.
         """
-        # What tells of attempts is imported now: many are never asked.
+        # Imported on use: most attempts are never explained.
         from rvmon.monitor.notes import NotesReader
 
         compiled = self._specification
-        key = "told", self.packed.data  # which keeps its hash, as a tuple of ids does not
+        key = "told", self.packed.data  # bytes cache their hash, a tuple of ids does not
         reader = compiled.forms.get(key)
         if not isinstance(reader, NotesReader):
             reader = NotesReader(compiled, self.packed.ids)
@@ -242,7 +243,7 @@ def planned_core(
 
     Args:
         compiled: the specification.
-        only: ids of its requirements; default all.
+        only: ids of its requirements; `None`: all.
         traced: ids of those whose paths through their automata are recorded, for coverage.
         measured: whether robustness is measured as well.
 
@@ -267,7 +268,7 @@ def planned_core(
 
 
 def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
-    """A plan of requirements, packed."""
+    """Pack a plan; `chosen` are its requirements."""
     from rvmon.core.plan import pack
 
     single = frozenset().union(*(one.single_payloads for one in chosen))
@@ -281,7 +282,7 @@ def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
 def _made(
     compiled: CompiledSpec, ids: tuple[str, ...], traced: tuple[str, ...], measured: bool
 ) -> Kept:
-    # What makes it is imported now: it is seldom made where it is kept.
+    # Imported on use: with a cached plan the compiler is not needed.
     from rvmon.monitor.plans import plan_alone
 
     plan = plan_alone(compiled, ids, traced=traced, measured=measured)
@@ -291,7 +292,7 @@ def _made(
 def _checked(
     compiled: CompiledSpec, ids: tuple[str, ...], before: Kept | None
 ) -> PlannedCore | None:
-    """A plan from the cache; `None` if there is none, or it is of other requirements."""
+    """A plan from the cache; `None` if there is none or the core refuses it."""
     if before is None:
         return None
     found = planned_as(compiled.checked, ids, before, compiled)
@@ -305,13 +306,13 @@ def _checked(
 def planned_as(
     spec: CheckedSpec, ids: tuple[str, ...], made: Kept, compiled: CompiledSpec | None = None
 ) -> PlannedCore:
-    """A packed plan made ready.
+    """A packed plan with its tables.
 
     Args:
         spec: declares the names.
-        ids: of its requirements.
-        made: the plan.
-        compiled: the specification, if attempts are asked for.
+        ids: the ids of its requirements.
+        made: the packed plan.
+        compiled: the specification, if it has requirements.
     """
     plan = packed(spec, ids, made.data)
 
@@ -346,10 +347,10 @@ _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
 
 
 def _number(name: str, value: Scalar, kind: Kind, t: int) -> Scalar:
-    """A value as the core takes it: whole numbers within 64 bits, of a real signal doubles.
+    """A value as the core takes it: integers of 64 bits; larger ones of a real signal as doubles.
 
     Raises:
-        TraceError: there is no such number.
+        TraceError: the value has no such representation.
     """
     if not isinstance(value, int) or _LEAST <= value <= _MOST:
         return value

@@ -19,7 +19,7 @@ from rvmon.spec.checked.names_read import requirements_asked
 
 
 def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
-    """How the core judges a requirement: automaton, chain or network."""
+    """A requirement as the core judges it, with its automaton if it has one."""
     required, alphabet, automaton = one.obligation.required, one.alphabet, one.shaped
     if measured and one.counts_alone:
         required, alphabet, automaton = _nothing_required()
@@ -50,14 +50,14 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
         running=obligation.running if captures else None,
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
-        caught=obligation.caught,
+        captures_known=obligation.captures_known,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
         measured=figured,
     )
 
 
 def _traced(one: CompiledRequirement) -> PlannedRule:
-    """A requirement judged by the automaton that people are shown, so that edges are counted."""
+    """A requirement judged by the automaton shown to users, whose edges coverage counts."""
     rule, automaton = planned_rule(one), one.automaton
     in_runs = one.in_runs(automaton)
     return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
@@ -82,7 +82,7 @@ def _nothing_required() -> tuple[Core, Alphabet, Automaton]:
 def _blurs(one: CompiledRequirement) -> State | None:
     """A state that is UNKNOWN where an attempt may have begun with other captured values."""
     obligation = one.obligation
-    # What it owes by a trigger that is TRUE, it owes at one position.
+    # An ordinary `upon` attempt begins at a single, certain position.
     return obligation.doubt or (None if one.beside is None else obligation.trigger)
 
 
@@ -94,18 +94,18 @@ def plan_alone(
     stepped: bool = False,
     measured: bool = False,
 ) -> Plan:
-    """The plan of what the core judges.
+    """The plan for a run of the core.
 
     Args:
         compiled: the specification.
-        only: ids of its requirements; default all.
-        traced: ids of those of which somebody asks where attempts go in their automata.
-        stepped: whether chains are left out, so that each attempt is stepped.
+        only: ids of its requirements; `None`: all.
+        traced: ids of those whose paths through their automata are recorded, for coverage.
+        stepped: whether no chains are used, so that each attempt is stepped.
         measured: whether robustness is measured as well.
 
     Raises:
         UnknownNameError: there is no such requirement.
-        RvmonError: one of them is beyond the core; which one and why is in the message.
+        RvmonError: one of them is beyond the core; the message says which one and why.
     """
     ids = requirements_asked(compiled.checked, only)
     rules = [

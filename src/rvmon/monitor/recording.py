@@ -43,13 +43,13 @@ def judge_recording(
     Args:
         checked: the specification.
         planned: the plan of its requirements.
-        source: the recording, in order.
-        decided: called with what was decided before a fault of the recording.
+        source: the recording, in order of time.
+        decided: called with the attempts decided before an error in the recording.
 
     Raises:
-        TimeOrderError: an instant is before the one above it.
-        TraceError: a name or a value that the specification does not know, or an instant with two
-            payloads of one event of which one can be judged.
+        TimeOrderError: an instant is before its predecessor.
+        TraceError: a name or value is unknown to the specification, or an instant has two payloads
+            of an event of which only one can be judged.
     """
     judge = RecordingRun(checked, planned, source, finds=True)
     try:
@@ -118,12 +118,12 @@ class RecordingRun:
         self._row += 1
 
     def _lose_until(self, t: int) -> None:
-        """Tell the core of all outages that begin or end up to an instant, whose sample follows."""
+        """Apply the turns of outages up to `t`, before the sample at `t`."""
         while self._turns and self._turns[0].t <= t:
             self._losses.turn(self._turns.pop(0))
 
     def _take_batch(self, batch: Batch) -> None:
-        """Judge rows, and have names lost and found between them."""
+        """Judge rows, applying the turns of outages between them."""
         while self._turns and len(batch.times) and self._turns[0].t <= batch.times[-1]:
             turn = self._turns[0].t
             before = int(batch.times.searchsorted(turn))
@@ -133,7 +133,7 @@ class RecordingRun:
         self._judge_batch(batch)
 
     def _judge_batch(self, batch: Batch) -> None:
-        """Judge rows in one call; fall back to samples where a row needs Python to look at it."""
+        """Judge rows in bulk; a row that the core cannot take goes through the validator."""
         count = len(batch.times)
         done = 0
         while done < count:
@@ -154,7 +154,7 @@ class RecordingRun:
                 done = end
 
     def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
-        """Rows as `native.Monitor.rows` takes them; `None` if they must be fed as samples."""
+        """Rows as `native.Monitor.rows` takes them; `None` if they must be taken as samples."""
         if not self._expected >= {*batch.signals, *batch.events}:
             return None
         planned = self._planned
@@ -172,7 +172,7 @@ class RecordingRun:
         return tuple(found)
 
     def _fields(self, event: str, one: Occurrences) -> tuple[Any, ...] | None:
-        """The fields of an event as columns, if some have one."""
+        """The fields of an event as columns; `None` if it has no column."""
         if not one.fields:
             return None
         found: list[tuple[Any, ...]] = []
@@ -188,13 +188,13 @@ class RecordingRun:
         return tuple(found)
 
     def finish(self) -> int | None:
-        """End the run where the recording ends; gives the last instant of the trace."""
-        # The trace reaches to the last instant of what was lost: see the law, section 1 (Outage).
+        """End the run where the recording ends; returns the last instant of the trace, ticks."""
+        # An outage extends the trace to its last instant (SEMANTICS 1, Outage).
         self._lose_until(TIME_LIMIT if self._cut is None else self._cut)
         return self.core.finish(self._end)
 
     def report(self) -> Report:
-        """End the run, and say what was found."""
+        """End the run; returns its report."""
         origin, _, _ = self.core.times()
         report = report_of_run(self._planned, self.core, origin or 0, self.finish())
         if self._findings is None:
@@ -203,9 +203,10 @@ class RecordingRun:
 
 
 def _turns_at(turn: Turn, since: int) -> tuple[int, int]:
-    """The order of what turns: at one instant what ends, what begins, then what begins and ends.
+    """Sort key of a turn of an outage that began at `since`.
 
-    What came at the only instant of a stretch may have come before what was lost.
+    At one instant the ends of earlier outages come first, then beginnings, then the end of an
+    outage of this single instant.
     """
     return turn.t, 1 if turn.lost else 0 if since < turn.t else 2
 
@@ -216,7 +217,7 @@ def _cells(
     """Cells as `native.Monitor.rows` takes them.
 
     Raises:
-        KeyError: there is a label that is none.
+        KeyError: a cell has a label that is not declared.
     """
     values = cells.values
     if cells.labels is not None and words is not None:

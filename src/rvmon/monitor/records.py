@@ -1,4 +1,4 @@
-"""Reports on runs of the core; a raw record becomes an `Attempt` only when it is read."""
+"""Reports on runs of the core; a raw record becomes an `Attempt` only on access."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ RECORD = np.dtype(
 """`rv_record` of `core.h`."""
 
 NUMBER = np.dtype([("kind", np.int32), ("bits", np.int64)], align=True)
-"""`rv_number` of it; the bits are those of a whole number or of a double."""
+"""`rv_number` of `core.h`; the bits of an int64 or of a double."""
 
 _WHOLE, _REAL = 1, 2
 
@@ -106,7 +106,7 @@ class RecordedAttempts(LazyAttempts):
 
     @cached_property
     def _by_kind(self) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
-        """Requirement and verdict in one number, ascending, and which record each is of."""
+        """Keys requirement × verdicts + verdict, ascending, and the record index of each."""
         kinds = self._records["requirement"].astype(np.int64) * len(VERDICTS)
         kinds += self._records["verdict"]
         order = np.argsort(kinds, kind="stable")
@@ -142,7 +142,7 @@ class RecordedAttempts(LazyAttempts):
 
 
 def _number_of(number: Any) -> float | None:
-    """A captured value; `None`: it is not known."""
+    """A captured value; `None` if it is unknown."""
     kind = number["kind"]
     if kind == _WHOLE:
         return int(number["bits"])
@@ -152,12 +152,12 @@ def _number_of(number: Any) -> float | None:
 def recorded(
     planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any], origin: int
 ) -> RecordedAttempts:
-    """The decided attempts among records, in their order.
+    """The decided attempts among raw records, in the same order.
 
     Args:
-        planned: the plan that judged.
-        raw: of a run of the core: the records, what they captured, their notes, letters.
-        origin: its first instant, ticks.
+        planned: the plan of the run.
+        raw: records, captured numbers, notes and letters, as the core gives them.
+        origin: the first instant of the run, ticks.
     """
     records, numbers, words, letters = raw
     made = np.frombuffer(records, RECORD)
@@ -188,9 +188,9 @@ def report_of_run(
     """Sort and fold the records of a run, as `rvmon.verdict.report.report_of` does attempts.
 
     Args:
-        planned: the plan that it judged by.
-        run: is finished.
-        origin: the instant from which people count seconds, ticks.
+        planned: the plan of the run.
+        run: finished.
+        origin: the instant that reports show as 0 s, ticks.
         end: the last instant of the trace, ticks.
 
     Source: SEMANTICS, section 3.
@@ -228,7 +228,7 @@ def report_of_run(
 def _dropped(
     ids: Sequence[str], counts: Mapping[str, Mapping[Verdict, int]], records: NDArray[Any]
 ) -> Mapping[str, Mapping[Verdict, int]]:
-    """How many attempts were counted, but not kept, by requirement and verdict."""
+    """By requirement and verdict, the number of attempts that were counted but not kept."""
     if sum(sum(own.values()) for own in counts.values()) == len(records):
         return {}
     there = np.bincount(
@@ -250,9 +250,9 @@ _COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:
-    """By decision instant, requirement, whether in doubt, and number; the undecided ones last.
+    """The permutation into report order; `None` if the records are in order already.
 
-    `None`: they stand so already.
+    Keys: decision instant (undecided last), requirement, in doubt, number.
     """
     undecided = records["decision"] == _OPEN
     decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])

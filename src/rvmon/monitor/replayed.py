@@ -60,7 +60,7 @@ def _noted(
         compiled: the requirement.
         gap: ticks between two positions; `None` if only samples are positions.
         letters: recorded for the attempt.
-        position: the position whose value is asked for, ticks.
+        position: the position whose value is needed, ticks.
         better: whether UNKNOWN is read optimistically.
     """
     plan, propositions = compiled.network_plan, compiled.alphabet.propositions
@@ -77,7 +77,7 @@ def _noted(
 
     noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions))]
     if noted and not plan.looks_back:
-        # What came before the position does not matter; a letter that stays does till there.
+        # Letters before the position are irrelevant, except the one still held there.
         first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
         t, stays = noted[first]
         noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
@@ -114,10 +114,10 @@ def at_decision(
     if triggered > position == t:
         return network_at(2 * triggered, 2 * t + 1)
     if t == position:
-        # It was known as the attempt began, perhaps before that: since the letter before.
+        # Decided at its own position: only what became known since the previous letter is fresh.
         last = max((at for at, _ in noted if at < t), default=t - 1)
         return network_at(2 * t + 1, 2 * last + 1)
-    # What became known by then is no news at the decision.
+    # Knowledge from before the decision's instant is not fresh: it cannot be the cause.
     network = network_at(2 * t, 2 * t - 1)
     return network_at(2 * t + 1, 2 * t) if network.truth(position) is None else network
 
@@ -134,11 +134,11 @@ def at_moment(
 
     Args:
         compiled: as for `at_decision`.
-        gap: see there.
-        letters: see there.
-        position: see there.
+        gap: as for `at_decision`.
+        letters: as for `at_decision`.
+        position: as for `at_decision`.
         now: the stamp, twice the instant in ticks, plus one if its letter is known.
-        count: how many attempts are open.
+        count: the number of open attempts of the requirement.
     """
     if letters is None:
         return NetworkRuns(None, None, count, gap)

@@ -20,12 +20,12 @@ from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
 
 @dataclass(frozen=True, slots=True)
 class Robustness(Bounds):
-    """How far a formula is from the other truth value, in base units.
+    """Bounds on the robustness of a formula, in SI base units.
 
     Attributes:
         low: lower bound over all values of unknown input and all continuations of the trace.
-        high: upper bound.
-        kept: lower bound if what only has to be kept up (`always`) holds after the end.
+        high: upper bound, likewise.
+        kept: lower bound if every opened unbounded `R` (`always`) holds after the end.
     """
 
     low: float
@@ -33,10 +33,10 @@ class Robustness(Bounds):
     kept: float
 
     def of(self, attempt: Attempt) -> float | None:
-        """The figure for a decided attempt: its distance from the other verdict, at least.
+        """The robustness of a decided attempt, or the bound nearer to the other verdict.
 
-        `None` if there is none: nothing is said of what is left open or settled by a policy, and
-        what decided an attempt may lie outside the piece of the trace that was measured.
+        `None` for attempts left open or settled by a policy, and where the bounds contradict the
+        verdict because the decisive input lies outside the measured part of the trace.
         """
         match attempt.decision, attempt.verdict:
             case Decision.OPEN, _:
@@ -59,10 +59,10 @@ class Measured(Figure):
 
     Attributes:
         requirement: its id.
-        number: of the attempt; `None` for what the requirement owes at a position, as in a stream.
+        number: the number of the attempt; `None` for the robustness at a position, of a stream.
         t: the instant of the trigger, or of the position, ticks.
-        robustness: the figure.
-        in_doubt: whether it is not known that there was a trigger.
+        robustness: the bounds.
+        in_doubt: whether the attempt is in doubt.
     """
 
     requirement: str
@@ -81,9 +81,9 @@ class Stream(Sequence[tuple[int, Robustness]]):
 
     Args:
         times: int64[n] ticks.
-        low: float64[n]; so are the others.
-        high: as in `Robustness`.
-        kept: as in `Robustness`.
+        low: float64[n], as in `Robustness`.
+        high: float64[n].
+        kept: float64[n].
     """
 
     def __init__(self, times: Any, low: Any, high: Any, kept: Any) -> None:
@@ -119,10 +119,10 @@ class Margins:
     """The robustness of all attempts of a run.
 
     Attributes:
-        attempts: by requirement and number.
-        doubtful: those in doubt that have a record, the same way.
-        streams: by requirement, at the instants of samples: the robustness of what it owes there.
-            Requirements with `let` or `for each` have none: it would depend on the attempt.
+        attempts: by requirement and number of the attempt.
+        doubtful: the same for attempts in doubt that have a record.
+        streams: by requirement, its robustness at the instants of samples. Requirements with `let`
+            or `for each` have none: it would depend on the attempt.
     """
 
     attempts: Mapping[Key, Robustness]
@@ -130,7 +130,7 @@ class Margins:
     streams: Mapping[str, Sequence[tuple[int, Robustness]]]
 
     def of(self, attempt: Attempt) -> Attempt:
-        """An attempt with its figure."""
+        """An attempt with its robustness set."""
         figures = self.doubtful if attempt.in_doubt else self.attempts
         found = figures.get((attempt.requirement, attempt.number))
         return attempt if found is None else measured_attempt(attempt, found.of(attempt))
@@ -139,18 +139,18 @@ class Margins:
 class RobustnessMonitor(FedMonitor[Measured]):
     """Measures robustness online; made by `Spec.robustness_monitor`.
 
-    What a call returns are the figures that nothing can change any more. A sample that is later
-    than `max delay` is refused, and figures that were given stay whatever came too late.
+    A call returns the figures that are final. A sample that exceeds `max delay` is refused; late
+    input does not change figures already given.
 
     Args:
         compiled: the specification.
-        only: ids of the requirements; default all.
+        only: ids of the requirements; `None`: all.
         settle: `now` or `next`, as for a monitor.
         sources: the names that can arrive; `None`: all.
-        streams: whether to measure each position, and not the attempts alone.
+        streams: whether to measure every position besides the attempts.
 
     Raises:
-        UnknownNameError: there is no such way to settle.
+        UnknownNameError: `settle` is neither `now` nor `next`.
     """
 
     def __init__(
@@ -176,19 +176,19 @@ class RobustnessMonitor(FedMonitor[Measured]):
         self._attend()
 
     def _attend(self) -> None:
-        """Let the core take the next sample itself, unless there is more to do with it."""
-        core: Any = self._core  # its steps give figures now
+        """Bind `step` to the core, unless the feed holds samples."""
+        core: Any = self._core  # after `measure`, its steps return figures
         if self._feed.is_direct:
             self.step, self.step_ns = core.step, core.step_ns
         else:
             self.step, self.step_ns = self._take_at, self._take
 
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Measured]:
-        """Take a sample that the core does not take itself."""
+        """Take a sample that the core handed back."""
         return self._tell(lambda: self._step(t_ns, values))
 
     def _tell(self, tell: Callable[[], None]) -> Sequence[Measured]:
-        """Make a call, refuse others until it returns, and give the figures that it settled."""
+        """Run `tell` exclusively; returns the figures that became final."""
         return self._one_call(self._settled, tell)
 
     def _settled(self, tell: Callable[[], None]) -> Sequence[Measured]:
@@ -197,7 +197,7 @@ class RobustnessMonitor(FedMonitor[Measured]):
         return self._core.figures()
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> None:
-        t_ns = self._taken_time(t_ns)
+        t_ns = self._checked_time(t_ns)
         self._feed.take(t_ns, self._feed.check(t_ns, values))
 
     @property
@@ -206,11 +206,15 @@ class RobustnessMonitor(FedMonitor[Measured]):
         return self._one_call(self._core.open_figures)
 
     def finish(self, t: float | None = None) -> Sequence[Measured]:
-        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        """End the run at `t` seconds, if that is later than everything so far; see `finish_ns`."""
         return self.finish_ns(None if t is None else ticks_of_seconds(t))
 
     def finish_ns(self, t_ns: int | None = None) -> Sequence[Measured]:
-        """End the run, at `t_ns` if that is later than all so far, and return the other figures."""
+        """End the run, at `t_ns` if that is later than everything so far.
+
+        Returns:
+            The remaining figures; nothing on a second call.
+        """
         return self._one_call(self._finish, t_ns)
 
     def _finish(self, t_ns: int | None) -> Sequence[Measured]:
@@ -223,8 +227,8 @@ class RobustnessMonitor(FedMonitor[Measured]):
         self._is_over = True
         return self._core.figures()
 
-    def _taken_time(self, t: int) -> int:
-        """A time that was given, as a plain integer."""
+    def _checked_time(self, t: int) -> int:
+        """See `FedMonitor`."""
         if self._is_over:
             raise TraceError("the run is finished: make a monitor for the next")
         return whole_ticks(t)

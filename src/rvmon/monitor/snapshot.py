@@ -1,7 +1,7 @@
 """Writes the state of a run as a snapshot, and restores it.
 
-The format is one line (kind, checksum) and JSON, in which the core's bytes stand as text. It is
-checked before anything is taken from it, and nothing in it is executed.
+The format is one line (kind, SHA-256) and a JSON document, with the bytes of the core in base64.
+The checksum is verified before anything is read, and nothing is executed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _KIND = b"rvmon snapshot 3"
 
 _LEFT_OUT = ("text", "title", "doc")
-"""Fields of a specification that do not change what is judged."""
+"""Fields of a specification that do not affect verdicts, left out of its hash."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Options:
     keep: int | None
 
 
-def written(
+def snapshot_of(
     compiled: CompiledSpec,
     options: Options,
     planned: PlannedCore,
@@ -50,10 +50,10 @@ def written(
 
     Args:
         compiled: the specification.
-        options: what its monitor was asked for.
-        planned: the plan that it judges by.
-        run: of the core.
-        state: the part of the state that Python holds, as JSON.
+        options: the options of its monitor.
+        planned: the plan of its requirements.
+        run: the run of the core.
+        state: the part of the state held in Python, as JSON values.
     """
     document = {
         "rvmon": _version(),
@@ -91,13 +91,13 @@ def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
     return document
 
 
-def put_back(
+def restored_state(
     document: Mapping[str, Any], planned: PlannedCore, run: native.Monitor
 ) -> Mapping[str, Any]:
-    """Restore the state of a fresh run; returns the part of it that Python holds.
+    """Restore the core's state in a fresh run; returns the state held in Python.
 
     Raises:
-        SnapshotError: the requirements were judged by another plan, or what is there is no run.
+        SnapshotError: the snapshot was made with another plan, or its bytes are no state of it.
     """
     if document["plan"] != _digest(planned):
         raise SnapshotError("the snapshot was made with another plan: was rvmon changed?")
@@ -139,14 +139,14 @@ def _document(data: bytes) -> Mapping[str, Any]:
 
 @cache
 def _version() -> str:
-    """The version of this package and of the law; kept, as it takes longer than all else here."""
+    """The version of this package and of the semantics; cached, as looking it up is slow."""
     from importlib.metadata import version
 
     return f"{version('rvmon')}, law {LAW}"
 
 
 def digest_of(compiled: CompiledSpec) -> str:
-    """See `digest`; worked out once for a compiled specification."""
+    """`digest` of a compiled specification, computed once."""
     found = compiled.forms.get("digest")
     if not isinstance(found, str):
         found = compiled.forms["digest"] = digest(compiled.checked)
@@ -154,5 +154,5 @@ def digest_of(compiled: CompiledSpec) -> str:
 
 
 def digest(checked: CheckedSpec) -> str:
-    """A hash of what a specification judges; its layout and its comments are no part of it."""
+    """A hash of the meaning of a specification, independent of its layout and comments."""
     return hashlib.sha256(told_apart(checked, without=_LEFT_OUT).encode()).hexdigest()

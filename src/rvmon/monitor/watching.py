@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Where a formula is decided.
+    """The positions at which a formula is decided.
 
     Attributes:
-        true: int64[n, 2], ranges of positions, first and last, ascending: ticks, in clocked time
-            ticks divided by the period, in sampled time numbers of samples.
-        false: likewise.
+        true: int64[n, 2], ranges of positions (first, last), ascending. Positions count ticks, in
+            clocked time ticks divided by the period, in sampled time samples.
+        false: the same for FALSE.
     """
 
     true: NDArray[np.int64]
@@ -42,8 +42,8 @@ class TruthsPlan:
 
     Args:
         spec: the specification.
-        formulas: may speak of the future; UNKNOWN where the recording ends too early.
-        captured: the values that the formulas read as captured.
+        formulas: may have future operators; UNKNOWN where the recording ends too early.
+        captured: by name, the captured values that the formulas read.
     """
 
     def __init__(
@@ -61,18 +61,18 @@ class TruthsRun:
     """Evaluates formulas while a recording is read.
 
     Args:
-        plan: of the formulas.
-        recording: its names, end and outages; what it holds is taken piece by piece.
+        plan: the plan of the formulas.
+        recording: gives names, end and outages; its samples are passed to `take`.
     """
 
     def __init__(self, plan: TruthsPlan, recording: Trace) -> None:
-        from rvmon.monitor.recording import RecordingRun  # which imports NumPy
+        from rvmon.monitor.recording import RecordingRun  # imports NumPy
 
         self._plan = plan
         self._run = RecordingRun(plan.spec, plan.planned, Source(recording), finds=False)
 
     def take(self, piece: Batch | Sample) -> None:
-        """Take what comes next; names that no formula reads are skipped."""
+        """Take the next piece of the recording; names that no formula reads are skipped."""
         if isinstance(piece, Sample):
             values = piece.values
             piece = Sample(
@@ -81,7 +81,7 @@ class TruthsRun:
         self._run.take(piece)
 
     def known(self) -> list[Known]:
-        """End the recording, and give where each formula is decided."""
+        """End the recording; returns, per formula, where it is decided."""
         import numpy as np
 
         self._run.finish()
@@ -104,11 +104,11 @@ def known_truths(
 
     Args:
         spec: the specification.
-        formulas: may speak of the future.
-        samples: the recording, in order.
+        formulas: may have future operators.
+        samples: the recording, in order of time.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
-        captured: the values that the formulas read as captured.
+        captured: by name, the captured values that the formulas read.
 
     Cost: one pass over the samples in C.
     """

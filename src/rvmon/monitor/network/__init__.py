@@ -1,6 +1,6 @@
-"""The delay network: what letters make known of each node at each position, and since when.
+"""The delay network: for each node and position, the value and the stamp at which it became known.
 
-It is evaluated in one go over the letters that the core kept, for reasons, forecasts and pictures.
+It is evaluated in one pass over the letters that the core kept, for explanations and forecasts.
 
 Source: AUTOMATA 4.
 """
@@ -50,19 +50,19 @@ def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Kn
         case Sweep():
             return _sweep(node, operands, positions)
         case Window():
-            return _turned(_window(node, _turned(operands[0], node.every), positions), node.every)
+            return _swapped(_window(node, _swapped(operands[0], node.every), positions), node.every)
         case Shift(offset=offset):
             true, false = operands[0]
             if offset < 0:
-                true, false = positions.held_on(true), positions.held_on(false)
+                true, false = positions.extended(true), positions.extended(false)
             moved = shift(true, offset), shift(false, offset)
             return _not_early(moved, positions) if offset < 0 else moved
         case _:
-            raise ValueError("leaves are read")
+            raise ValueError("a leaf has no operands to evaluate")
 
 
 def _junction(node: Junction, operands: Sequence[Known]) -> Known:
-    """All of the operands, or one of them."""
+    """The conjunction or disjunction of the operands."""
     every = node.every
     all_: Pieces = EVER
     some: Pieces = ()
@@ -76,51 +76,51 @@ def _sweep(node: Sweep, operands: Sequence[Known], positions: Positions) -> Know
     """`until` or `since`."""
     dual = node.dual
     left, right = operands
-    stays = positions.besides(left[dual]), positions.only(left[not dual])
-    meets = positions.only(right[dual]), positions.besides(right[not dual])
+    stays = positions.or_no_position(left[dual]), positions.at_positions(left[not dual])
+    meets = positions.at_positions(right[dual]), positions.or_no_position(right[not dual])
     sweep = until if node.future else since
-    return _turned(sweep(stays, meets), dual)
+    return _swapped(sweep(stays, meets), dual)
 
 
 def _window(node: Window, operand: Known, positions: Positions) -> Known:
-    """The operand at some position of a window."""
-    true = some_of_window(positions.only(operand[0]), node.low, node.high)
-    false = all_of_window(positions.besides(operand[1]), node.low, node.high)
+    """Whether the operand is true at some position of a window."""
+    true = some_of_window(positions.at_positions(operand[0]), node.low, node.high)
+    false = all_of_window(positions.or_no_position(operand[1]), node.low, node.high)
     if node.over is None:
         return _not_early((true, false), positions)
     return true, not_before(false, 2 * node.over, positions.slope)
 
 
 def _not_early(known: Known, positions: Positions) -> Known:
-    """What is known of a position is so when that has come."""
+    """Delay knowledge about a position until that position is reached."""
     slope = positions.slope
     return not_before(known[0], 1, slope), not_before(known[1], 1, slope)
 
 
-def _turned(known: Known, dual: bool) -> Known:
-    """Negated if `dual`."""
+def _swapped(known: Known, dual: bool) -> Known:
+    """Known values with true and false exchanged if `dual`."""
     return (known[1], known[0]) if dual else known
 
 
 Noted = Sequence[tuple[int, Sequence[bool]]]
-"""Instants of positions with their letters: the truth of each leaf, which stays until the next."""
+"""Instants of positions (ticks) with the truth value of each leaf; in held time until the next."""
 
 
 class Network:
-    """One two-valued reading of a word, as far as it is known at a stamp.
+    """The network of one run (pessimistic or optimistic), as far as it is known at a stamp.
 
     Args:
-        plan: its nodes.
+        plan: the nodes.
         gap: ticks between two positions; `None` if only samples are positions.
-        noted: the letters, ascending; those behind the stamp do not count.
-        first: the instant of the position that is asked for. If it is before all letters, what came
-            between only leads on to the first of them.
+        noted: the letters, ascending; those after the stamp are ignored.
+        first: the instant of the position whose value is needed, ticks. If it is before all
+            letters, the positions in between decide nothing: its value is that at the first letter.
         limit: the stamp.
-        before: a stamp; what was known then is known since ever.
+        before: a stamp; whatever was known by then gets the stamp `PAST`.
 
     Attributes:
-        plan: its nodes.
-        positions: those of the word.
+        plan: the nodes.
+        positions: the positions of the word.
         limit: the stamp.
         start: the first position with a letter.
     """
@@ -145,25 +145,25 @@ class Network:
         self.positions = Positions(gap, stamps)
         self._leaves = (self._samples if gap is None else self._held)(cells)
         self._known = [
-            (_aged(up_to(true, limit), before), _aged(up_to(false, limit), before))
+            (_known_before(up_to(true, limit), before), _known_before(up_to(false, limit), before))
             for true, false in self._evaluated(self.positions, FAR)
         ]
 
     def truth(self, t: int) -> Carried:
-        """What is known of the formula at the position at `t`, and its stamp."""
+        """The value of the formula at instant `t` (ticks), with its stamp; `None` if unknown."""
         return _at(self._known[-1], t // self.positions.gap)
 
     def known_of(self, core: Core) -> Known:
-        """What is known of a part of the formula."""
+        """The known values of a subformula."""
         return self._known[self.plan.places[core]]
 
     def value_at(self, core: Core, position: int) -> bool | None:
-        """What is known of a part of the formula at a position."""
+        """The value of a subformula at a position; `None` if unknown."""
         found = _at(self.known_of(core), position)
         return None if found is None else found[0]
 
     def first_unknown(self, core: Core, first: int) -> int | None:
-        """The first position from `first` on of which a part of the formula is not known."""
+        """The first position from `first` on at which a subformula is unknown."""
         positions = self.positions
         position = positions.following(max(first, self.start))
         while position <= positions.last and positions.slope * position < self.limit:
@@ -174,11 +174,11 @@ class Network:
 
     @cached_property
     def alone(self) -> Known:
-        """What comes to be known of the formula if no further position comes."""
+        """The values of the formula that become known if no further position comes."""
         return self.alone_from(self.limit)
 
     def alone_from(self, limit: int) -> Known:
-        """What comes to be known of the formula if no position comes behind a stamp.
+        """The values of the formula that become known if no position comes after a stamp.
 
         Source: SEMANTICS 2, Truth after a prefix.
         """
@@ -186,7 +186,7 @@ class Network:
         return self._evaluated(positions, limit)[-1]
 
     def _samples(self, cells: Noted) -> list[Known]:
-        """The leaves at samples, each with the integers back to the one before it."""
+        """The leaves in sampled time; a value also covers the integers back to the last sample."""
         leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
         behind = self.start
         for position, letter in cells:
@@ -196,7 +196,7 @@ class Network:
         return [*leaves]
 
     def _held(self, cells: Noted) -> list[Known]:
-        """The leaves at all positions up to the stamp, each with the letter that was last."""
+        """The leaves in held or clocked time: each letter is held until the next, or the stamp."""
         leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
         slope = self.positions.slope
         ends = [position - 1 for position, _ in cells[1:]] + [(self.limit - 1) // slope]
@@ -206,7 +206,7 @@ class Network:
         return [*leaves]
 
     def _evaluated(self, positions: Positions, limit: int) -> list[Known]:
-        """What becomes known of each node, of the leaves what is known at a stamp."""
+        """The values that become known of each node, given the leaves as known at stamp `limit`."""
         nodes = self.plan.nodes
         if self.start == FAR:
             return [((), ())] * len(nodes)
@@ -221,11 +221,11 @@ class Network:
             known.append(evaluated(node, operands, positions))
         if isinstance(nodes[-1], Sweep) and nodes[-1].future and positions.first < self.start:
             true, false = known[-1]
-            known[-1] = self._led_on(true), self._led_on(false)
+            known[-1] = self._extended_back(true), self._extended_back(false)
         return known
 
-    def _led_on(self, pieces: Pieces) -> Pieces:
-        """With the value at the first letter from the position that is asked for on."""
+    def _extended_back(self, pieces: Pieces) -> Pieces:
+        """Extend the value at the first letter back to the position that is needed."""
         at = stamp(pieces, self.start)
         if at is None:
             return pieces
@@ -233,29 +233,29 @@ class Network:
 
 
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:
-    """The last instant before time alone settles the formula at a position, and its value then.
+    """The last instant (ticks) before time alone decides the formula at a position, and its value.
 
     Args:
-        alone: as a network gives it for a stamp at which the value is not known.
-        position: as the network counts them.
+        alone: from `Network.alone`, for a stamp at which the value is unknown.
+        position: in the network's numbering.
 
     Returns:
-        `None` if time alone does not settle it.
+        `None` if time alone does not decide it.
     """
     found = _at(alone, position)
     return None if found is None else (found[1] // 2 - 1, found[0])
 
 
 def _at(known: Known, position: int) -> Carried:
-    """The value at a position, and its stamp."""
+    """The value at a position with its stamp; `None` if unknown."""
     for value, pieces in zip((True, False), known, strict=True):
         if (found_at := stamp(pieces, position)) is not None:
             return value, found_at
     return None
 
 
-def _aged(pieces: Pieces, before: int) -> Pieces:
-    """With what was known at a stamp known since ever."""
+def _known_before(pieces: Pieces, before: int) -> Pieces:
+    """The pieces with the stamp `PAST` wherever something was known by stamp `before`."""
     made: list[Piece] = []
     for left, right, at, slope in pieces:
         end = (before - at) // slope if slope else FAR if at <= before else -FAR

@@ -1,14 +1,14 @@
-"""Functions from positions to the instants at which something becomes known, in pieces.
+"""Piecewise linear functions from positions to the stamps at which a value becomes known.
 
-A *piece* `(left, right, at, slope)` says of each position i from `left` to `right` that a value is
-known there from the stamp `at + slope * i` on. Positions that no piece covers are not known, or
-not with that value. A set of known positions is such a function whose stamps are all `PAST`.
+A *piece* `(left, right, at, slope)` states that at each position i from `left` to `right` a value
+is known from the stamp `at + slope * i` on. At positions without a piece it is not known, or known
+to be the other value. A set of known positions is such a function with all stamps `PAST`.
 
-Stamps are twice the instant; one more if the letter of the position at that instant is needed. The
-slope is 0 or twice the distance of two positions, so that the functions are closed under minima and
-maxima over windows: this is what makes held time cheap, however long it is held.
+A stamp is twice an instant in ticks, plus one if the letter of the position at that instant is
+needed. The slope is 0 or twice the distance of two positions, so the functions are closed under
+minima and maxima over windows: a held letter costs one piece, however long it is held.
 
-`Positions` says which integers are positions, and what operators that count them make of others.
+`Positions` defines which integers are positions, and how operators treat the others.
 
 Source: AUTOMATA 4; the two sets of intervals are those of Basin, Klaedtke and Zalinescu 2011.
 """
@@ -25,13 +25,13 @@ Pieces = Sequence[Piece]
 """In order of position, none touching another."""
 
 FAR = 1 << 80
-"""Beyond all positions, as `-FAR` is before them."""
+"""Greater than all positions; `-FAR` is less than all."""
 
 PAST = -(1 << 90)
-"""The stamp of what was known before."""
+"""A stamp before all others."""
 
 EVER: Pieces = ((-FAR, FAR, PAST, 0),)
-"""Known everywhere, from the first."""
+"""Known at every position from the beginning."""
 
 _left = itemgetter(0)
 
@@ -46,7 +46,7 @@ def stamp(pieces: Pieces, position: int) -> int | None:
 
 
 def unchanged_until(known: tuple[Pieces, Pieces], integer: int) -> int:
-    """The last integer up to which what is known stays as it is at one."""
+    """The last integer up to which both functions have the same piece, or none, as at `integer`."""
     end = FAR
     for pieces in known:
         index = bisect_right(pieces, integer, key=_left) - 1
@@ -58,7 +58,7 @@ def unchanged_until(known: tuple[Pieces, Pieces], integer: int) -> int:
 
 
 def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> None:
-    """Add a piece behind all others; an empty one is left out, one that goes on is joined."""
+    """Append a piece; an empty one is dropped, one that continues the last is merged with it."""
     if left > right:
         return
     if pieces:
@@ -70,7 +70,7 @@ def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> N
 
 
 def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
-    """What lies between two positions, both included; it may be the very same pieces."""
+    """The function restricted to positions from `left` to `right`; may return `pieces` itself."""
     if not pieces or (pieces[0][0] >= left and pieces[-1][1] <= right):
         return pieces
     made: list[Piece] = []
@@ -82,7 +82,7 @@ def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
 
 
 def shift(pieces: Pieces, offset: int) -> Pieces:
-    """At each position what is known of the one `offset` further on."""
+    """The function whose value at i is that of `pieces` at i + offset."""
     if not offset:
         return pieces
     return [
@@ -97,7 +97,7 @@ def shift(pieces: Pieces, offset: int) -> Pieces:
 
 
 def up_to(pieces: Pieces, limit: int) -> Pieces:
-    """What is known at the stamp `limit`."""
+    """The function restricted to the positions known by the stamp `limit`."""
     found: list[Piece] = []
     for left, right, at, slope in pieces:
         if slope:
@@ -108,12 +108,12 @@ def up_to(pieces: Pieces, limit: int) -> Pieces:
 
 
 def not_before(pieces: Pieces, at: int, slope: int) -> Pieces:
-    """With stamps of at least `at + slope * i`."""
+    """The function with each stamp raised to at least `at + slope * i`."""
     return latest(pieces, ((-FAR, FAR, at, slope),))
 
 
 def earliest(one: Pieces, other: Pieces) -> Pieces:
-    """Known if either is, as soon as the first is."""
+    """The pointwise minimum: known as soon as one of two is."""
     if not one or not other:
         return one or other
     made: list[Piece] = []
@@ -126,7 +126,7 @@ def earliest(one: Pieces, other: Pieces) -> Pieces:
 
 
 def latest(one: Pieces, other: Pieces) -> Pieces:
-    """Known if both are, as soon as the second is."""
+    """The pointwise maximum: known once both are."""
     if not one or not other:
         return ()
     made: list[Piece] = []
@@ -160,7 +160,7 @@ def _choose(
 
 
 def _refined(one: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None, Line | None]]:
-    """The stretches on which either has one line, in order; without those where neither has one."""
+    """The stretches on which each has a single line or none, in order; not where both have none."""
     i = j = 0
     at = -FAR
     while i < len(one) or j < len(other):
@@ -179,14 +179,14 @@ def _refined(one: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None
 
 
 _NO_MORE: Piece = (FAR + 1, FAR + 1, 0, 0)
-"""Behind all pieces."""
+"""A sentinel after all pieces."""
 
 
 def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
-    """Known at i if it is at some position from i + low to i + high, as soon as at the first.
+    """The minimum over the window [i + low, i + high]: known as soon as at one of its positions.
 
-    As stamps do not fall within a piece, the least stamp in a window is that at its first position,
-    or at the left end of a piece within it: those are met by a sliding minimum.
+    Stamps do not decrease within a piece, so the least stamp in a window is that at its first
+    position, or at the left end of a piece within it; the latter are a sliding minimum.
     """
     if low > high or not pieces:
         return ()
@@ -196,7 +196,7 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
 
 
 def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
-    """Known at i if it is at all positions from i + low to i + high, as soon as at the last."""
+    """The maximum over the window [i + low, i + high]: known once at all of its positions."""
     if low > high:
         return EVER
     made: list[Piece] = []
@@ -216,7 +216,7 @@ def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
 
 
 def _filled(pieces: Pieces) -> Pieces:
-    """The same, and `PAST` wherever it is not known."""
+    """The function extended by `PAST` wherever it has no piece."""
     made: list[Piece] = []
     at = -FAR
     for left, right, stamp_, slope in pieces:
@@ -228,7 +228,7 @@ def _filled(pieces: Pieces) -> Pieces:
 
 
 def _runs(pieces: Pieces) -> Iterable[tuple[int, int]]:
-    """The stretches without a gap."""
+    """The maximal stretches of positions covered by pieces."""
     start: int | None = None
     end = 0
     for left, right, _, _ in pieces:
@@ -249,9 +249,9 @@ def _sliding(
 
     Args:
         points: positions, ascending, with their stamps.
-        low: where the window of i begins, less i.
-        high: where it ends, less i.
-        keeps: whether an older point is better than a newer one.
+        low: offset of the window's first position.
+        high: offset of its last position.
+        keeps: whether the stamp of an older point is better than that of a newer one.
     """
     made: list[Piece] = []
     best: deque[tuple[int, int]] = deque()
@@ -284,20 +284,20 @@ def _sliding(
 class Positions:
     """The positions of a word.
 
-    In held time and under a clock they are consecutive: ticks, or ticks of the clock. In sampled
-    time they are the instants of samples, and what lies between is none.
+    In held and clocked time they are consecutive integers: ticks, or multiples of the period. In
+    sampled time they are the instants of samples in ticks; other integers are no positions.
 
     Args:
         gap: ticks between two positions; `None` if only samples are positions.
-        stamps: those that have a letter, ascending; empty before there is one.
+        stamps: the positions that have a letter, ascending.
 
     Attributes:
-        stamps: where they are sparse, all positions.
-        gap: ticks between two integers, 1 in sampled time.
-        slope: what a stamp grows by from one integer to the next.
-        sparse: whether there are integers between positions.
-        first: the first position; `FAR` before there is one.
-        last: the last position; `FAR` while it is taken that they go on.
+        stamps: in sampled time, all positions; else empty.
+        gap: ticks between two integers; 1 in sampled time.
+        slope: the increase of the stamp from one integer to the next.
+        sparse: whether there are integers between positions (sampled time).
+        first: the first position; `FAR` if there is none.
+        last: the last position; `FAR` if they continue without end.
     """
 
     def __init__(self, gap: int | None, stamps: Sequence[int]) -> None:
@@ -309,26 +309,26 @@ class Positions:
         self.last = stamps[-1] if self.sparse and stamps else -FAR if self.sparse else FAR
 
     def ended(self, last: int) -> Positions:
-        """The same, with no position behind `last`."""
+        """The same positions, without those after `last`."""
         made = Positions(None if self.sparse else self.gap, [self.first])
         made.stamps = self.stamps[: bisect_right(self.stamps, last)]
         made.last = min(self.last, last)
         return made
 
     def following(self, integer: int) -> int:
-        """The first position at or behind an integer, or the integer itself if there is none."""
+        """The first position at or after an integer; if there is none, an integer after all."""
         if not self.sparse:
             return max(integer, self.first) if self.first < FAR else integer
         index = bisect_left(self.stamps, integer)
         return self.stamps[index] if index < len(self.stamps) else max(integer, self.last + 1)
 
     def within(self, left: int, right: int) -> Sequence[int]:
-        """The positions from `left` to `right` where they are sparse."""
+        """In sampled time, the positions from `left` to `right`."""
         stamps = self.stamps
         return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
 
-    def held_on(self, pieces: Pieces) -> Pieces:
-        """Of each piece its positions, where they are sparse with all integers up to others."""
+    def extended(self, pieces: Pieces) -> Pieces:
+        """In sampled time, extend the value at each position to the integers up to the next."""
         if not self.sparse:
             return pieces
         stamps = self.stamps
@@ -341,8 +341,8 @@ class Positions:
                 append(made, position, end, at + slope * position, 0)
         return made
 
-    def only(self, pieces: Pieces) -> Pieces:
-        """Known at positions alone, for what has to be met at one of them."""
+    def at_positions(self, pieces: Pieces) -> Pieces:
+        """Known at positions only, for an operand that must be met at some position."""
         found = clip(pieces, self.first, self.last)
         if not self.sparse:
             return found
@@ -352,8 +352,8 @@ class Positions:
                 append(made, position, position, at + slope * position, 0)
         return made
 
-    def besides(self, pieces: Pieces) -> Pieces:
-        """Known at all integers that are no positions as well, for what has to hold at each."""
+    def or_no_position(self, pieces: Pieces) -> Pieces:
+        """Known also at integers that are no positions, for an operand that must hold at all."""
         made: list[Piece] = []
         append(made, -FAR, self.first - 1, PAST, 0)
         behind = self.first

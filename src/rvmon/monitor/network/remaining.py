@@ -1,8 +1,8 @@
-"""What an undecided formula still asks of what is to come, read off what a network knows.
+"""The residual of an undecided formula, computed from the known values of a network.
 
-The residual is that of progression (AUTOMATA 1), or a weaker one: where too many positions are
-undecided, or something of the past is, what they ask for is left out. So what no continuation
-satisfies, none can make true.
+The residual is that of progression (AUTOMATA 1) or a weaker one: where too many positions, or past
+operators, are undecided, their obligations are left out. So if no continuation satisfies the
+residual, none makes the formula true.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from rvmon.monitor.network import Network
 from rvmon.monitor.network.piecewise import FAR, unchanged_until
 
 MOST_POSITIONS = 60
-"""So many undecided positions are looked at, of all parts of a formula together."""
+"""The most undecided positions examined, over all subformulas together."""
 
 MOST_CLAUSES = 60
 
 _FEW = 8
-"""Of a longer stretch of undecided positions only the ends are looked at."""
+"""Of a stretch of more undecided positions, only this many and the last are examined."""
 
 
 class Remaining:
-    """Works out residuals of the formulas of a network, or of their negations.
+    """Computes residuals of the formulas of a network, or of their negations.
 
     Args:
-        network: what is known.
-        duals: makes the formulas of the residuals, of propositions that are known.
+        network: the network at the present stamp.
+        duals: makes the formulas of the residuals, over known propositions.
     """
 
     def __init__(self, network: Network, duals: Duals) -> None:
@@ -51,24 +51,24 @@ class Remaining:
         self.gap = positions.gap
         known = positions.last if positions.sparse else (network.limit - 1) // positions.slope
         self.now = min(known, positions.last)
-        self._looked = 0
+        self._examined = 0
         self._required: Core | None = None
 
     def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
-        """What a formula, or its negation, at a position asks for at least.
+        """A residual implied by a formula, or by its negation, at a position.
 
         Args:
-            core: the formula, of the network's plan.
-            position: as the network counts them.
-            positive: whether it is the formula that is asked about, and not its negation.
+            core: a formula of the network's plan.
+            position: in the network's numbering.
+            positive: whether the residual is that of the formula, not of its negation.
 
         Returns:
-            A residual that is no stronger, and the ages of its clocks at the last position, ticks.
+            The residual, and the ages of its clocks at the last position, ticks.
 
         Raises:
             TooManyClausesError: it may have more than `MOST_CLAUSES` clauses.
         """
-        self._looked = 0
+        self._examined = 0
         self._required = core
         found = self._at(core, position, positive)
         anchors = sorted({c for clause in found for _, c in clause if c != NO_CLOCK})
@@ -86,12 +86,12 @@ class Remaining:
         return None if found is None else found is positive
 
     def _at(self, core: Core, position: int, positive: bool) -> Residual:
-        """The residual; its clocks are the positions where they were started, moved up."""
+        """The residual; a clock is the position where it was started, offset by `_START`."""
         value = self._value(core, position, positive)
         if value is not None:
             return HOLDS if value else FAILS
-        unheard = position < self.network.start and core is not self._required
-        if unheard or self._looked > MOST_POSITIONS:
+        before_letters = position < self.network.start and core is not self._required
+        if before_letters or self._examined > MOST_POSITIONS:
             return HOLDS
         match core:
             case Constant() | Literal() | Previous() | Since():
@@ -116,7 +116,7 @@ class Remaining:
                 assert_never(core)
 
     def _some(self, core: Until | Release, position: int, positive: bool) -> Residual:
-        """Met at some position of the window, and kept on the way."""
+        """Existential reading: right at some position of the window, left up to it."""
         found, way = FAILS, HOLDS
         for k, _, right_left_out in self._open_positions(core, position, positive):
             if self._is_in_window(core, position, k):
@@ -130,7 +130,7 @@ class Remaining:
         return either(found, _both(way, self._pending(core, position, positive)))
 
     def _every(self, core: Until | Release, position: int, positive: bool) -> Residual:
-        """Kept at all positions of the window, unless released before."""
+        """Universal reading: right at all positions of the window, until left releases it."""
         found, release = HOLDS, FAILS
         for k, left_left_out, _ in self._open_positions(core, position, positive):
             if self._is_in_window(core, position, k):
@@ -146,10 +146,10 @@ class Remaining:
     def _open_positions(
         self, core: Until | Release, position: int, positive: bool
     ) -> Iterator[tuple[int, bool, bool]]:
-        """The positions up to now at which an operand does not only lead on to the next one.
+        """The positions up to now that matter: others only pass the obligation to the next.
 
-        Each with whether positions behind it are left out at which the left operand is not known,
-        and whether the right one is not.
+        Each comes with two flags: whether positions after it are skipped at which the left
+        operand, or the right one, is unknown.
         """
         some = isinstance(core, Until) is positive
         k = max(position, self.network.start)
@@ -176,13 +176,13 @@ class Remaining:
                     following = positions.within(k, end)[-1] if positions.sparse else end
                     yield following, False, False
                     following = positions.following(following + 1)
-                self._looked += 1
+                self._examined += 1
                 k = following
                 if k > end:
                     break
 
     def _end(self, core: Core, position: int) -> int:
-        """The last integer up to which what is known of a formula stays as it is at a position."""
+        """The last integer up to which the knowledge about a formula is as at a position."""
         if isinstance(core, Constant):
             return FAR
         return unchanged_until(self.network.known_of(core), position)
@@ -192,7 +192,7 @@ class Remaining:
         return core.low <= age and (core.high is None or age <= core.high)
 
     def _pending(self, core: Until | Release, position: int, positive: bool) -> Residual:
-        """What positions to come can do for it."""
+        """The residual for positions to come: none if the window is over, else the operator."""
         if core.high is not None and (self.now + 1 - position) * self.gap > core.high:
             return FAILS if isinstance(core, Until) is positive else HOLDS
         return self._atom(core, _clock(position), positive, (self.now - position) * self.gap)
@@ -219,7 +219,7 @@ _START = 1 << 100
 
 
 def _clock(position: int) -> int:
-    """A clock that was started at a position; older ones are less, as everywhere."""
+    """The clock started at a position: positive, and smaller for older ones, as in residuals."""
     return position + _START
 
 

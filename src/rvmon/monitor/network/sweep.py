@@ -1,4 +1,4 @@
-"""`until` and `since` without bounds, by one pass over what is known of their operands."""
+"""Unbounded `until` and `since`, in one pass over the known values of their operands."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from rvmon.monitor.network.piecewise import (
 )
 
 Known = tuple[Pieces, Pieces]
-"""Where something is known to be true, and where to be false."""
+"""The pieces where a formula is known to be true, and those where it is known to be false."""
 
 Carried = tuple[bool, int] | None
-"""What is known just outside of a stretch: the value and its stamp."""
+"""The value at the neighbouring position outside a stretch, with its stamp; `None`: unknown."""
 
 _Side = tuple[bool, Line] | None
-"""What is known of an operand all over a stretch."""
+"""The value of an operand throughout a stretch, with its stamps; `None`: unknown."""
 
 
 def until(left: Known, right: Known) -> Known:
     """`left U right` at all integers.
 
-    U(i) = right(i) or (left(i) and U(i + 1)). As stamps do not fall within a stretch, its first
-    position is the best witness it has, and its last one speaks for the way through it.
+    U(i) = right(i) or (left(i) and U(i + 1)). Stamps do not decrease within a stretch: its first
+    position is the earliest witness, and its last one is decisive for passing through it.
 
     Args:
-        left: operand that has to hold on the way; known to at integers that are no positions.
+        left: operand that has to hold until then; true at integers that are no positions.
         right: operand to be met; false at integers that are no positions.
     """
     found: list[Known] = []
@@ -61,17 +61,17 @@ def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried
 
 
 def since(left: Known, right: Known) -> Known:
-    """`left S right` at all integers, false before all; the mirror image of `until`.
+    """`left S right` at all integers, false before the first; the mirror image of `until`.
 
     Args:
-        left: operand that has held ever since; known to at integers that are no positions.
+        left: operand that has held since then; true at integers that are no positions.
         right: operand that was met; false at integers that are no positions.
     """
     found: list[Known] = []
     carried: Carried = (False, PAST)
     for first, last, stays, meets in _stretches(left, right):
-        # True: met at the first position of the stretch or before, and so all the way since.
-        # False: cut there or before, and not met all the way since.
+        # True: right met at the first position of the stretch or before it, left true since.
+        # False: left false there or before it, right not met since.
         true = latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
         true = earliest(true, _whole(first, last, meets, True))
         false = latest(_whole(first, last, meets, False), _from(first, last, stays, carried, False))
@@ -81,12 +81,12 @@ def since(left: Known, right: Known) -> Known:
 
 
 def _whole(first: int, last: int, side: _Side, value: bool) -> Pieces:
-    """Where a side has a value, in its stretch."""
+    """The piece of a stretch if its side has a value; else nothing."""
     return ((first, last, *side[1]),) if side is not None and side[0] is value else ()
 
 
 def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> Pieces:
-    """When a side had a value at the first position, or what was before had it."""
+    """When a value is known at the first position, of the side or carried from before it."""
     stamps = []
     if side is not None and side[0] is value:
         stamps.append(_at(side[1], first))
@@ -120,7 +120,7 @@ def _joined(parts: Iterable[Known]) -> Known:
 
 
 def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Side]]:
-    """What is known of both operands, in stretches on which neither changes."""
+    """The values of both operands, in maximal stretches on which neither changes."""
     ones, others = _sides(left), _sides(right)
     one, other = next(ones), next(others)
     first = -FAR
@@ -137,7 +137,7 @@ def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Si
 
 
 def _sides(known: Known) -> Iterator[tuple[int, int, _Side]]:
-    """An operand at all integers, without gaps."""
+    """The value of an operand over all integers, in pieces without gaps."""
     at = -FAR
     sides = [
         (left, right, (value, (stamp_, slope)))
