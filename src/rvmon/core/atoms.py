@@ -85,7 +85,7 @@ class Names:
 
     Attributes:
         signals: by name, its number in the part.
-        events: the same.
+        events: by name, its number in the part.
         key: the event field that identifies instances of `for each`; `None` if there are none.
         captured: by name, the index of a captured value.
         constants: captured values that are already known.
@@ -112,7 +112,7 @@ class Names:
 
 
 class Programs:
-    """Packs the programs of a part."""
+    """Compiles and packs the numeric expressions of a part."""
 
     def __init__(self, sections: Sections, names: Names) -> None:
         self._sections = sections
@@ -262,7 +262,7 @@ class Atom:
 
 
 class Atoms:
-    """The atoms of a part."""
+    """The atoms of a part, numbered in the order in which they are first requested."""
 
     def __init__(self, plan: Plan, names: Names, programs: Programs) -> None:
         self._plan = plan

@@ -59,7 +59,7 @@ class Automata:
         return self._sections.run(Section.INTS, values)
 
     def diagram(self, class_of: LetterClasses, alphabet: Alphabet) -> int:
-        """The place of the diagram that classes letters; −1 if a table does."""
+        """The place of the decision diagram for letter classes; −1 if a table is used."""
         if not isinstance(class_of, LetterDiagram) or _is_lone(class_of):
             return -1
         levels = {stride: level for level, stride in enumerate(alphabet.strides)}

@@ -150,7 +150,7 @@ def add_margin(
     spec: CheckedSpec,
     requirement: Requirement,
 ) -> None:
-    """Add the robustness formula of the next judge."""
+    """Add the robustness formula of the judge added last."""
     measures = sections.count(Section.MEASURES)
     for _, core in plan.leaves:
         sections.add(Section.MEASURES, *_measure(core, index, spec, requirement), 0)

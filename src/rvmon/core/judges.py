@@ -72,8 +72,7 @@ class Judges:
     """Packs the judges of a part.
 
     Attributes:
-        networked: the judges that are networks or chains.
-        forms: how many network formulas there are.
+        networked: the numbers of the judges that are networks or chains.
         clocks: the most clocks of an automaton; a network needs 1, for its position.
         undetermined: how many judges track whether their trigger was ever TRUE or FALSE.
     """

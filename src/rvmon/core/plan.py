@@ -35,7 +35,7 @@ _UNUSED = Uses()
 
 
 class Part:
-    """Packs a part."""
+    """Packs a part: its nodes, atoms, judges and inputs, and a record that refers to them."""
 
     def __init__(
         self,
@@ -277,7 +277,7 @@ def pack(plan: Plan) -> Packed:
     """Pack a plan: one part for all requirements without captures, and one for each of the others.
 
     Raises:
-        RvmonError: an expression is beyond the core.
+        RvmonError: an expression, or the number of bins, exceeds the limits of the core.
     """
     sections = Sections()
     automata = Automata(sections)

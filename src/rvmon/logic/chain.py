@@ -36,10 +36,10 @@ class Chain:
 
 
 def reach_of(plan: NetworkPlan) -> int | None:
-    """The most ticks until a position is decided, or depends on later positions alone.
+    """The ticks after which a position is decided, or depends on later positions alone.
 
     Returns:
-        `None` if there is no such number, or the past is looked at.
+        `None` if that is unbounded, or if a node looks back.
     """
 
     def reach(node: Node) -> int | None:

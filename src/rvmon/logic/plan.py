@@ -210,7 +210,7 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
 def plan_of_truths(
     spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
 ) -> Plan:
-    """The plan of what judges nothing: somebody asks where some formulas are true."""
+    """A plan without requirements that evaluates formulas; `captured` values are constants."""
     read = dict.fromkeys(one.proposition for core in formulas for one in literals(core))
     return replace(_shared(spec, read), truths=tuple(formulas), constants=captured)
 
@@ -218,7 +218,7 @@ def plan_of_truths(
 def plan_of_watches(
     spec: CheckedSpec, watches: Sequence[Watch], groups: Sequence[WatchGroup]
 ) -> Plan:
-    """The plan of what judges nothing: somebody counts where some formulas come true."""
+    """A plan without requirements that counts coverage: bins and occasions, and their groups."""
     plan = _shared(spec, (watch.state for watch in watches))
     return replace(plan, watches=tuple(watches), groups=tuple(groups))
 

@@ -125,11 +125,11 @@ def _reads_captured(state: State) -> bool:
 def leaf_texts(
     roots: Sequence[State], determined: Collection[State]
 ) -> tuple[tuple[State, str], ...]:
-    """The leaves that are read off the input, with their text.
+    """The leaves whose values a record shows, with their text in the language.
 
-    Of those with one text, which differ in what they are before birth, it is one that goes on
-    mattering: the core leaves the others as they were then. Where a number is compared with itself
-    beside a `known` that the requirement asks for, that comes behind it: it is what is shown.
+    Leaves that differ only before birth have one text; the one in `lasting` represents them, as the
+    core stops updating the others. `x == x` reads as `known(x)`; where the requirement also has a
+    `known(x)` of its own, that follows it and so takes precedence.
     """
     graph = graph_of(roots)
     last = lasting(graph, roots, determined)

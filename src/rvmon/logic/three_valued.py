@@ -236,7 +236,10 @@ class Reader(Reading[Four]):
         return Four(factory, read, born_late=any(arg.born_late for arg in args), parts=args)
 
     def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
-        """All of some, FALSE where one is not born: by any distance, unless one was lost."""
+        """A conjunction, FALSE where an operand is unborn, with its robustness preserved.
+
+        `joined` is the conjunction with unborn replaced by TRUE; `unborn` that one is unborn.
+        """
         factory = self.factory
         lost = factory.state_all([joined, factory.negation(joined)])
         born = factory.state_any([factory.negation(unborn), lost])

@@ -61,7 +61,7 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     """Compile a specification, once for all its monitors.
 
     Raises:
-        RvmonError: a requirement cannot be monitored; which one and why is in the message.
+        RvmonError: a requirement cannot be monitored; the message says which one and why.
     """
     compiled = CompiledSpec(checked)
     _ = compiled.requirements
@@ -84,11 +84,11 @@ class Kept:
 
 
 class Place:
-    """Where the packed plan of some requirements is kept, if anywhere.
+    """The cache entry of the packed plan of some requirements.
 
-    It is keyed by all that it depends on: what was checked of the specification, the requirements,
-    and the files of rvmon by size and time. The key stands in the file, too: one that was renamed
-    is none of this place.
+    The key is a hash of everything the plan depends on: the checked specification, `how` it is
+    planned, and the size and time of rvmon's files. It is also stored in the file, so that a
+    renamed file is not taken for the entry.
     """
 
     def __init__(self, spec: CheckedSpec, *how: object) -> None:

@@ -127,7 +127,7 @@ def still_required(required: str, end: int | None, origin: int) -> str:
 def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
-    """Which of some names have had no value so far, but those that the doubt names."""
+    """The names that have had no value so far, except those that `doubt` mentions already."""
     named = set() if doubt is None else {one.name for one in doubt.outages}
     found = (outages[name] for name in sorted(set(names) & outages.keys() - named))
     return tuple(one for one in found if one.why is HealthKind.MISSING)

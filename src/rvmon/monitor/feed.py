@@ -17,7 +17,7 @@ from rvmon.trace.time import ticks_of_seconds
 
 
 class Feed:
-    """Checks samples, holds back those that cannot be judged yet, and has the core judge them."""
+    """Validates samples, holds back the incomplete ones, and passes the others to the core."""
 
     def __init__(
         self,
@@ -44,10 +44,10 @@ class Feed:
         return self._intake is not None and self._intake.is_too_late(t)
 
     def take(self, t: int, values: Mapping[str, Value]) -> None:
-        """Take a sample, at ticks.
+        """Take a sample at `t` ticks; `values` come from `check`.
 
         Raises:
-            TimeOrderError: it comes behind what was judged; nothing changed.
+            TimeOrderError: it is not later than what has been judged; nothing changed.
         """
         if self._intake is None:
             _, last, reached = self._core.times()

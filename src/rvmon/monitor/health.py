@@ -169,7 +169,7 @@ class Findings:
 def health_of_run(
     planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
 ) -> tuple[Health, ...]:
-    """The input health of a run that took samples."""
+    """The input health of a monitor's run, from the counters of the core; `further`: the feed's."""
     log = HealthLog()
     log.began, _, _ = run.times()
     names = [(name, name) for name in planned.numbers]

@@ -23,7 +23,7 @@ MOST_HELD = 65_536
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """From an instant on names are lost, or behind it found again."""
+    """The beginning or end of an outage of names: at `t` ticks, its first or last instant."""
 
     t: int
     names: tuple[str, ...]

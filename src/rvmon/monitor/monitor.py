@@ -108,20 +108,20 @@ class Monitor(FedMonitor[Attempt]):
         return self._core.flush()
 
     def on_decided(self, callback: Callback) -> Callable[[], None]:
-        r"""Have a function called with each attempt that passes or fails, as it is decided.
+        r"""Register a callback for each attempt that passes or fails.
 
-        `step`, `advance` and `finish` call it when all their records are made, in the order in
-        which they return them, in the thread that called them; it may look at the monitor. An
-        attempt that ends undecided is only in the report. What a callback raises comes out of
-        that call when all callbacks were called for all attempts (several errors as an
-        `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
-        no part of snapshots: register them again after `Spec.restore`.
+        `step`, `advance` and `finish` call it before they return, in the calling thread, with
+        their attempts in the order in which they return them; it may use the monitor. An attempt
+        that ends undecided appears only in the report. What a callback raises propagates once all
+        callbacks have been called for all attempts (several errors as an `ExceptionGroup`); the
+        sample has been taken nevertheless. Callbacks survive `reset`, but are not part of
+        snapshots: register them again after `Spec.restore`.
 
         Returns:
-            A function without arguments that ends this; to call it again does nothing.
+            A function without arguments that unregisters the callback; idempotent.
 
         Raises:
-            RvmonError: it cannot be called.
+            RvmonError: `callback` is not callable.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
@@ -263,10 +263,10 @@ class Monitor(FedMonitor[Attempt]):
         return snapshot_of(self.compiled, self.options, self._planned, self._core, state)
 
     def restore_state(self, document: Mapping[str, Any]) -> None:
-        """Go on as the run of a snapshot; this monitor was just made as that was.
+        """Continue the run of a snapshot in this fresh monitor, made with the same options.
 
         Raises:
-            SnapshotError: it fits no such monitor.
+            SnapshotError: the snapshot does not fit this monitor.
         """
         state = restored_state(document, self._planned, self._core)
         interrupted = state["interrupted"]

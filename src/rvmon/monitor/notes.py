@@ -119,7 +119,7 @@ def _words(data: bytes) -> tuple[int, ...]:
 
 @lru_cache(maxsize=1024)
 def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
-    """The truths that stand in some words, two bits each; few differ in a recording."""
+    """Unpack truth values, two bits each; cached, as few words differ in a recording."""
     return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class CapturedValues:
-    """Decodes the values that attempts captured."""
+    """Decodes the captured values of attempts."""
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
         self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]

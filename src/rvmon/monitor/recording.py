@@ -66,9 +66,9 @@ class RecordingRun:
 
     Args:
         checked: the specification.
-        planned: the plan that it judges by.
+        planned: the plan of its requirements.
         source: the recording that the pieces come from.
-        finds: whether the health of the input is collected.
+        finds: whether input health is collected.
     """
 
     def __init__(

@@ -41,13 +41,13 @@ _TOGETHER = 4096
 
 
 class RecordedAttempts(LazyAttempts):
-    """The attempts of a run, made from raw records on access; explanations when they are read.
+    """The attempts of a run, made from raw records on access; explained when details are read.
 
     Args:
         planned: the plan of the run; `None`: it is given later.
-        records: array of `RECORD`, in the order of reports.
-        numbers: array of `NUMBER` [records, most], the values that they captured.
-        notes: of these records, and the letters that they refer to.
+        records: `RECORD[n]`, in the order of reports.
+        numbers: `NUMBER[n, most]`, the captured values.
+        notes: the notes of the records as bytes, and the letters that these refer to.
         origin: the first instant of the run, ticks.
     """
 

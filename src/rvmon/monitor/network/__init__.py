@@ -43,7 +43,7 @@ from rvmon.monitor.network.sweep import Carried, Known, since, until
 
 
 def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Known:
-    """What is known of a node."""
+    """The known values of a node (not a leaf), from those of its operands."""
     match node:
         case Junction():
             return _junction(node, operands)
