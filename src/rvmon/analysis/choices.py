@@ -166,15 +166,9 @@ def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> S
 def truths_tried(
     spec: CheckedSpec, leaves: Sequence[Leaf], tried: Sequence[Mapping[str, Value]]
 ) -> list[tuple[int, ...]]:
-    r"""The truth values of leaves for each of several valuations.
+    r"""Per valuation of `tried`, the truth value of each leaf.
 
-    Args:
-        spec: declares the names.
-        leaves: over present values: signals, events and comparisons of these.
-        tried: the valuations; each has all names that the leaves read.
-
-    Returns:
-        Per valuation, the truth value of each leaf.
+    The leaves read present values only, and each valuation has all names that they read.
 
     Cost: one pass in C.
 
@@ -249,15 +243,7 @@ def choices_of(
     captured: Sequence[Numeric] = (),
     windows: Sequence[Compare] = (),
 ) -> Choices:
-    """The samples worth trying.
-
-    Args:
-        spec: declares the names.
-        leaves: the leaves of the formulas.
-        read: the names to assign.
-        captured: the expressions captured by `let`.
-        windows: comparisons of windows; with any, the choices never count as complete.
-    """
+    """The samples worth trying; with comparisons of `windows`, they never count as complete."""
     names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered, windows)
