@@ -1,6 +1,6 @@
-"""What is to be covered and what tests were seen to do, as data: items with goals, hits, records.
+"""Coverage as data: models of items with goals, hits, and records of tests.
 
-The other modules find hits, keep them in databases, and answer questions about them.
+The other modules find hits, store them in databases, and answer questions about them.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 STATES = "states"
 TRANSITIONS = "transitions"
 PAIRS = "pairs of transitions"
-"""Names of the groups of a system's own states; the items of the last two are joined by arrows."""
+"""Names of the groups of a system's own states; items of the last two are states with arrows."""
 
 
 class Subject(StrEnum):
-    """What the items of a group are."""
+    """The kind of the items of a group."""
 
     COVERPOINT = "coverpoint"
     CROSS = "cross"
@@ -40,13 +40,13 @@ class Subject(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One thing that may be hit: a bin, a combination of bins, a state, a line.
+    """One coverage item: a bin, a combination of bins, a state, a line and so on.
 
     Attributes:
         name: unique in its group.
-        kind: what a hit means: progress, nothing, or an error.
-        goal: hits that it needs.
-        text: what it is, for people: a condition, a line of code; empty where the name says it.
+        kind: goal, ignored, or illegal (a hit is an error).
+        goal: the hits it needs.
+        text: a description: a condition, a line of code; "" if the name suffices.
     """
 
     name: str
@@ -61,12 +61,12 @@ class Group:
 
     Attributes:
         name: unique in its model.
-        subject: what they are.
+        subject: the kind of its items.
         items: by name, in order.
-        weight: of the group in the total; 0: it is shown, and counts for nothing.
-        axes: of a cross, the bins of each of its coverpoints by that one's name; its items are
-            named by `combination`.
-        title: what it is about, for people, such as the text of a requirement.
+        weight: its weight in the total; with 0 it is shown, but not counted.
+        axes: of a cross, the bins of each of its coverpoints, by the coverpoint's name; its items
+            are named by `combination`.
+        title: a description, such as the text of a requirement.
     """
 
     name: str
@@ -79,18 +79,18 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """All that runs of a system should show."""
+    """A coverage model: all groups of items, by name."""
 
     groups: Mapping[str, Group]
 
     def goals_of(self, group: str) -> list[tuple[str, str]]:
-        """What is to be hit of a group, by names of group and item; none if there is no such."""
+        """The goals of a group, as names of group and item; none if there is no such group."""
         items = self.groups[group].items if group in self.groups else {}
         return [(group, one.name) for one in items.values() if one.kind is BinKind.GOAL]
 
 
 def combination(bins: Sequence[str]) -> str:
-    """The name of the item of a cross that has one bin of each axis, in the order of the axes.
+    """The name of the item of a cross with one bin of each axis, in the order of the axes.
 
     >>> combination(["yes", "touch"]), combination(["yes", "a × b"])
     ('yes × touch', 'yes × `a × b`')
@@ -130,7 +130,7 @@ def model_of(groups: Sequence[Group]) -> Model:
 
 
 def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
-    """A model in which some items, by group and name, have no goal.
+    """The model with some items, by group and name, ignored.
 
     >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no")])
     >>> without(model_of([gaze]), [("gaze", "no")]).groups["gaze"].items["no"].kind.value
@@ -146,33 +146,32 @@ def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """How often an item was hit in one run, or in several.
+    """The hits of an item in one run, or in several.
 
     Attributes:
         count: at least 1.
-        first: the instant of the first hit in ticks, where that is known.
+        first: the instant of the first hit, ticks, if known.
     """
 
     count: int
     first: int | None = None
 
     def __reduce__(self) -> tuple[type[Hit], tuple[int, int | None]]:
-        # Thousands of tests bring a hundred each from other processes.
+        # Compact pickles: thousands of tests send a hundred hits each between processes.
         return Hit, (self.count, self.first)
 
 
 Hits = Mapping[str, Mapping[str, Hit]]
-"""By group and item; what was not hit is left out. A group or item that is no part of the model is
-an error of whoever made them."""
+"""By group and item; items without hits are left out. All groups and items must be in the model."""
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """How much of something is covered.
+    """The coverage of a group.
 
     Attributes:
-        items: that have a goal.
-        covered: of these, that were hit as often as their goals ask for.
+        items: the number of items that are goals.
+        covered: the number of these that reached their goals.
     """
 
     items: int
@@ -180,7 +179,7 @@ class Score:
 
 
 def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
-    """The hits of several runs together: counts add up; an instant says nothing any more.
+    """The hits of several runs together: counts are added, first instants are dropped.
 
     >>> one = {"gaze": {"yes": Hit(2, 5)}}
     >>> merged([one, {"gaze": {"yes": Hit(1, 3), "no": Hit(1)}}])["gaze"]["yes"].count
@@ -196,36 +195,36 @@ def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
 
 
 def count_of(hits: Hits, group: str, item: str) -> int:
-    """How often an item was hit."""
+    """The number of hits of an item."""
     hit = hits.get(group, {}).get(item)
     return 0 if hit is None else hit.count
 
 
 def is_covered(hits: Hits, group: Group, item: Item) -> bool:
-    """Whether an item was hit as often as its goal asks for."""
+    """Whether an item reached its goal."""
     return count_of(hits, group.name, item.name) >= item.goal
 
 
 def score(hits: Hits, group: Group) -> Score:
-    """How much of a group is covered; what is ignored or illegal has no goal."""
+    """The coverage of a group; ignored and illegal items are no goals."""
     wanted = [item for item in group.items.values() if item.kind is BinKind.GOAL]
     return Score(len(wanted), sum(is_covered(hits, group, item) for item in wanted))
 
 
 def share(hits: Hits, model: Model) -> float:
-    """The share of a model that is covered: each subject counts alike, in it groups by weight.
+    """The covered share of a model; see `weighted`.
 
     Returns:
-        From 0 to 1, which stand for none and all alone; 1 if nothing is wanted.
+        From 0 to 1; exactly 0 or 1 only if nothing or everything is covered; 1 without goals.
     """
     return weighted((group, score(hits, group)) for group in model.groups.values())
 
 
 def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
-    """The mean over subjects of the means of their groups by weights, rounded once.
+    """The mean over subjects of the weighted means of their groups, rounded once.
 
-    So a whole cross counts, however many requirements stand beside it. What has no items, or no
-    weight, counts for nothing.
+    So a cross counts the same, however many requirements there are. Groups without goals or weight
+    are left out.
 
     >>> from rvmon.coverage import Subject
     >>> rest = [(Group(f"R{place}", Subject.REQUIREMENT, {}), Score(4, 4)) for place in range(99)]
@@ -245,7 +244,7 @@ def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
 
 
 def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:
-    """What was hit and must not be."""
+    """The illegal items that were hit."""
     return [
         (group, item, hits[group.name][item.name])
         for group in model.groups.values()
@@ -255,7 +254,7 @@ def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:
 
 
 def covered_groups(hits: Hits, model: Model) -> tuple[CoveredGroup, ...]:
-    """What one run hit of each group, and what not."""
+    """The coverage of one run, per group, with items that were not hit."""
 
     def covered(group: Group, item: Item) -> CoveredBin:
         hit = hits.get(group.name, {}).get(item.name)
@@ -283,26 +282,26 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class TestRecord:
-    """A test of a campaign and what became of it, without what it hit.
+    """A test of a campaign with its result, without its hits.
 
     Attributes:
-        name: for people; several tests may have one name.
-        campaign: that it is part of.
-        strategy: that made it; empty if none did, as for a recording from the field.
-        recording: path of what was recorded; empty if that was not kept.
-        seed: that it can be played again with.
-        system: what was tested, such as a robot and its version.
+        name: its display name; need not be unique.
+        campaign: the name of its campaign.
+        strategy: the strategy that generated it; "" for none, as of a recording from the field.
+        recording: path of the recording; "" if it was not kept.
+        seed: the seed to replay it with.
+        system: the system under test, such as a robot and its version.
         verdicts: by requirement.
         ending: how it ended.
-        error: what went wrong if it did not complete, in words.
-        number: its place in the campaign; tests with the same one are in the order of `when`.
-        seconds: that it took.
-        when: it was recorded, ns since 1970 in UTC; `None`: when it is written.
-        expected: requirements that were known to fail, each with the reason.
-        origin: the first instant of its run, ticks, from which instants are told.
+        error: the error, if it did not complete.
+        number: its position in the campaign; equal ones are ordered by `when`.
+        seconds: its duration in seconds.
+        when: the instant of recording, ns since 1970 UTC; `None`: when it is written.
+        expected: the requirements known to fail, each with the reason.
+        origin: the first instant of its run, ticks, which is shown as 0 s.
     """
 
-    __test__: ClassVar[bool] = False  # to pytest, which goes by names
+    __test__: ClassVar[bool] = False  # keeps pytest from collecting it by its name
 
     name: str
     campaign: str = ""
@@ -321,12 +320,12 @@ class TestRecord:
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The requirements that failed and were not known to."""
+        """The requirements that failed unexpectedly."""
         return tuple(name for name in self._failed if name not in self.expected)
 
     @property
     def failed_as_expected(self) -> dict[str, str]:
-        """The requirements that failed as they were known to, each with the reason."""
+        """The requirements that failed as expected, each with the reason."""
         return {name: self.expected[name] for name in self._failed if name in self.expected}
 
     @property
@@ -336,12 +335,12 @@ class TestRecord:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Row:
-    """What a test hit, as columns in step.
+    """The hits of a test, as parallel columns.
 
     Attributes:
-        items: that were hit, by their places in `Coverage.items`, ascending.
-        counts: how often, at least once each.
-        firsts: instants of the first hits in ticks; `UNKNOWN` where that is not known.
+        items: int32[n], the items hit, as indices of `Coverage.items`, ascending.
+        counts: int64[n], the number of hits, at least 1.
+        firsts: int64[n], instants of the first hits in ticks, or `UNKNOWN`.
     """
 
     items: NDArray[np.int32]
@@ -350,17 +349,17 @@ class Row:
 
 
 UNKNOWN = -(1 << 63)
-"""In place of an instant that is not known: no instant is so early."""
+"""Stands for an unknown instant; earlier than all instants."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A test with what it hit.
+    """A test with its hits.
 
     Attributes:
-        digest: distinguishes tests by their content.
+        digest: a hash that identifies the test by its content.
         record: the test.
-        row: what it hit.
+        row: its hits.
     """
 
     digest: str
@@ -370,14 +369,15 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """All that a database holds.
+    """The contents of a coverage database.
 
     Attributes:
-        model: what is to be covered.
+        model: the model.
         items: names of group and item, in the order of the model.
         entries: the tests, in the order of their campaigns.
-        reasons: why an item is not covered, by group and item, in words.
-        unreachable: why an item cannot be hit, likewise; it is no goal, and a hit is an error.
+        reasons: by group and item, reasons why it is not covered.
+        unreachable: by group and item, reasons why it cannot be hit; it is then no goal, and a hit
+            contradicts the reason.
     """
 
     model: Model

@@ -1,4 +1,4 @@
-"""Databases of coverage: what is to be covered, the tests of campaigns, and what each hit.
+"""Coverage databases: a model, the tests of campaigns, and the hits of each test.
 
 >>> from rvmon.coverage import Hit
 >>> from rvmon.coverage import Item, Subject, group_of, model_of
@@ -35,10 +35,10 @@ from rvmon.errors import CoverageError
 
 
 class Database:
-    """A database of coverage that is open: in one process and one thread, beside others.
+    """An open coverage database, used by one thread; other processes may use the same file.
 
-    Each call writes all that it is given or nothing, whatever ends the process; a test that is
-    there already is not written twice. Calls wait for other processes that write.
+    Each call is atomic, even if the process is killed; a test that is already stored is not added
+    again. Calls wait for other processes that write.
 
     Args:
         connection: to its tables.
@@ -52,41 +52,41 @@ class Database:
 
     @classmethod
     def open(cls, path: str | Path) -> Self:
-        """Open a file to write to; it is made if it does not exist.
+        """Open a file for writing; it is created if it does not exist.
 
         Raises:
-            CoverageError: it is no database of coverage, is damaged, of a newer version, or cannot
-                be written.
+            CoverageError: it is no coverage database, is damaged, of another version, or cannot be
+                written.
         """
         return cls(connect(path, create=True), path)
 
     @classmethod
     def in_memory(cls) -> Self:
-        """A database that is gone when it is closed."""
+        """A new database in memory."""
         return cls(connect(None, create=True), None)
 
     def declare(self, model: Model) -> None:
-        """Say what is to be covered; what was declared before stays.
+        """Add a model; earlier declarations stay.
 
         Args:
-            model: may be declared any number of times, and may have more than before.
+            model: may be declared repeatedly, and may extend earlier ones.
 
         Raises:
-            CoverageError: a group or an item is known with another goal, kind, weight, subject or
-                axes; it is named, and nothing is written.
+            CoverageError: a group or item is known with another goal, kind, weight, subject or
+                axes; the message names it, and nothing is written.
         """
         with transaction(self._tables, self._path):
             write_groups(self._tables, self._path, self._stored(), stored_of(model))
 
     def record(self, test: TestRecord, hits: Hits) -> None:
-        """Add a test and what it hit.
+        """Add a test and its hits.
 
         Args:
-            test: what became of it.
-            hits: by group and item of a model that was declared.
+            test: the test with its result.
+            hits: by group and item of a declared model.
 
         Raises:
-            CoverageError: an item is in no model, or the file cannot be written.
+            CoverageError: an item is not declared, or the file cannot be written.
         """
         items = self._with((group, item) for group, items in hits.items() for item in items)
         with readable_errors(self._path):
@@ -95,7 +95,7 @@ class Database:
             write_entries(self._tables, [entry], items.ids)
 
     def explain(self, group: str, item: str, reason: str) -> None:
-        """Add why an item is not covered; holes are shown with it.
+        """Add a reason why an item is not covered, which is shown with the hole.
 
         Raises:
             CoverageError: there is no such item, or the file cannot be written.
@@ -104,7 +104,7 @@ class Database:
             self._explain(self._with([(group, item)]), {(group, item): [reason]})
 
     def exclude(self, group: str, item: str, reason: str) -> None:
-        """Say that an item cannot be hit, and why: it is no goal any more, and a hit is an error.
+        """Declare an item unreachable, with a reason: it is then no goal.
 
         Raises:
             CoverageError: there is no such item, or the file cannot be written.
@@ -113,13 +113,11 @@ class Database:
             self._explain(self._with([(group, item)]), {(group, item): [reason]}, "unreachable")
 
     def merge(self, other: Database) -> None:
-        """Add all that another database holds.
-
-        In whatever order and how often databases are merged, the same comes out.
+        """Add the contents of another database; commutative, associative and idempotent.
 
         Raises:
-            CoverageError: the models contradict each other (the item is named), the other one is
-                damaged, or this one cannot be written; nothing is written then.
+            CoverageError: the models contradict each other (the message names the item), the other
+                database is damaged, or this one cannot be written; nothing is written then.
         """
         groups, coverage = other._snapshot()
         with transaction(self._tables, self._path):
@@ -132,7 +130,7 @@ class Database:
             self._explain(own, coverage.unreachable, "unreachable")
 
     def coverage(self) -> Coverage:
-        """All that it holds.
+        """The contents.
 
         Raises:
             CoverageError: it is damaged.
@@ -140,7 +138,7 @@ class Database:
         return self._snapshot()[1]
 
     def _snapshot(self) -> tuple[Stored, Coverage]:
-        """All that it holds at one instant, whoever writes meanwhile; the groups as stored, too."""
+        """The contents in one consistent state, also the groups as stored."""
         with transaction(self._tables, self._path, writes=False):
             stored = self._stored()
             items = _Items(stored)
@@ -167,7 +165,7 @@ class Database:
             return read_groups(self._tables, self._path)
 
     def _with(self, named: Iterable[tuple[str, str]]) -> _Items:
-        """The items as they were last read, or now if they lack one of those that are named."""
+        """The cached items, read again if they lack one of `named`."""
         if any(one not in self._items.places for one in named):
             self._items = _Items(self._stored())  # declared since, perhaps by another process
         return self._items
@@ -191,7 +189,7 @@ class Database:
             )
 
     def close(self) -> None:
-        """Close the file; what was written is there already."""
+        """Close the file; all writes are already committed."""
         with readable_errors(self._path):
             self._tables.close()
 
@@ -208,14 +206,14 @@ class Database:
 
 
 def read(paths: Sequence[str | Path]) -> Coverage:
-    """All that some files hold together.
+    """The merged contents of some files.
 
     Args:
-        paths: at least one; they are not changed.
+        paths: at least one; the files are not changed.
 
     Raises:
-        CoverageError: one is no database of coverage, is damaged, of a newer version, or has a
-            model that contradicts another's.
+        CoverageError: a file is no coverage database, is damaged, of another version, or its model
+            contradicts another one.
     """
     if len(paths) == 1:
         with Database(connect(paths[0], create=False), paths[0]) as database:
@@ -225,7 +223,7 @@ def read(paths: Sequence[str | Path]) -> Coverage:
 
 
 def merge(paths: Iterable[str | Path], out: str | Path) -> None:
-    """Write all that some files hold into one; what that one holds already stays.
+    """Merge some files into another one; its own contents stay.
 
     Raises:
         CoverageError: as `read`, or the file cannot be written; nothing is written then.
@@ -235,7 +233,7 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> None:
 
 
 def _together(paths: Iterable[str | Path]) -> Database:
-    """A database in memory with all that some files hold."""
+    """A database in memory with the merged contents of some files."""
     together = Database.in_memory()
     try:
         for path in paths:
@@ -251,8 +249,8 @@ class _Items:
     """The items of a database in the order of its model.
 
     Attributes:
-        places: in that order, by names of group and item.
-        ids: in the tables, by place.
+        places: by names of group and item, the index in that order.
+        ids: by index, the id in the table.
     """
 
     def __init__(self, stored: Stored) -> None:

@@ -1,4 +1,4 @@
-"""What a hole is, why it may be open, which test came nearest, and what would close it: words."""
+"""Explains holes: the item in words, why it may be open, the nearest test, what would close it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PART = re.compile(r"(?:^| × )(?:`([^`]*)`|([^`×]*?))(?= × |$)")
 def nearest_tests(
     goals: Iterable[Goal], tests: Sequence[tuple[str, Hits]], model: Model
 ) -> dict[Goal, str]:
-    """The first of the tests that came nearest to each item; none where no test came near."""
+    """By item, the test that came nearest (the first of equals); absent if none came near."""
     found = {}
     for goal in goals:
         near, name = max(
@@ -36,9 +36,9 @@ def nearest_tests(
 def nearness(goal: Goal, hits: Hits, model: Model) -> float:
     """The share of the preconditions of an item that a test met, from 0 to 1.
 
-    Of a combination of bins it is the bins in common with the nearest one that was hit; of a
-    transition, that its source was reached; of a statement or branch, how far the test got towards
-    its line; of anything else, what it hit of the same group.
+    For a combination of bins, the most bins in common with one that was hit; for a transition,
+    whether its source was reached; for a statement or branch, how near to its line the test came;
+    for anything else, the share of its group that was hit.
     """
     group = model.groups[goal[0]]
     seen = hits.get(group.name, {})
@@ -55,7 +55,7 @@ def nearness(goal: Goal, hits: Hits, model: Model) -> float:
 
 
 def cross_parts(name: str) -> list[str]:
-    """The bins that the name of a combination is made of.
+    """The bins in the name of a combination; inverse of `combination`.
 
     >>> cross_parts("yes × `a × b`")
     ['yes', 'a × b']
@@ -73,10 +73,10 @@ def _near_cross(group: Group, wanted: str, seen: list[str]) -> float:
 
 
 def _near_transition(goal: Goal, hits: Hits) -> float:
-    """The way to the source counts: a pair of transitions needs its first one."""
+    """Nearness to a transition, or to a pair of transitions: whether its prefix was taken."""
     names = goal[1].split(_ARROW)
     way = names[:-1]
-    if goal[0].startswith("`"):  # the automaton of a requirement: its locations stand beside
+    if goal[0].startswith("`"):  # an automaton's edge: its locations are a group of their own
         places = hits.get(goal[0].replace(" edges", " locations"), {})
         return float(way[-1] in places)
     if len(way) == 1:
@@ -84,13 +84,13 @@ def _near_transition(goal: Goal, hits: Hits) -> float:
     gone = hits.get(TRANSITIONS, {})
     first, second = (_ARROW.join(pair) for pair in pairwise(names))
     met = (first in gone) + (second in gone)
-    # Between both the state may have been entered again and again: the fewer times, the nearer.
+    # Self-transitions of the middle state separate the two: the fewer, the nearer.
     again = gone.get(_ARROW.join((names[1], names[1])))
     return (met + 1 / (1 + (again.count if again else 0))) / 3
 
 
 def _near_code(goal: Goal, hits: Hits) -> float:
-    """A branch needs its line; a line, the lines before it."""
+    """Nearness to a line: 1 if it ran (a branch), else by distance to the last line that ran."""
     block = goal[0].partition(" of ")[2]
     lines = {int(line) for line in hits.get(f"statements of {block}", {})}
     line = int(goal[1].partition(_ARROW)[0])
@@ -105,13 +105,13 @@ _DECIDES = " decides"
 
 @dataclass(frozen=True, slots=True)
 class Hole:
-    """Something that is to be shown and was not, in words.
+    """An uncovered item in words.
 
     Attributes:
-        what: it is.
-        why: nothing has shown it, as far as the hits of all tests tell.
-        needs: what would.
-        nearest: the test that came nearest; empty if none came near.
+        what: the item.
+        why: why it is not covered, as far as the hits of all tests show.
+        needs: what would cover it.
+        nearest: the nearest test; "" if none came near.
     """
 
     what: str
@@ -126,11 +126,11 @@ class Hole:
 
 
 def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
-    """Put a hole into words.
+    """Explain a hole.
 
     Args:
-        goal: an item that was hit less often than its goal asks for.
-        model: what there is to be covered.
+        goal: an item that has not reached its goal.
+        model: the model.
         hits: of all tests together.
         nearest: the test that came nearest to it.
 

@@ -1,6 +1,6 @@
-"""Which bins a stream of samples hits: coverpoints and crosses, counted by the core.
+"""Counts the hits of coverpoints, crosses, requirements and cover goals, by runs of the core.
 
-They are found beside verdicts, which this never touches.
+It runs beside monitors and never affects verdicts.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from rvmon.verdict.report import Report, report_of
 
 
 class Bins:
-    """The bins of a specification, ready to be watched on any number of runs."""
+    """The coverpoints and crosses of a specification, compiled for any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
@@ -46,22 +46,22 @@ class Bins:
 
     @cached_property
     def planned(self) -> PlannedCore:
-        """What the core counts by.
+        """The packed plan.
 
         Raises:
-            RvmonError: a formula is beyond the core.
+            RvmonError: a formula exceeds the limits of the core.
         """
         return planned_as(self.spec, (), Kept(pack(self.plan).data))
 
     @cached_property
     def plan(self) -> Plan:
-        """Has a watch for each bin, and for each place where some are looked at."""
+        """The plan, with a watch for each bin and for each occasion at which bins are sampled."""
         points, crosses = self.spec.coverpoints, self.spec.crosses
         reader = Reader(Factory(), self.spec.period)
         watches: list[Watch] = []
 
         def watch(formula: Formula) -> int:
-            # What is not born is false.
+            # Unborn counts as FALSE.
             watches.append(Watch(reader.four(formula).read(FALSE), is_pulse(formula)))
             return len(watches) - 1
 
@@ -79,7 +79,7 @@ class Bins:
         return plan_of_watches(self.spec, watches, groups)
 
     def hits(self, counted: bytes) -> Hits:
-        """What a run has hit."""
+        """The hits of a run, from the counters of the core: pairs of count and first instant."""
         numbers = iter_unpack("=qq", counted)
         found: dict[str, dict[str, Hit]] = {}
         for group in self.groups:
@@ -90,11 +90,7 @@ class Bins:
 
 
 def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
-    """The coverpoints and crosses of a specification as groups of a model.
-
-    Args:
-        spec: a coverpoint and a cross of it never share a name.
-    """
+    """The coverpoints and crosses of a specification as groups of a model."""
     for point in spec.coverpoints.values():
         yield _of_point(point)
     for cross in spec.crosses.values():
@@ -110,7 +106,7 @@ def _of_point(point: Coverpoint) -> Group:
 
 
 def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
-    """A combination with a bin that counts for nothing does so itself, as with one that is illegal.
+    """The group of a cross; a combination with an ignored or illegal bin is ignored.
 
     An illegal bin is reported by its coverpoint.
     """
@@ -130,20 +126,20 @@ def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
 
 
 class _CoverageRun(Monitor):
-    """Takes samples as every monitor does, and makes no report."""
+    """A monitor that takes samples as usual, but whose report is empty."""
 
     def _reported(self, end: int | None) -> Report:
         return report_of((), (), end=end)
 
 
 class SpecCoverage:
-    """The coverage model of a specification, ready to watch any number of runs."""
+    """The coverage model of a specification, compiled for any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
 
     def __reduce__(self) -> tuple[type[SpecCoverage], tuple[CheckedSpec]]:
-        # What was made here stays here.
+        # Only the specification is pickled; the other process compiles it again.
         return SpecCoverage, (self.spec,)
 
     @cached_property
@@ -158,12 +154,12 @@ class SpecCoverage:
 
     @cached_property
     def bin_model(self) -> Model:
-        """What may be hit of coverpoints and crosses."""
+        """The model of coverpoints and crosses only."""
         return model_of(self.bins.groups)
 
     @cached_property
     def model(self) -> Model:
-        """What may be hit."""
+        """The model of coverpoints, crosses, requirements and cover goals."""
         return model_of([*self.bins.groups, *self.requirements.groups])
 
     def monitor(
@@ -173,16 +169,16 @@ class SpecCoverage:
         sources: frozenset[str] | None = None,
         requirements: bool = True,
     ) -> CoverageMonitor:
-        """What watches one run, sample by sample.
+        """A monitor of the coverage of one run, sample by sample.
 
         Args:
             settle: `now` or `next`, as for `rvmon.session.Spec.monitor`.
             sources: the names that can arrive; `None`: all.
-            requirements: whether requirements and cover goals are watched as well as bins, which
-                costs more than to judge them: each is also judged without each of its parts.
+            requirements: whether to include requirements and cover goals. That costs more than
+                judging them, as each is also judged without each of its operands.
 
         Raises:
-            UnknownNameError: there is no such way to settle.
+            UnknownNameError: `settle` is neither `now` nor `next`.
         """
         if settle not in WAYS_TO_SETTLE:
             ways = ", ".join(WAYS_TO_SETTLE)
@@ -192,11 +188,11 @@ class SpecCoverage:
     def of(
         self, recording: Recording, end: int | None = None, *, requirements: bool = True
     ) -> Hits:
-        r"""What a recording hits.
+        r"""The hits of a recording.
 
         Args:
             recording: read to its end.
-            end: of the trace in ticks, before or behind its own; what comes later is not seen.
+            end: the end of the trace in ticks, before or after its own; later samples are ignored.
             requirements: as for `monitor`.
 
         >>> from rvmon import loads
@@ -219,7 +215,7 @@ class SpecCoverage:
 
 
 class _Watched:
-    """What of a coverage model is watched."""
+    """The parts of a coverage model that are watched in a run."""
 
     def __init__(self, model: SpecCoverage, *, requirements: bool) -> None:
         self._bins = model.bins
@@ -227,9 +223,9 @@ class _Watched:
 
     @cached_property
     def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
-        """What the core takes samples by: what refuses most comes first, the bins last.
+        """The plans of the runs; the strictest in validating samples first, the bins last.
 
-        A sample that the first has taken is taken by all.
+        So a sample that the first run accepts is accepted by all.
         """
         found = {} if self._requirements is None else dict(self._requirements.planned)
         if self._bins.groups:
@@ -241,7 +237,7 @@ class _Watched:
         return self._bins.hits(runs[-1].hits()) if self._bins.groups else {}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Hits:
-        """All that was hit; the runs are over."""
+        """All hits of finished runs."""
         hits = dict(self.bin_hits(runs))
         if self._requirements is not None:
             own = runs[: len(self._requirements.planned)]
@@ -250,15 +246,10 @@ class _Watched:
 
 
 class CoverageMonitor:
-    """Watches a stream of samples; made by `SpecCoverage.monitor`.
+    """Measures the coverage of a stream of samples; made by `SpecCoverage.monitor`.
 
-    Times are as for `rvmon.monitor.Monitor`: seconds, or ticks in the methods that end in `_ns`; so
-    are the errors.
-
-    Args:
-        watched: says what is looked at.
-        settle: when a sample is taken for complete.
-        sources: the names that can arrive; `None`: all.
+    Times and errors are as for `rvmon.monitor.Monitor`: seconds, or ticks in the methods that end
+    in `_ns`.
     """
 
     def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
@@ -279,30 +270,30 @@ class CoverageMonitor:
             run.step_ns(t_ns, values)
 
     def advance(self, t: float) -> None:
-        """Say that no sample before `t` (seconds) will come."""
+        """State that no sample before `t` (seconds) will come."""
         self.advance_ns(ticks_of_seconds(t))
 
     def advance_ns(self, t_ns: int) -> None:
-        """Say that no sample before `t_ns` will come."""
+        """State that no sample before `t_ns` will come."""
         for run in self._runs:
             run.advance_ns(t_ns)
 
     def reset(self) -> None:
-        """Forget the run; the next sample starts another."""
+        """Discard the run; the next sample starts another."""
         for run in self._runs:
             run.reset()
 
     @property
     def hits(self) -> Hits:
-        """The bins and combinations hit so far; what requirements show is known at the end."""
+        """The bins and combinations hit so far; hits of requirements are known at the end."""
         return self._watched.bin_hits([run.core for run in self._runs])
 
     def finish(self, t: float | None = None) -> Hits:
-        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        """End the run at `t` seconds, if that is later than everything so far; see `finish_ns`."""
         return self.finish_ns(None if t is None else ticks_of_seconds(t))
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
-        """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
+        """End the run, at `t_ns` if that is later than everything so far; returns all hits."""
         for run in self._runs:
             run.finish_ns(t_ns)
         return self._watched.hits([run.core for run in self._runs])

@@ -1,4 +1,4 @@
-"""Questions to coverage: what is hit and by whom, what is missing, what each test is good for."""
+"""Answers about coverage: hits, holes, the contribution of each test, comparisons."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goals:
-    """What is wanted of each item.
+    """The goals of all items, as arrays by item.
 
     Attributes:
-        goal: hits that it needs.
-        wanted: whether it is to be hit, so that it counts.
-        unreachable: whether it would be, if it could be hit.
+        goal: the hits it needs.
+        wanted: whether it is a reachable goal, so that it counts.
+        unreachable: whether it is a goal that cannot be hit.
         illegal: whether a hit is an error.
-        group: the place of its group in the model.
+        group: the index of its group in the model.
     """
 
     goal: NDArray[np.int64]
@@ -39,13 +39,13 @@ class Goals:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Totals:
-    """What became of each item.
+    """The hits of all items over all tests, as arrays by item.
 
     Attributes:
-        counts: hits in all.
-        tests: that hit it.
-        first: the first test that did, −1 if none.
-        instants: of the first hit in that test, ticks, where that is known.
+        counts: the number of hits.
+        tests: the number of tests that hit it.
+        first: the first test that hit it; −1 if none.
+        instants: the instant of the first hit in that test, ticks, or `UNKNOWN`.
     """
 
     counts: NDArray[np.int64]
@@ -56,12 +56,12 @@ class Totals:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What a test added to those before it.
+    """The contribution of a test after those before it.
 
     Attributes:
         entry: the test.
         added: the items that reached their goals with it.
-        share: of the model that is covered with it, from 0 to 1.
+        share: the covered share of the model with it, from 0 to 1.
     """
 
     entry: int
@@ -71,13 +71,13 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class VerdictChange:
-    """A requirement that another verdict was found for by the same test.
+    """A changed verdict of a requirement on the same test.
 
     Attributes:
-        test: its name.
-        requirement: the requirement's id.
-        before: the earlier verdict; `None`: it was not judged.
-        after: the later one; `None` likewise.
+        test: the name of the test.
+        requirement: the id of the requirement.
+        before: the earlier verdict; `None` if it was not judged.
+        after: the later verdict; likewise.
     """
 
     test: str
@@ -88,16 +88,16 @@ class VerdictChange:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What is different from an earlier campaign.
+    """The differences from an earlier campaign.
 
     Attributes:
-        before: the share that was covered, from 0 to 1.
-        after: the share that is.
-        gained: items that are covered and were not, by group and name.
-        lost: items that were covered and are not.
-        illegal: illegal items that are hit and were not.
-        dropped: items that were to be covered, and that there are no more.
-        verdicts: that changed.
+        before: the earlier covered share, from 0 to 1.
+        after: the covered share now.
+        gained: items newly covered, by group and name.
+        lost: items no longer covered.
+        illegal: illegal items newly hit.
+        dropped: earlier goals that are no longer in the model.
+        verdicts: the changed verdicts.
     """
 
     before: float
@@ -110,18 +110,18 @@ class Comparison:
 
 
 _MOST = 1 << 62
-"""What a sum of hits is cut off at."""
+"""The bound at which sums of hits saturate."""
 
 
 class Answers:
-    """What is hit and by whom, what is missing, what each test is good for, worked out once."""
+    """Answers about a coverage database; each is computed once, on access."""
 
     def __init__(self, coverage: Coverage) -> None:
         self.coverage = coverage
 
     @cached_property
     def goals(self) -> Goals:
-        """What is wanted of each item."""
+        """The goals of all items."""
         coverage = self.coverage
         groups = list(coverage.model.groups.values())
         items = [item for group in groups for item in group.items.values()]
@@ -137,7 +137,7 @@ class Answers:
 
     @cached_property
     def totals(self) -> Totals:
-        """How often each item was hit, by how many tests, and by which one first."""
+        """The hits of all items over all tests."""
         size = len(self.coverage.items)
         counts, tests = np.zeros(size, np.int64), np.zeros(size, np.int64)
         first, instants = np.full(size, -1), np.full(size, UNKNOWN)
@@ -152,41 +152,41 @@ class Answers:
 
     @cached_property
     def covered(self) -> NDArray[np.bool_]:
-        """Whether each item is wanted, and was hit as often as its goal asks for."""
+        """bool[items]: whether each is a reachable goal that was reached."""
         return self.goals.wanted & (self.totals.counts >= self.goals.goal)
 
     @cached_property
     def scores(self) -> Mapping[str, Score]:
-        """How much of each group is covered."""
+        """By group, its coverage."""
         return self._scores(self.covered)
 
     @cached_property
     def share(self) -> float:
-        """The share of the model that is covered, from 0 to 1, as `model.share` has it."""
+        """The covered share of the model, from 0 to 1; see `weighted`."""
         return self._share(self.covered)
 
     @cached_property
     def holes(self) -> Sequence[int]:
-        """The items that were hit less often than their goals ask for."""
+        """The reachable goals that were not reached."""
         return _places(self.goals.wanted & ~self.covered)
 
     @cached_property
     def illegal(self) -> Sequence[int]:
-        """The items that were hit and must not be."""
+        """The illegal items that were hit."""
         return _places(self.goals.illegal & (self.totals.counts > 0))
 
     @cached_property
     def contradicted(self) -> Sequence[int]:
-        """The items that were hit and cannot be, as it is said."""
+        """The items that were hit although declared unreachable."""
         return _places(self.goals.unreachable & (self.totals.counts > 0))
 
     @cached_property
     def steps(self) -> Sequence[Step]:
-        """What each test adds to those before it, in the order of their campaigns."""
+        """The contribution of each test, in the order of their campaigns."""
         return self.growth(range(len(self.coverage.entries)))
 
     def growth(self, order: Iterable[int]) -> list[Step]:
-        """What each of some tests, by their places, adds to those before it."""
+        """The contributions of tests taken in a given order (indices of entries)."""
         goals, size = self.goals, len(self.coverage.items)
         counts, covered = np.zeros(size, np.int64), np.zeros(size, np.bool_)
         share = self._share(covered)
@@ -212,7 +212,7 @@ class Answers:
 
     @cached_property
     def unique(self) -> Sequence[Sequence[int]]:
-        """By test, the items that would not be covered without it."""
+        """Per test, the items that would not be covered without it."""
         counts, found = self.totals.counts, []
         for entry in self.coverage.entries:
             items = entry.row.items
@@ -222,7 +222,7 @@ class Answers:
         return found
 
     def hitters(self, most: int) -> dict[int, list[int]]:
-        """The first tests that hit each item, at most so many."""
+        """By item, the first tests that hit it, at most `most`."""
         found: dict[int, list[int]] = {}
         counts = np.zeros(len(self.coverage.items), np.int64)
         for place, entry in enumerate(self.coverage.entries):
@@ -252,7 +252,7 @@ def _places(chosen: NDArray[np.bool_]) -> list[int]:
 
 
 def only(coverage: Coverage, wanted: Callable[[TestRecord], bool]) -> Coverage:
-    """The same with some of the tests."""
+    """The coverage of the tests that satisfy a predicate."""
     return replace(coverage, entries=[entry for entry in coverage.entries if wanted(entry.record)])
 
 
@@ -260,10 +260,10 @@ Names = tuple[str, str]
 
 
 def compare(before: Coverage, after: Coverage) -> Comparison:
-    """What is different from an earlier campaign.
+    """The differences from an earlier campaign.
 
-    Tests are the same that have the same name, strategy and seed, whatever system they tested; of
-    several that have, the first is compared with the first.
+    Tests are matched by name, strategy and seed, whatever system they tested; of several equal
+    ones, the first is matched with the first.
     """
     old_covered, old_illegal, old_share = _state(before)
     covered, illegal, share = _state(after)
@@ -281,7 +281,7 @@ def compare(before: Coverage, after: Coverage) -> Comparison:
 
 
 def _state(coverage: Coverage) -> tuple[dict[Names, bool], list[Names], float]:
-    """Of each item that is wanted whether it is covered; the illegal ones that are hit; a share."""
+    """By goal, whether it is covered; the illegal items hit; the covered share."""
     answers = Answers(coverage)
     covered = {
         coverage.items[place]: bool(answers.covered[place])

@@ -1,4 +1,4 @@
-"""Short orders of tests that cover all that a campaign does, and the fewest that do."""
+"""Small sets and short orders of tests that reach the coverage of a whole campaign."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from rvmon.coverage import Coverage
 from rvmon.coverage.questions import Answers, Step
 
 MOST_NODES = 20_000
-"""Partial choices that are looked at, about a second's worth."""
+"""The most nodes of the search tree, about a second's worth."""
 
 MOST_COMPARED = 500
-"""Tests up to which each is compared with each."""
+"""The most tests for which all pairs are compared for dominance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Smallest:
-    """A choice of tests.
+    """A small set of tests.
 
     Attributes:
-        places: of the tests, ascending.
-        at_least: no choice has fewer; the number of `places` if it is known to be the smallest.
+        places: the indices of the tests, ascending.
+        at_least: a lower bound; equal to the size of `places` if that is proved minimal.
     """
 
     places: tuple[int, ...]
@@ -36,16 +36,16 @@ class Smallest:
 def smallest(
     rows: Sequence[Mapping[int, int]], goals: Mapping[int, int], most_nodes: int = MOST_NODES
 ) -> Smallest:
-    """Choose the fewest tests that hit items as often as all of them do, up to their goals.
+    """A smallest set of tests that reaches the same goals as all tests: a set multicover problem.
 
-    Branch and bound: the item that the fewest tests hit is given to each of them in turn. A choice
-    is left once items that no test shares ask for as many tests as the best one known has. If that
-    takes too many steps, the best choice so far and what is known about the least number are given.
+    Branch and bound, branching over the tests that hit the scarcest item. The lower bound adds up
+    items of which no test hits two. If the search exceeds its limit, the best set so far is
+    returned with the lower bound at the root.
 
     Args:
-        rows: by test, how often it hits items.
-        goals: hits that each item needs; others count for nothing.
-        most_nodes: partial choices that are looked at.
+        rows: per test, its hits by item.
+        goals: the hits that each item needs; other items are ignored.
+        most_nodes: the most nodes of the search tree.
 
     Source: Garfinkel and Nemhauser, The Set-Partitioning Problem: Set Covering with Equality
     Constraints, Operations Research 17, 1969 (dominance, branching on the scarcest row); Chvátal, A
@@ -84,7 +84,7 @@ def smallest(
 def _undominated(
     rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]
 ) -> dict[int, dict[int, int]]:
-    """Tests without those that are needless beside another one, which alone does as they do."""
+    """The tests without dominated ones: another test alone brings their items to the goals."""
     kept: dict[int, dict[int, int]] = {}
     seen: set[frozenset[int]] = set()
     for place, row in rows.items():
@@ -108,7 +108,7 @@ def _undominated(
 
 
 def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
-    """Items without those that are hit whenever a scarcer one is."""
+    """The items without dominated ones: those hit by every test that hits a scarcer item."""
     hitters = _hitters(rows)
     kept: dict[int, int] = {}
     for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
@@ -119,7 +119,7 @@ def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> di
 
 
 def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
-    """By item, the tests that hit it, as bits of a number."""
+    """By item, the set of tests that hit it, as bits of an integer."""
     found: dict[int, int] = {}
     for place, row in rows.items():
         for item in row:
@@ -128,7 +128,7 @@ def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
 
 
 class _Search:
-    """Branch and bound; sets of tests are bits of a number."""
+    """Branch and bound; sets of tests are bits of an integer."""
 
     def __init__(self, rows: Mapping[int, dict[int, int]], most_nodes: int) -> None:
         self._rows = rows
@@ -142,11 +142,11 @@ class _Search:
 
     @property
     def stopped(self) -> bool:
-        """Whether there were too many choices."""
+        """Whether the limit of nodes was reached."""
         return self._left <= 0
 
     def greedy(self, needed: Mapping[int, int]) -> None:
-        """A first choice: the test that adds most, again and again."""
+        """The initial solution: repeatedly the test that adds most."""
         while needed:
             gains = {
                 place: _gain(row, needed)
@@ -158,7 +158,7 @@ class _Search:
             needed = _without(needed, self._rows[place])
 
     def bound(self, needed: Mapping[int, int], refused: int) -> int:
-        """At least so many further tests: for items of which no test hits two."""
+        """A lower bound on further tests: the sum over items of which no test hits two."""
         used, count = 0, 0
         for item in sorted(needed, key=lambda one: (self._hitters[one] & ~refused).bit_count()):
             hitters = self._hitters[item] & ~refused
@@ -168,7 +168,7 @@ class _Search:
         return count
 
     def branch(self, needed: Mapping[int, int], chosen: list[int], refused: int) -> None:
-        """Try all choices that go on from one and may be better than the best."""
+        """Search the extensions of a partial solution that may improve on the best one."""
         if not needed:
             if len(chosen) < len(self.best):
                 self.best = chosen
@@ -190,18 +190,18 @@ def _gain(row: Mapping[int, int], needed: Mapping[int, int]) -> int:
 
 
 def _without(needed: Mapping[int, int], row: Mapping[int, int]) -> dict[int, int]:
-    """What is still needed behind a test."""
+    """The hits still needed after a test."""
     return {item: left for item, count in needed.items() if (left := count - row.get(item, 0)) > 0}
 
 
 MOST_TESTS = 1000
-"""Tests among which the smallest choice is looked for."""
+"""The most tests for which a smallest set is searched."""
 
 
 def fewest(answers: Answers) -> Smallest:
-    """The fewest tests known that reach the coverage of all.
+    """The smallest known set of tests that reaches the coverage of all.
 
-    Of many tests those of the ranking are taken, and how many are needed at least is left open.
+    For many tests it is the greedy ranking, without a lower bound.
     """
     entries = answers.coverage.entries
     if len(entries) > MOST_TESTS:
@@ -215,7 +215,7 @@ def fewest(answers: Answers) -> Smallest:
 
 
 def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
-    """The weight of each group in the total: its part of its subject, which all count alike."""
+    """The weight of each group in the total, relative to its subject; see `weighted`."""
     groups = [*coverage.model.groups.values()]
     whole: Counter[str] = Counter()
     for group, count in zip(groups, items, strict=True):
@@ -224,16 +224,14 @@ def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
 
 
 def ranking(answers: Answers, places: Collection[int] | None = None) -> list[Step]:
-    """Tests that reach the coverage of all, the one that adds most first.
+    """A greedy order of tests that reaches the coverage of all.
 
-    At every step the test is taken that brings the items nearest to their goals, weighed as in the
-    total; what no number of the tests reaches counts for nothing. A gain can only shrink as others
-    are taken, so that most of them need not be worked out again.
+    At every step the test is taken with the largest gain towards reachable goals, weighted as in
+    the total. Gains are submodular, they only shrink: so they are re-evaluated lazily.
 
     Args:
         answers: about the tests.
-        places: of those that may be taken, such as the fewest; default: all, of which those that
-            are taken are not always the fewest.
+        places: indices of the tests to order, such as those of `fewest`; default: all.
 
     Source: Nemhauser, Wolsey, Fisher, "An analysis of approximations for maximizing submodular set
     functions", 1978; Minoux, "Accelerated greedy algorithms", 1978.

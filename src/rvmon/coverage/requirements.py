@@ -1,4 +1,4 @@
-"""What runs do with requirements: triggered, passed, what decided, deadlines, automata."""
+"""Coverage of requirements: triggers, passes, decisive operands, deadlines, automata."""
 
 from __future__ import annotations
 
@@ -26,19 +26,14 @@ from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
 
 Passages = Mapping[tuple[int, int], Hit]
-"""From a location of an automaton to one; from the first to itself: attempts began."""
+"""By source and target location of an automaton, the passages of attempts; the initial location to
+itself counts attempts that began."""
 
 _OPEN = DECISIONS.index(Decision.OPEN)
 
 
 class Judged(NamedTuple):
-    """An attempt of which there surely was a trigger.
-
-    Attributes:
-        triggered: ticks.
-        decided: the same; `None` if it was not.
-        verdict: that it got.
-    """
+    """An attempt that is not in doubt: instants in ticks (`decided` may be `None`) and verdict."""
 
     triggered: int
     decided: int | None
@@ -46,7 +41,7 @@ class Judged(NamedTuple):
 
 
 def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:
-    """The attempts of each requirement, but those in doubt."""
+    """By requirement, its attempts except those in doubt."""
     found: dict[str, list[Judged]] = {name: [] for name in ids}
     records = np.frombuffer(run.records()[0], RECORD)
     records = records[records["in_doubt"] == 0]
@@ -60,7 +55,7 @@ def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judge
 
 
 def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
-    """Where attempts of each requirement went in its automaton; as `attempts_of`."""
+    """By requirement, the passages of its attempts through its automaton."""
     found: dict[str, Passages] = {}
     for number, name in enumerate(ids):
         locations, counted = run.passages(number)
@@ -73,7 +68,7 @@ def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
 
 
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
-    """A specification whose requirements are the cover goals of another, for samples in order."""
+    """A specification whose requirements are the cover goals of another; samples in order only."""
     requirements = {
         name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), cover.formula, span=cover.span)
         for name, cover in spec.covers.items()
@@ -82,7 +77,7 @@ def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
 
 
 def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
-    """What a run says of each goal: `P` shown, `I` still possible at its end, else `NT`.
+    """By cover goal, `P` if the run shows it, `I` if it was still possible at the end, else `NT`.
 
     No single run fails a goal.
     """
@@ -105,45 +100,45 @@ FAILURE = "F"
 """The location of an automaton in which an attempt has failed."""
 
 TENTH = 10
-"""Just before a deadline is within this part of its time."""
+"""A response within 1/TENTH of the time before its deadline counts as just before it."""
 
 MOST_LOCATIONS = 50
-"""Larger automata are not shown: nobody would look at what of them was seen."""
+"""The size of the largest automata that become coverage groups."""
 
 
 def _item(name: str, text: str = "", *, by_failure: bool = False) -> Item:
-    """An item; no run should show what only a failure does, so that has no goal."""
+    """An item; one that only a failing run can hit is no goal."""
     fails = by_failure or name in (AFTER, FAILURE) or name.endswith(edge_name(("", FAILURE)))
     return Item(name, BinKind.IGNORE if fails else BinKind.GOAL, text=text)
 
 
 def locations_of(name: str) -> str:
-    """The group of the locations of a requirement's automaton; no name holds a backtick."""
+    """The name of the group of an automaton's locations; no requirement's id has a backtick."""
     return f"`{name}` locations"
 
 
 def edges_of(name: str) -> str:
-    """The group of its edges."""
+    """The name of the group of an automaton's edges."""
     return f"`{name}` edges"
 
 
 def decides(part: str) -> str:
-    """The item of a part that decided: without it, verdicts or their instants would be others."""
+    """The name of the item for a decisive operand: without it, an attempt would end otherwise."""
     return f"`{part}` decides"
 
 
 def edge_name(step: tuple[str, str]) -> str:
-    """The item of a step from one location of an automaton to another."""
+    """The name of the item for an edge, given its source and target."""
     return " → ".join(step)
 
 
 def _steps(graph: Graph) -> Iterator[tuple[str, str]]:
-    """The steps of an automaton; to stay is none, as it is not looked at each time."""
+    """The edges of an automaton without self-loops, which are not always evaluated."""
     return ((one.source, one.target) for one in graph.edges if one.source != one.target)
 
 
 class WatchedRequirement:
-    """A requirement and what may be seen of it."""
+    """A requirement with its coverage items."""
 
     def __init__(self, compiled: CompiledRequirement) -> None:
         self.compiled = compiled
@@ -153,7 +148,7 @@ class WatchedRequirement:
 
     @cached_property
     def graph(self) -> Graph | None:
-        """Its automaton as people see it; `None` if it has none, or a large one."""
+        """The graph of its automaton; `None` if it has none, or it is too large."""
         automaton = self.compiled.automaton
         if automaton is None or len(automaton.locations) > MOST_LOCATIONS:
             return None
@@ -161,7 +156,7 @@ class WatchedRequirement:
 
     @property
     def groups(self) -> Iterator[Group]:
-        """What may be hit."""
+        """Its coverage groups: itself, and the locations and edges of its automaton."""
         name = self.requirement.id
         items = [_item(TRIGGERED), _item(PASSED)]
         items += [_item(decides(one.part), by_failure=one.by_failure) for one in self.variants]
@@ -175,7 +170,7 @@ class WatchedRequirement:
                 if one.source != one.target:
                     upon = " at ".join(part for part in (one.condition, one.when) if part)
                     edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
-            # What is required for ever is met by the end of the run alone: no edge leads to `P`.
+            # An unbounded `always` passes only at the end of the run: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
             required = [
                 _item(one.name, one.required) for one in self.graph.places if one.name in entered
@@ -186,7 +181,7 @@ class WatchedRequirement:
 
 
 def deadline_of(required: Formula) -> int | None:
-    """The ticks within which something has to come, if that is all that is required."""
+    """The deadline in ticks of a consequent `F[0,b]` or `U[0,b]`; else `None`."""
     match required:
         case Unary(op=UnaryOp.EVENTUALLY, interval=interval):
             return None if interval is None else interval.high
@@ -197,7 +192,7 @@ def deadline_of(required: Formula) -> int | None:
 
 
 class WatchedRequirements:
-    """The requirements and cover goals of a specification, ready to be watched on any runs."""
+    """The requirements and cover goals of a specification, compiled for any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         plain = replace(spec, properties={}, covers={})
@@ -207,7 +202,7 @@ class WatchedRequirements:
             name: WatchedRequirement(one) for name, one in self._own.requirements.items()
         }
         self._variants = {
-            # No requirement, and no goal, has a backtick in its name.
+            # Backticks keep the ids of variants distinct from those of requirements and goals.
             name: {f"`{name}` {number}": one for number, one in enumerate(watched.variants, 1)}
             for name, watched in self._watched.items()
         }
@@ -224,13 +219,13 @@ class WatchedRequirements:
 
     @cached_property
     def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
-        """What the core judges by: the requirements, and beside them what else is judged."""
+        """The plans of the runs: one of the requirements, one of variants and cover goals."""
         traced = {name for name, one in self._watched.items() if one.graph is not None}
         specs = [one for one in (self._own, self._others) if one.checked.requirements]
         return {one: planned_core(one, traced=traced) for one in specs}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What was hit, by group."""
+        """The hits by group, of finished runs."""
         attempts: dict[str, list[Judged]] = {}
         passages: dict[str, Passages] = {}
         for compiled, run in zip(self.planned, runs, strict=True):
@@ -255,13 +250,13 @@ def _instant(attempt: Judged) -> int:
 
 
 def _hit(item: str, instants: Iterable[int]) -> dict[str, Hit]:
-    """An item that was hit at some instants; none: nothing."""
+    """The hits of an item at some instants; empty without any."""
     found = [*instants]
     return {item: Hit(len(found), min(found))} if found else {}
 
 
 def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[tuple[str, Hit]]:
-    """What the attempts of a requirement alone say."""
+    """The hits of the items on triggers, passes and deadlines."""
     yield from _hit(TRIGGERED, [one.triggered for one in attempts]).items()
     passed = [one for one in attempts if one.verdict is Verdict.PASS]
     yield from _hit(PASSED, [_instant(one) for one in passed]).items()
@@ -281,7 +276,7 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
 
 
 def _apart(own: Iterable[Judged], others: Iterable[Judged]) -> list[int]:
-    """The instants of attempts that only one of two requirements has, or decides otherwise."""
+    """The instants of attempts in which two requirements differ in existence or decision."""
     first, second = (
         {(one.triggered, one.decided, one.verdict): _instant(one) for one in some}
         for some in (own, others)
@@ -297,9 +292,10 @@ def _apart(own: Iterable[Judged], others: Iterable[Judged]) -> list[int]:
 def _passages(
     graph: Graph, name: str, passages: Passages
 ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-    """The locations and edges of an automaton that were seen.
+    """The hits of the locations and edges of an automaton.
 
-    An attempt that leaves a location was there, known as it may not have been when it came.
+    A location counts the larger number of entering and leaving attempts: the entry may have been
+    unknown.
     """
     names = {place.location: place.name for place in graph.places}
     drawn = frozenset(_steps(graph))

@@ -1,4 +1,4 @@
-"""The file of a database of coverage: its tables, and how it is opened and what is refused."""
+"""The file of a coverage database: its tables, opening it, and the errors."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pathlib import Path
 from rvmon.errors import CoverageError
 
 APPLICATION = 0x72766376
-"""In the header of the file, so that it is known by what it is: "rvcv"."""
+"""The `application_id` in the header of the file: "rvcv"."""
 
 VERSION = 4
-"""Of the tables; raised with each change of them."""
+"""The version of the tables; raised with each change of them."""
 
 TABLES = (
     "CREATE TABLE groups (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
@@ -35,25 +35,25 @@ TABLES = (
     "recorded INTEGER NOT NULL, expected TEXT NOT NULL, origin INTEGER NOT NULL, "
     "hits BLOB NOT NULL)",
 )
-"""What the file holds, and nothing else: a view or a trigger of others would run with our words."""
+"""The exact schema; a file with more is refused, as foreign views or triggers would run our SQL."""
 
 PATIENCE_S = 60.0
 """Seconds that a process waits for others that write."""
 
 _LONGEST = 100_000_000
-"""Bytes of a text or of the hits of one test, beyond which a file is not believed."""
+"""The most bytes of a text, or of the hits of one test, that are accepted."""
 
 
 def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
     """Open a database of coverage.
 
     Args:
-        path: of the file; `None`: one in memory that is gone when it is closed.
-        create: make it if there is none, and be ready to write; else it is only read.
+        path: of the file; `None`: in memory.
+        create: create it if it does not exist, and open it for writing; else read-only.
 
     Raises:
-        CoverageError: there is none, it is none, it is damaged or of another version, or it
-            cannot be opened.
+        CoverageError: it does not exist, is no coverage database, is damaged, of another version,
+            or cannot be opened.
     """
     if path is not None:
         _refuse(Path(path), create=create)
@@ -75,7 +75,7 @@ def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
 
 @contextmanager
 def readable_errors(path: str | Path | None) -> Iterator[None]:
-    """Have errors of SQLite, and of what it cannot hold, in words for people."""
+    """Turn errors of SQLite, and of values it cannot store, into `CoverageError` with advice."""
     try:
         yield
     except sqlite3.ProgrammingError as error:
@@ -98,9 +98,9 @@ def readable_errors(path: str | Path | None) -> Iterator[None]:
 def transaction(
     database: sqlite3.Connection, path: str | Path | None, *, writes: bool = True
 ) -> Iterator[None]:
-    """Write all that is written within or nothing of it, or read what there is at one instant.
+    """A transaction: all writes within it or none, or reads of one consistent state.
 
-    Others that write wait for one that writes.
+    Other writers wait for one that writes.
     """
     with readable_errors(path):
         database.execute("BEGIN IMMEDIATE" if writes else "BEGIN")
@@ -114,17 +114,17 @@ def transaction(
 
 
 def name_of(path: str | Path | None) -> str:
-    """What a database is called in errors."""
+    """The name of a database in errors."""
     return "the database in memory" if path is None else str(path)
 
 
 def damaged(path: str | Path | None, what: str) -> CoverageError:
-    """The error that a file holds what was never written there."""
+    """The error that a file has contents rvmon cannot have written."""
     return CoverageError(f"error: {name_of(path)} is damaged: {what}: {_ANEW}")
 
 
 _ANEW = "restore a copy of it, or delete it and record again"
-"""What to do about damage."""
+"""The advice for a damaged file."""
 
 _WORDS = {
     sqlite3.SQLITE_NOTADB: "this is no database: give one that `rvmon run --coverage` wrote",
@@ -143,11 +143,11 @@ _WORDS = {
     "disk",
     sqlite3.SQLITE_NOMEM: "the memory is not enough for it",
 }
-"""What to do, by SQLite's codes."""
+"""Explanation and advice by SQLite's error codes."""
 
 
 def _refuse(path: Path, *, create: bool) -> None:
-    """Say what SQLite would say in fewer words, or wait for for ever."""
+    """Refuse paths for which SQLite's own error would be poor, or opening would block."""
     try:
         found = path.stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -173,15 +173,15 @@ def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
     address = "file::memory:"
     if path is not None:
         whole = Path(path).absolute()
-        # Where nothing can be written and nobody writes, SQLite's own files beside it cannot be
-        # made, and are not needed.
+        # In a read-only folder SQLite cannot create its auxiliary files; without a writer (no WAL
+        # file) it does not need them.
         alone = not os.access(whole.parent, os.W_OK) and not Path(f"{whole}-wal").exists()
         mode = "rwc" if create else "ro&immutable=1" if alone else "rw"
         address = f"{whole.as_uri()}?mode={mode}"
     database = sqlite3.connect(address, uri=True, timeout=PATIENCE_S, isolation_level=None)
     try:
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
-        # As SQLite advises for files of others: https://sqlite.org/security.html
+        # SQLite's advice for untrusted files: https://sqlite.org/security.html
         for words in ("trusted_schema = OFF", "cell_size_check = ON", "mmap_size = 0"):
             database.execute(f"PRAGMA {words}")
     except BaseException:
@@ -191,7 +191,7 @@ def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
 
 
 def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
-    """See that the file is ours and of this version.
+    """Check that the file is a coverage database of this version.
 
     Raises:
         CoverageError: it is not.
@@ -232,7 +232,7 @@ def _is_new(database: sqlite3.Connection) -> bool:
 
 def _make(database: sqlite3.Connection, path: str | Path | None) -> None:
     with transaction(database, path):
-        if _is_new(database):  # nobody else was faster
+        if _is_new(database):  # checked again: another process may have been faster
             for table in TABLES:
                 database.execute(table)
             database.execute(f"PRAGMA application_id = {APPLICATION}")
@@ -240,13 +240,13 @@ def _make(database: sqlite3.Connection, path: str | Path | None) -> None:
 
 
 def _prepare(database: sqlite3.Connection) -> None:
-    """Make ready for many small writes.
+    """Configure for many small writes: WAL without waiting for the disk.
 
-    Each is one append to a file beside, which costs no wait for the disk and stays if the process
-    is killed. If power is lost, the last tests may be, but not the file.
+    Writes survive a killed process. A power failure may lose the last tests, but not damage the
+    file.
     """
     database.execute("PRAGMA synchronous = NORMAL")
-    with suppress(sqlite3.OperationalError):  # another process is at it: without is as safe
+    with suppress(sqlite3.OperationalError):  # another process uses it: the old mode is safe, too
         database.execute("PRAGMA journal_mode = WAL")
 
 

@@ -1,4 +1,4 @@
-"""The groups and items of a database: what of a model is written, and read back."""
+"""Writes and reads the model of a coverage database: its groups and items."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rvmon.spec.checked.goals import BinKind
 
 @dataclass(frozen=True, slots=True)
 class StoredItem:
-    """An item, its place in its group, and its id if it has one."""
+    """An item with its position in its group, and its id in the table (0: none yet)."""
 
     kind: BinKind
     goal: int
@@ -28,10 +28,10 @@ class StoredItem:
 
 @dataclass(frozen=True, slots=True)
 class StoredGroup:
-    """A group and its place in its model.
+    """A group with its position in its model.
 
-    Two models have an order together if each part knows its place: the first of its places counts,
-    whichever of the models came first.
+    Positions make merging commutative: each part of the merged model gets the least of its
+    positions, in whatever order models are merged.
     """
 
     subject: Subject
@@ -43,11 +43,11 @@ class StoredGroup:
 
 
 Stored = Mapping[str, StoredGroup]
-"""The groups by name, in no order."""
+"""The groups by name, unordered."""
 
 
 def stored_of(model: Model) -> Stored:
-    """A model as it is written."""
+    """A model with positions, as it is written."""
     return {
         group.name: StoredGroup(
             group.subject,
@@ -68,7 +68,7 @@ def stored_of(model: Model) -> Stored:
 
 
 def model_from(stored: Stored) -> Model:
-    """The model that was written, in order."""
+    """The model of stored groups, ordered by position, then name."""
     groups = {}
     for name in sorted(stored, key=lambda name: (stored[name].position, name)):
         group = stored[name]
@@ -84,10 +84,10 @@ def model_from(stored: Stored) -> Model:
 
 
 def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored:
-    """What was written.
+    """Read the groups and items.
 
     Raises:
-        CoverageError: it cannot have been written like that.
+        CoverageError: the contents are damaged.
     """
     items: dict[int, dict[str, StoredItem]] = {}
     try:
@@ -119,17 +119,17 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
 def write_groups(
     database: sqlite3.Connection, path: str | Path | None, known: Stored, more: Stored
 ) -> None:
-    """Add to the groups that are known.
+    """Add groups and items.
 
     Args:
         database: within a transaction.
-        path: of what is added, for errors.
-        known: the groups that are there.
-        more: those to be added.
+        path: of the source of the groups, for errors.
+        known: the groups in the database.
+        more: the groups to be added.
 
     Raises:
-        CoverageError: an item or a group is known as another, or a figure makes no sense; nothing
-            is written.
+        CoverageError: a group or item contradicts a known one, or a number is invalid; nothing is
+            written.
     """
     for name, group in more.items():
         try:
@@ -167,7 +167,7 @@ def write_groups(
 
 
 def _refuse_nonsense(name: str, group: StoredGroup) -> None:
-    """Raise `ValueError` if a figure cannot be meant."""
+    """Raise `ValueError` if a weight or goal is invalid."""
     if group.weight < 0:
         raise ValueError(f"group `{name}` has weight {group.weight}: give at least 0")
     for item, one in group.items.items():
@@ -214,7 +214,7 @@ def _in_order(places: Mapping[str, int]) -> Sequence[str]:
 def _united(
     one: Mapping[str, Mapping[str, int]], other: Mapping[str, Mapping[str, int]]
 ) -> Mapping[str, Mapping[str, int]]:
-    """The bins of both, each in its first place; the axes are the same."""
+    """The union of the bins of equal axes, each bin at its least position."""
     return {
         axis: {
             name: min(places[name] for places in (bins, other[axis]) if name in places)

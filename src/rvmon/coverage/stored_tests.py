@@ -1,4 +1,4 @@
-"""The tests of a database: what is written of one, and read back."""
+"""Writes and reads the tests of a coverage database, with their hits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rvmon.errors import CoverageError
 from rvmon.verdict import Verdict
 
 _BYTES = 20
-"""Of an item that was hit: four of its id, eight of how often, eight of the first instant."""
+"""Bytes per item hit: four for its id, eight for the count, eight for the first instant."""
 
 _COLUMNS = (
     "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "
@@ -34,16 +34,16 @@ _WRITE = (
     "WHERE (excluded.recorded, excluded.number, excluded.seconds, excluded.recording) "
     "< (recorded, number, seconds, recording)"
 )
-"""A test that is there already did the same: the earliest record of it stays."""
+"""Of tests with equal digest, the earliest record is kept."""
 
 _READ = f"SELECT {_COLUMNS} FROM tests"  # noqa: S608 - our words
 
 
 def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]) -> Entry:
-    """A test with its hits as it is written.
+    """A test with its hits as an entry.
 
     Raises:
-        CoverageError: it hit what is not in the model, or a figure makes no sense.
+        CoverageError: it hit an item that is not in the model, or a number is invalid.
     """
     flat = sorted(
         (group, item, hit.count, hit.first)
@@ -70,7 +70,7 @@ def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]
 def write_entries(
     database: sqlite3.Connection, entries: Iterable[Entry], ids: NDArray[np.int64]
 ) -> None:
-    """Write tests; one that is there already is not written twice."""
+    """Write tests; those already stored are not added again."""
     database.executemany(
         _WRITE,
         (
@@ -109,7 +109,7 @@ def read_entries(
         ids: of the items, in the order of the model.
 
     Raises:
-        CoverageError: one cannot have been written like that.
+        CoverageError: the contents are damaged.
     """
     order = np.argsort(ids)
     entries = []
@@ -135,7 +135,7 @@ def read_entries(
 
 
 def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> str:
-    """What identifies a test: all but where and when it was recorded, and how fast."""
+    """The identity of a test: everything but where and when it was recorded, and its duration."""
     content = (
         test.campaign,
         test.name,
@@ -152,7 +152,7 @@ def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> s
 
 
 def _storable(test: TestRecord) -> TestRecord:
-    """The record with the instant of now if it has none, and names of files as text."""
+    """The record as it can be stored: with the present time by default, and valid text only."""
     return replace(
         test,
         name=_text(test.name),
@@ -173,7 +173,7 @@ def _json(texts: Mapping[str, str]) -> str:
 
 
 def _text(name: str) -> str:
-    """A text that can be written: a name of a file may hold bytes that are none."""
+    """A text in valid Unicode: names of files may have undecodable bytes (lone surrogates)."""
     return name if name.isascii() else name.encode("utf-8", "backslashreplace").decode()
 
 
@@ -191,7 +191,7 @@ def _refuse_nonsense(test: TestRecord, flat: list[tuple[str, str, int, int | Non
 
 
 def _packed(row: Row, ids: NDArray[np.int64]) -> bytes:
-    """The columns of a row, one behind the other, compressed."""
+    """The columns of a row, concatenated and compressed."""
     own = ids[row.items]
     order = np.argsort(own)
     columns = (own.astype("<i4"), row.counts.astype("<i8"), row.firsts.astype("<i8"))
@@ -221,10 +221,10 @@ def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.i
 
 
 def _unpacked(hits: bytes, ids: NDArray[np.int64], order: NDArray[np.intp]) -> Row:
-    """Undo `_packed`; no more is unpacked than there can be.
+    """Undo `_packed`; decompression is bounded by the number of items.
 
     Raises:
-        ValueError: these are not the hits of a test.
+        ValueError: the data are damaged.
     """
     unpacking = zlib.decompressobj()
     body = unpacking.decompress(hits, _BYTES * len(ids) + 1)

@@ -1,4 +1,4 @@
-"""Requirements with one part left out: what a part decides is seen by judging without it."""
+"""Variants of requirements without one operand, to find whether the operand was decisive."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _CONNECTIVES = (BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES)
 
 
 _EITHER_WAY = (BinaryOp.IFF, BinaryOp.XOR, UnaryOp.RISE, UnaryOp.FALL)
-"""What may become true as well as false where an operand does."""
+"""Operators that are not monotone in their operands."""
 
 
 class _Change(Enum):
-    """What a formula is without a part: implied by what it was, implying it, or neither."""
+    """The effect of dropping an operand: the formula becomes weaker, stronger, or neither."""
 
     WEAKER = auto()
     STRONGER = auto()
     OTHER = auto()
 
     def within(self, op: UnaryOp | BinaryOp, side: str = "") -> _Change:
-        """The same of what an operator makes of it."""
+        """The effect on a formula in which the changed one is an operand (`side`) of `op`."""
         if op in _EITHER_WAY or self is _Change.OTHER:
             return _Change.OTHER
         if op is UnaryOp.NOT or (op is BinaryOp.IMPLIES and side == "left"):
@@ -40,9 +40,9 @@ class Variant:
     """A requirement without one operand of `and`, `or` or `->`.
 
     Attributes:
-        part: the operand, as text; the same twice is numbered.
-        requirement: without it.
-        by_failure: whether, of values that are known, only a failure can tell the two apart.
+        part: the operand as text; repeated ones are numbered.
+        requirement: the requirement without it.
+        by_failure: whether, if all values are known, the two differ only if the original fails.
     """
 
     part: str
@@ -51,7 +51,7 @@ class Variant:
 
 
 def variants_of(requirement: Requirement) -> list[Variant]:
-    """All variants of a requirement: of its trigger first, then of what it owes."""
+    """All variants of a requirement: of its trigger, then of its consequent."""
     required = requirement.consequent
     is_steady = _is_steady(required)
     changed = [
@@ -73,10 +73,10 @@ def variants_of(requirement: Requirement) -> list[Variant]:
 
 
 def _is_steady(required: Formula) -> bool:
-    """Whether all that meets a formula does so at the same instant.
+    """Whether all passing attempts of a consequent pass at the same instant.
 
-    It is that of the trigger, or the last one of `always`, if nothing that was can settle it. Then
-    what meets it passes no sooner where less is required.
+    That is the trigger, or the end of an `always` over a timeless operand. Then a weaker consequent
+    passes no earlier, and only a failure tells the two apart.
     """
     if isinstance(required, Unary) and required.op is UnaryOp.ALWAYS:
         return is_timeless(required.operand)
@@ -84,11 +84,11 @@ def _is_steady(required: Formula) -> bool:
 
 
 def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]:
-    """Each operand of a connective in a formula, the formula without it, and how that differs."""
+    """Each operand of a connective in a formula, the formula without it, and the effect."""
     match formula:
         case Binary(op=op, left=left, right=right):
             for side, operand in (("left", left), ("right", right)):
-                # Of a chain, the operands are the links, not what they are joined to.
+                # In a chain `a and b and c`, only a, b and c are operands, not `a and b`.
                 chained = isinstance(operand, Binary) and operand.op is op
                 if op in _CONNECTIVES and not chained:
                     change = _Change.WEAKER if op is BinaryOp.AND else _Change.STRONGER
@@ -110,7 +110,7 @@ def _with(formula: Binary, side: str, operand: Formula) -> Formula:
 
 
 def _rest(formula: Binary, side: str) -> Formula:
-    """What is left without one side: the other, or its negation."""
+    """A binary formula without one side: the other side, or its negation for `a -> b` without b."""
     if side == "left":
         return formula.right
     if formula.op is BinaryOp.IMPLIES:

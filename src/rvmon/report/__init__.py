@@ -1,1 +1,1 @@
-"""What people look at: tables as data, and renderers for terminal, files and pages."""
+"""Tables as data, and renderers of reports for terminal, files and pages."""

@@ -1,4 +1,4 @@
-"""What signals and events of a recording changed to, and when: in columns where they came so."""
+"""The changes of signals and events over a recording, in columns where the input is in columns."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from rvmon.readers.batch import Batch, Cells
 
 _DENSE = 8
-"""More changes than so many a place are drawn by their extremes."""
+"""With more changes per place than this, only extremes are drawn."""
 
 
 class Course(Sequence[tuple[int, Scalar]]):
-    """Changes as columns; each is made as it is asked for.
+    """Changes held as columns; each pair is made on access.
 
     Args:
-        times: int64[n] ticks.
-        values: of n numbers, truths or texts.
-        hidden: bool[n], where it became unknown.
+        times: int64[n] ticks, ascending.
+        values: array[n] of numbers, truth values or texts.
+        hidden: bool[n], true where the value became unknown.
     """
 
     def __init__(self, times: NDArray[Any], values: NDArray[Any], hidden: NDArray[Any]) -> None:
@@ -48,19 +48,19 @@ class Course(Sequence[tuple[int, Scalar]]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and tuple(self) == tuple(other)
 
-    __hash__ = None  # type: ignore[assignment]  # as of a list: it equals other sequences
+    __hash__ = None  # type: ignore[assignment]  # unhashable like a list, as it equals sequences
 
     def shifted(self, ticks: int) -> Course:
-        """The same so much later."""
+        """The changes moved by some ticks."""
         times, values, hidden = self._columns
         return Course(times + ticks, values, hidden)
 
     def behind(self, instant: int) -> int:
-        """How many of them are not after an instant."""
+        """The number of changes up to an instant, inclusive."""
         return int(self._columns[0].searchsorted(instant, "right"))
 
     def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
-        """What they had changed to by some instants; `None` before the first, and if unknown."""
+        """The values at some instants; `None` before the first change, and if unknown."""
         times, values, hidden = self._columns
         places = times.searchsorted(instants, "right") - 1
         if not len(times):
@@ -73,13 +73,13 @@ class Course(Sequence[tuple[int, Scalar]]):
 
     @property
     def has_unknown(self) -> bool:
-        """Whether one is to the unknown."""
+        """Whether the value becomes unknown at some change."""
         return bool(self._columns[2].any())
 
     def outlined(self, places: int) -> Course:
-        """Of many numbers the first, the last and the extremes in each of so many equal stretches.
+        """A thinned version: first, last and extreme values in each of `places` equal stretches.
 
-        Where it becomes unknown, or known again, nothing is left out.
+        Changes to unknown and back are all kept.
         """
         import numpy as np
 
@@ -100,7 +100,7 @@ class Course(Sequence[tuple[int, Scalar]]):
 
 
 def shifted(changes: Sequence[tuple[int, Scalar]], ticks: int) -> Sequence[tuple[int, Scalar]]:
-    """Changes so much later."""
+    """Changes moved by some ticks."""
     if isinstance(changes, Course):
         return changes.shifted(ticks)
     return tuple((t + ticks, value) for t, value in changes)
@@ -109,7 +109,7 @@ def shifted(changes: Sequence[tuple[int, Scalar]], ticks: int) -> Sequence[tuple
 def changes_of(
     spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
 ) -> Mapping[str, Changes]:
-    """By name what each signal and event of a run changed to, whichever requirements read it."""
+    """By name, the changes of each signal and event of a run."""
     noted = RunChanges(spec)
     names = {*noted.by_name}
     for piece in samples.as_known(names) if isinstance(samples, HeldRecording) else samples:
@@ -118,14 +118,14 @@ def changes_of(
 
 
 class RunChanges:
-    """What signals and events change to, noted piece by piece of a run.
+    """Collects the changes of signals and events, piece by piece of a run.
 
     Args:
         spec: declares them.
-        only: the names that are noted; `None`: all.
+        only: the names to collect; `None`: all.
 
     Attributes:
-        by_name: the changes of each up to here.
+        by_name: the changes of each so far.
     """
 
     def __init__(self, spec: CheckedSpec, only: Set[str] | None = None) -> None:
@@ -139,7 +139,7 @@ class RunChanges:
         }
 
     def add(self, piece: Batch | Sample) -> None:
-        """Add what changes in a piece; they come in order."""
+        """Add the changes in the next piece."""
         if isinstance(piece, Sample):
             for name, value in updates_in(piece.values, self._ignoring).items():
                 if name in self.by_name:
@@ -179,7 +179,7 @@ class Changes:
         self._last, self._known = t, known
 
     def _grow_stale(self, t: int | None) -> None:
-        """See whether the value is stale before an instant, or the end."""
+        """Add the change to unknown if the value goes stale before an instant, or the end."""
         if self._stale_after is None or self._last is None or self._known is None:
             return
         stale_at = self._last + self._stale_after + 1
@@ -188,7 +188,7 @@ class Changes:
             self._known = None
 
     def add_cells(self, batch: Batch, cells: Cells) -> None:
-        """Add what rows say of a signal."""
+        """Add the updates of a signal in rows."""
         import numpy as np
 
         from rvmon.readers.batch import last_said, unknown_in
@@ -209,7 +209,7 @@ class Changes:
             differs = np.where(aged, ~hidden[1:], differs)
         else:
             aged = np.zeros(len(times) - 1, bool)
-        # In the order of rows: where a value becomes stale before the next, that stands before it.
+        # Merge by row: a value going stale after a row precedes the change at the next one.
         kept = np.flatnonzero(differs) + 1
         gone = np.flatnonzero(aged)
         order = np.argsort(np.concatenate([2 * kept, 2 * gone + 1]), kind="stable")
@@ -221,7 +221,7 @@ class Changes:
         self._known = None if hidden[-1] else _plain(values[-1])
 
     def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
-        """Add what rows say of an event: of one instant the surest."""
+        """Add the occurrences of an event in rows; a sure one wins over a possible one."""
         from rvmon.readers.batch import UNKNOWN, YES
 
         may = (says == UNKNOWN) | (says == YES)
@@ -231,7 +231,7 @@ class Changes:
         self._found += found.items()
 
     def value_at(self, instant: int) -> Scalar:
-        """A signal's value at an instant that is not before what was forgotten."""
+        """A signal's value at an instant, not before what `forget` has discarded."""
         if self._last is not None and instant >= self._last:
             limit = self._stale_after
             return None if limit is not None and instant > self._last + limit else self._known
@@ -243,12 +243,12 @@ class Changes:
         return None
 
     def forget(self) -> None:
-        """Let go of all changes but the last one."""
+        """Discard all changes but the last one."""
         self._columns = []
         self._found = [] if self._last is None else [(self._last, self._known)]
 
     def _settle(self) -> None:
-        """Put what was added one by one into columns."""
+        """Move the changes added one by one into columns."""
         import numpy as np
 
         if self._found:
@@ -261,7 +261,7 @@ class Changes:
             self._found = []
 
     def ended(self) -> Sequence[tuple[int, Scalar]]:
-        """All of them: of a signal its changes, of an event where it may have occurred."""
+        """All changes of a signal, or all sure and possible occurrences of an event."""
         self._grow_stale(None)
         if not self._columns:
             return tuple(self._found)
@@ -277,7 +277,7 @@ def _plain(value: Any) -> Scalar:
 
 
 def _known(value: Value) -> Scalar:
-    """A signal's value, `None` for what counts as unknown."""
+    """A signal's value; `None` if it is unknown."""
     if isinstance(value, float) and value != value:  # NaN
         return None
     return value if isinstance(value, bool | int | float | str) else None

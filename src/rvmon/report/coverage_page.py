@@ -1,4 +1,4 @@
-"""The page of coverage, for who decides what to test next: what is wrong, what is missing."""
+"""The page of coverage: faults, holes, crosses, tests and growth."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from rvmon.texts import counted, share_text
 from rvmon.verdict import Verdict
 
 WIDTH, HEIGHT = 1000, 100
-"""Units of the drawing, which is stretched to the width of the page."""
+"""The size of the drawing in SVG units; it is stretched to the width of the page."""
 
 COLOURS = 6
-"""Strategies that have a colour of their own; the others share one."""
+"""The number of strategies with a colour of their own; the others share one."""
 
 DOTS = 300
-"""Tests with a dot that leads to their line; of more, only the line is drawn."""
+"""The most tests that are marked by dots with links; of more, only the line is drawn."""
 
 
 def growth_chart(summary: Summary) -> ET.Element:
-    """Draw the share that is covered after each test.
+    """Draw the covered share after each test.
 
-    The dots on the line of all tests have the colour of the strategy that added something there.
+    Dots on the line of all tests have the colour of the strategy whose test added items there.
     """
     count = len(summary.coverage.entries)
     numbers = {name: min(at, COLOURS) for at, name in enumerate(summary.strategies)}
@@ -58,7 +58,7 @@ def growth_chart(summary: Summary) -> ET.Element:
 
 
 def _points(steps: Sequence[Step], count: int) -> str:
-    """Steps from nothing to the share of all: a point before and behind each rise."""
+    """The points of a step line from 0: one before and one after each rise."""
     points, level = [(0.0, 0.0)], 0.0
     for number, step in enumerate(steps, 1):
         if step.share != level:
@@ -91,7 +91,7 @@ def _dots(summary: Summary, numbers: dict[str, int], count: int) -> list[Child]:
 
 
 def _key(summary: Summary, numbers: dict[str, int]) -> ET.Element:
-    """Which line is whose, with what it reached alone."""
+    """The legend of the lines, with the share that each strategy reached alone."""
     parts = [e("span", None, e("i", {"class": "line all"}), "all tests")]
     for name, steps in summary.alone.items():
         reached = f"{share_text(steps[-1].share)} with {counted(len(steps), 'test')}"
@@ -101,23 +101,23 @@ def _key(summary: Summary, numbers: dict[str, int]) -> ET.Element:
 
 
 OPEN = 30
-"""Lines of a list that is shown at once; of a longer one, the rest is behind a click."""
+"""The most lines of a list shown at once; the rest is folded."""
 
 SHORT, LONG = 8, 40
-"""Items of a list that is always open, and of one that is open if something is missing."""
+"""The most items of a list that is always open, and of one that is open if it has a hole."""
 
 PALE, STRONG = 12, 62
-"""Percent of colour in the cell that was hit least, and in the one hit most often."""
+"""Percent of colour in the cells with the fewest and with the most hits."""
 
 MOST = 2_000
-"""Lines of tests; of more tests, those have one that something is to be reported of."""
+"""The most tests listed completely; of more, only the notable ones are listed."""
 
 NAMED = 4
-"""Items that a test is listed as having added; the rest is counted."""
+"""The most items named that a test added; the rest is counted."""
 
 
 def coverage_page(summary: Summary) -> str:
-    """Write the page; it needs no script and nothing but itself."""
+    """The page as HTML; self-contained and without scripts."""
     model = summary.coverage.model
     numbered = list(enumerate(model.groups.values()))
     scored = [(number, group, summary.scores[group.name]) for number, group in numbered]
@@ -170,7 +170,7 @@ def _headline(summary: Summary) -> str:
 
 
 def _changes(summary: Summary) -> list[tuple[str, Sequence[tuple[str, str]], str]]:
-    """What is different about items since an earlier campaign, each with a verdict's colour."""
+    """The changes of items since an earlier campaign: heading, items, letter of the colour."""
     found = summary.comparison
     if found is None:
         return []
@@ -184,7 +184,7 @@ def _changes(summary: Summary) -> list[tuple[str, Sequence[tuple[str, str]], str
 
 
 def _linked(summary: Summary, table: VerdictTable) -> Markup:
-    """Tests by verdict, whose counts lead to an example each."""
+    """The table of tests by verdict, with each count linked to an example."""
     examples: dict[tuple[str, str, Verdict], str] = {}
     for place, entry in enumerate(summary.coverage.entries):
         for name, verdict in entry.record.verdicts.items():
@@ -194,7 +194,7 @@ def _linked(summary: Summary, table: VerdictTable) -> Markup:
 
 
 def _is_open(summary: Summary, group: Group) -> bool:
-    """Whether a list is short, or something in it is to be seen."""
+    """Whether a list of items is unfolded: it is short, or has a hole or an illegal hit."""
     if len(group.items) <= SHORT:
         return True
     own = range(summary.starts[group.name], summary.starts[group.name] + len(group.items))
@@ -202,7 +202,7 @@ def _is_open(summary: Summary, group: Group) -> bool:
 
 
 class _Look(NamedTuple):
-    """How an item's cell looks: its class, percent of colour, and text."""
+    """The look of an item's cell: CSS class, percent of colour, and text."""
 
     look: str
     share: float | None
@@ -210,7 +210,7 @@ class _Look(NamedTuple):
 
 
 def _look(summary: Summary, place: int, item: Item, most: int) -> _Look:
-    """How an item's cell looks beside one that was hit `most` often."""
+    """The look of an item's cell; the colour is logarithmic in the hits, up to `most`."""
     kind, count = summary.kind(place, item), int(summary.totals.counts[place])
     text = cell_text(kind, item.goal, count)
     match kind:
@@ -226,7 +226,7 @@ def _look(summary: Summary, place: int, item: Item, most: int) -> _Look:
 
 
 def _most_hits(summary: Summary, group: Group) -> int:
-    """The hits of the item of a group that was hit most often."""
+    """The most hits of an item of a group."""
     start = summary.starts[group.name]
     return int(summary.totals.counts[start : start + len(group.items)].max(initial=0))
 
@@ -235,11 +235,11 @@ class _Grid(NamedTuple):
     """A cross as a table.
 
     Attributes:
-        down: axes whose bins head the rows.
+        down: the axes whose bins head the rows.
         across: the last axis.
         columns: its bins.
-        rows: heads with the number of rows that each is beside, and items with their places.
-        most: hits of the item that was hit most often.
+        rows: per row, its heads with the rows that each spans, and its items with their places.
+        most: the most hits of an item.
     """
 
     down: Sequence[str]
@@ -261,7 +261,7 @@ def _grid(summary: Summary, group: Group) -> _Grid:
 
 
 def _heads(axes: Sequence[Sequence[str]], number: int) -> list[tuple[str, int]]:
-    """The heads of a row: a bin stands once, beside all rows that it is in."""
+    """The heads of a row, each with its span; a bin appears only in the first row of its span."""
     heads = []
     span = math.prod(map(len, axes))
     for names in axes:
@@ -273,7 +273,7 @@ def _heads(axes: Sequence[Sequence[str]], number: int) -> list[tuple[str, int]]:
 
 
 def _keys(groups: Sequence[Group]) -> list[tuple[str, str, str]]:
-    """What the cells of heat maps mean, of those that there are."""
+    """The legend of the cells that occur in heat maps."""
     items = [item for group in groups for item in group.items.values()]
     kinds = {item.kind for item in items}
     keys = [("covered", "7", "covered: hits"), ("hole", "0", "hole")]
@@ -287,7 +287,7 @@ def _keys(groups: Sequence[Group]) -> list[tuple[str, str, str]]:
 
 
 def listed_tests(summary: Summary) -> Collection[int]:
-    """The tests that have a line: all, or those that are spoken of elsewhere on the page."""
+    """The tests that have a line: all, or those mentioned elsewhere on the page."""
     every = range(len(summary.coverage.entries))
     if len(every) <= MOST:
         return every

@@ -1,4 +1,4 @@
-"""What terminal, page and JSON show of coverage, each worked out when it is asked for."""
+"""The coverage figures that terminal, page and JSON show, computed lazily."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 
 LISTED = 5
-"""Tests that are named of those that hit an item."""
+"""The most tests named of those that hit an item."""
 
 
 class Summary(Answers):
-    """Answers about coverage, as they are shown."""
+    """The answers about coverage, with names and texts for presentation."""
 
     def __init__(
         self,
@@ -43,13 +43,13 @@ class Summary(Answers):
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to cover, so that a share says nothing."""
+        """Whether there is nothing to cover, so that a share is meaningless."""
         groups = self.coverage.model.groups
         return not any(one.items for name, one in self.scores.items() if groups[name].weight)
 
     @cached_property
     def hole_texts(self) -> Mapping[int, Hole]:
-        """Each hole in words."""
+        """By place, each hole in words."""
         model, items = self.coverage.model, self.coverage.items
         hits: dict[str, dict[str, Hit]] = {}
         for place in np.flatnonzero(self.totals.counts).tolist():
@@ -63,7 +63,7 @@ class Summary(Answers):
 
     @property
     def _hits(self) -> list[tuple[str, Hits]]:
-        """What each test has hit; of tests that have hit the same, the first."""
+        """The hits of each test; of tests with equal items, only the first."""
         found: dict[bytes, tuple[str, Hits]] = {}
         for entry in self.coverage.entries:
             key = entry.row.items.tobytes()
@@ -78,7 +78,7 @@ class Summary(Answers):
 
     @cached_property
     def unreachable(self) -> Mapping[str, Sequence[int]]:
-        """Items that cannot be hit, by the reasons."""
+        """The places of unreachable items, by reason."""
         found: dict[str, list[int]] = {}
         for place in np.flatnonzero(self.goals.unreachable).tolist():
             reasons = self.coverage.unreachable[self.coverage.items[place]]
@@ -86,27 +86,27 @@ class Summary(Answers):
         return found
 
     def kind(self, place: int, item: Item) -> BinKind:
-        """What a hit of an item means; what cannot be hit counts for nothing."""
+        """The kind of an item; unreachable ones are ignored."""
         return BinKind.IGNORE if self.goals.unreachable[place] else item.kind
 
     def kind_text(self, place: int, item: Item) -> str:
-        """Why an item is no goal, in brackets; empty if it is one."""
+        """The kind of an item that is no goal, in brackets; "" for a goal."""
         if self.goals.unreachable[place]:
             return " (cannot be hit)"
         return "" if item.kind is BinKind.GOAL else f" ({item.kind})"
 
     @cached_property
     def fewest(self) -> Smallest:
-        """The fewest tests known that cover as much."""
+        """The smallest known set of tests that covers as much."""
         return fewest(self)
 
     @cached_property
     def ranking(self) -> Sequence[Step]:
-        """A short order of tests that cover as much."""
+        """An order of that set, by the items each test adds."""
         return ranking(self, self.fewest.places)
 
     def ranking_text(self) -> str:
-        """How many tests cover as much, and whether fewer might."""
+        """The size of that set in words, with its lower bound."""
         count, least = len(self.ranking), self.fewest.at_least
         text = f"{count:,} of {counted(len(self.coverage.entries), 'test')} cover the same"
         if least >= count:
@@ -115,7 +115,7 @@ class Summary(Answers):
 
     @cached_property
     def comparison(self) -> Comparison | None:
-        """What is different, if there is something to compare with."""
+        """The comparison with the earlier coverage, if there is one."""
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
     @cached_property
@@ -125,23 +125,23 @@ class Summary(Answers):
 
     @cached_property
     def campaigns(self) -> Sequence[str]:
-        """Their names, in order."""
+        """The names of the campaigns, in order."""
         return self.coverage.campaigns
 
     @cached_property
     def alone(self) -> Mapping[str, Sequence[Step]]:
-        """What the tests of each strategy add to each other, without those of the others."""
+        """The growth of coverage by the tests of each strategy alone."""
         return {name: self.growth(order) for name, order in self.strategies.items()}
 
     @cached_property
     def not_fine(self) -> Sequence[int]:
-        """Tests that failed a requirement that is not known to fail, or did not complete."""
+        """The tests with an unexpected failure, or that did not complete."""
         entries = self.coverage.entries
         return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
 
     @cached_property
     def faults(self) -> Mapping[str, Sequence[int]]:
-        """What was wrong, in words, with which tests; what most of them had stands first."""
+        """By fault in words, the tests that had it; the most frequent first."""
         found: dict[str, list[int]] = {}
         for place in self.not_fine:
             found.setdefault(not_fine(self.record(place)), []).append(place)
@@ -149,7 +149,7 @@ class Summary(Answers):
 
     @cached_property
     def known(self) -> Mapping[str, Sequence[int]]:
-        """What failed as expected, in words with the reason, and in which tests."""
+        """By expected failure with its reason, the tests that had it."""
         found: dict[str, list[int]] = {}
         for place, entry in enumerate(self.coverage.entries):
             for name, reason in entry.record.failed_as_expected.items():
@@ -169,7 +169,7 @@ class Summary(Answers):
         """Tests by strategy, requirement and verdict."""
         counts: dict[str, dict[str, Counter[Verdict]]] = {}
         tests: Counter[str] = Counter()
-        # What the model knows stands in its order, as in the specification.
+        # Requirements of the model come first, in its order.
         judged = {name for entry in self.coverage.entries for name in entry.record.verdicts}
         names = {name: "" for name in self.coverage.model.groups if name in judged}
         for entry in self.coverage.entries:
@@ -191,11 +191,11 @@ class Summary(Answers):
         return enumerate(group.items.values(), self.starts[group.name])
 
     def item_name(self, place: int) -> str:
-        """An item for people, with its group."""
+        """The name of an item with its group."""
         return name_of(self.coverage.items[place])
 
     def hit_text(self, place: int) -> str:
-        """How often an item was hit, by whom and when first."""
+        """The hits of an item in words, with the first test and instant."""
         found = self.totals
         count, tests = int(found.counts[place]), int(found.tests[place])
         if not count:
@@ -205,7 +205,7 @@ class Summary(Answers):
         )
 
     def first_text(self, place: int) -> str:
-        """Which test hit an item first, and when if that is known; empty if none did."""
+        """The first test that hit an item, and the instant if known; "" if none did."""
         first = int(self.totals.first[place])
         if first < 0:
             return ""
@@ -214,7 +214,7 @@ class Summary(Answers):
         return f"{test.name}{when}"
 
     def tests_text(self) -> str:
-        """How many tests there are, of how many campaigns, and how they ended."""
+        """The number of tests and campaigns, and how the tests ended."""
         endings = Counter(entry.record.ending for entry in self.coverage.entries)
         ended = ", ".join(f"{endings[one]:,} {one}" for one in Ending if endings[one])
         parts = [counted(len(self.coverage.entries), "test")]
@@ -224,7 +224,7 @@ class Summary(Answers):
 
 
 def name_of(item: tuple[str, str]) -> str:
-    """An item for people, with its group.
+    """The name of an item with its group.
 
     >>> name_of(("gaze", "yes"))
     'gaze: yes'
@@ -233,12 +233,12 @@ def name_of(item: tuple[str, str]) -> str:
 
 
 def strategy_name(strategy: str) -> str:
-    """A strategy for people."""
+    """The name of a strategy for display."""
     return strategy or "no strategy"
 
 
 def not_fine(record: TestRecord) -> str:
-    """What is wrong with a test, in words; empty if nothing is."""
+    """The fault of a test in words; "" if it has none."""
     parts = []
     if record.ending is not Ending.COMPLETED:
         parts.append(f"{record.ending}: {record.error}" if record.error else record.ending.value)
@@ -248,7 +248,7 @@ def not_fine(record: TestRecord) -> str:
 
 
 def is_grid(group: Group) -> bool:
-    """Whether a group is shown along its axes: a cross of the size that a specification may have.
+    """Whether a group is shown as a grid: a cross not larger than a specification allows.
 
     >>> from rvmon.coverage import Subject
     >>> is_grid(Group("g", Subject.CROSS, {}, axes={"x": ["a", "b"], "y": ["c"]}))
@@ -260,7 +260,7 @@ def is_grid(group: Group) -> bool:
 
 
 def cell_text(kind: BinKind, goal: int, count: int) -> str:
-    """An item in a grid: its hits, of how many where they are too few.
+    """An item in a grid: its hits, with the goal if they are too few.
 
     >>> cell_text(BinKind.GOAL, 1, 7), cell_text(BinKind.GOAL, 3, 1)
     ('7', '1/3')

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 _FEW = 3
 SHOWN = 10
-"""Of a list, where not all of it was asked for."""
+"""The most entries of a list that are printed."""
 
 BAR, WIDE = 20, 64
-"""Columns of a bar, and of a terminal that has room for one."""
+"""Columns of a bar, and the least width of a terminal with room for one."""
 
 
 def print_overview(summary: Summary, console: Console) -> None:
-    """Print the groups, the total, verdicts, and what is wrong."""
+    """Print the groups, the total, the verdicts, illegal hits and failed tests."""
     from rich.text import Text
 
     from rvmon.report.table import table_text
@@ -60,7 +60,7 @@ def print_overview(summary: Summary, console: Console) -> None:
 
 
 def print_holes(summary: Summary, console: Console) -> None:
-    """Print what was hit too rarely, and what cannot be hit, with reasons where there are some."""
+    """Print the holes and the unreachable items, with reasons if known."""
     holes = counted(len(summary.holes), "hole")
     console.print(f"{holes}:" if summary.holes else "no holes", style="bold")
     for place in summary.holes:
@@ -78,7 +78,7 @@ def print_holes(summary: Summary, console: Console) -> None:
 
 
 def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> None:
-    """Print the items of some groups: how often each was hit, and who was first."""
+    """Print the items of groups: the hits of each, and the first test that hit it."""
     from rich.text import Text
 
     for group in groups:
@@ -94,7 +94,7 @@ def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> N
 
 
 def print_tests(summary: Summary, console: Console) -> None:
-    """Print the tests, what each added, and the shortest order that is known."""
+    """Print the tests, the items each added, and the shortest known order."""
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -156,7 +156,7 @@ def _groups(summary: Summary, console: Console) -> Table:
 
 
 def _bar(share: float, console: Console) -> Text:
-    """A share as a bar: full only if all is covered, empty only if nothing is."""
+    """A share as a bar: full only at 1, empty only at 0."""
     from rich.text import Text
 
     filled = round(share * BAR)
@@ -167,7 +167,7 @@ def _bar(share: float, console: Console) -> Text:
 
 
 def _fits(table: Table, console: Console) -> bool:
-    """Whether no cell would be cut: rich never says that one needs more than the width it has."""
+    """Whether no cell would be cut; rich caps a measured width at the console's, so widen that."""
     endless = console.options.update(max_width=1_000_000)
     return console.measure(table, options=endless).minimum <= console.width
 
@@ -188,7 +188,7 @@ def _grid(summary: Summary, group: Group) -> Table:
     places = {item.name: place for place, item in summary.places(group)}
     last: Sequence[str] = ()
     for bins in product(*(names for _, names in down)):
-        # A bin of an outer axis stands once, above those that it goes together with.
+        # A bin of an outer axis is printed once, in the first of its rows.
         heads = ["" if last[: i + 1] == bins[: i + 1] else name for i, name in enumerate(bins[:-1])]
         row: list[str | Text] = [*heads, *bins[-1:]] if down else [""]
         for name in columns:
@@ -200,7 +200,7 @@ def _grid(summary: Summary, group: Group) -> Table:
 
 
 def _key(group: Group) -> str:
-    """What the signs of a grid mean, of those that it may have."""
+    """The legend of the signs that may occur in a grid."""
     kinds = {item.kind for item in group.items.values()}
     parts = ["0 hole"]
     if any(item.goal > 1 for item in group.items.values()):
@@ -285,7 +285,7 @@ _OF_TEST = (
 
 
 def coverage_data(summary: Summary) -> dict[str, Any]:
-    """All that is known, as objects that JSON has."""
+    """The whole summary as JSON values."""
     coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
     return {
         "share": summary.share,
@@ -343,7 +343,7 @@ def _group_data(summary: Summary, name: str) -> dict[str, Any]:
 
 
 def _first_data(summary: Summary, place: int) -> dict[str, Any] | None:
-    """The test that hit an item first, by its place among the tests, and the instant in ns."""
+    """The test that hit an item first (index and name), and the instant in ns."""
     entry = int(summary.totals.first[place])
     if entry < 0:
         return None

@@ -1,4 +1,4 @@
-"""Coverage as UCIS XML, which the coverage tools of verification read.
+"""Coverage as UCIS XML, for coverage tools of hardware verification.
 
 Source: Unified Coverage Interoperability Standard (UCIS), version 1.0, Accellera, 2012, chapter 9.
 """
@@ -21,9 +21,10 @@ _OURS = {"ucisVersion": "1.0", "vendorId": "rvmon", "vendorTool": "rvmon"}
 
 
 def coverage_ucis(summary: Summary, version: str) -> str:
-    """All but the coverage of code, as one covergroup: a coverpoint or cross per group.
+    """Functional coverage as one covergroup, with a coverpoint or cross per group.
 
-    What cannot be hit is ignored there, with the reason. LCOV and Cobertura files have the code.
+    Unreachable items are ignore bins, with the reason. Code coverage is left out: it is in the LCOV
+    and Cobertura files.
     """
     now = datetime.now(UTC).isoformat(timespec="seconds")
     root = ET.Element("UCIS", ucisVersion="1.0", writtenBy="rvmon", writtenTime=now)
@@ -115,7 +116,7 @@ def _contents(parent: ET.Element, summary: Summary, place: int) -> None:
 
 
 def _remarks(parent: ET.Element, summary: Summary, group: Group, item: Item) -> None:
-    """What the item is, and why it cannot be hit."""
+    """Attributes of an item: its text, and why it is unreachable."""
     why = "; ".join(summary.coverage.unreachable.get((group.name, item.name), ()))
     for key, text in (("text", item.text), ("unreachable", why)):
         if text:

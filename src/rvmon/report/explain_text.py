@@ -1,4 +1,4 @@
-"""Requirements, examples and findings of analyses explained in the terminal."""
+"""Requirements, example timelines and findings of the analysis as text for a terminal."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
 HIGH, LOW, NOBODY_KNOWS, OCCURS = "▇", "▁", "?", "●"
 NARROWEST = 9
-"""Characters of a column at least."""
+"""The least width of a column, in characters."""
 
 
 def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> list[Text]:
-    """The lines of a drawing, at most 80 columns wide if that is possible.
+    """An example timeline as lines, at most 80 columns wide if possible.
 
-    Times are not to scale: every instant at which something happens has a column.
+    Time is not to scale: each instant with a sample, trigger or decision has a column.
     """
     from rich.text import Text
 
@@ -70,7 +70,7 @@ def _instants(example: Example) -> list[int]:
 
 
 def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[int]) -> list[str]:
-    """What stands in each column: a text, or one character that fills it."""
+    """The cells of a row: a text, or one character that fills the column."""
     given = {sample.t: sample.values[name] for sample in example.samples if name in sample.values}
     if name in spec.events:
         return [_occurrence(given.get(t, False)) for t in instants]
@@ -150,7 +150,7 @@ def _verdict_lines(
 
 
 def _attempt(attempt: Attempt, example: Example, instants: Sequence[int], width: int) -> str:
-    """From the trigger to the decision, or the end of the run."""
+    """The bar of an attempt, from its trigger to its decision or the end of the run."""
     first = instants.index(attempt.triggered)
     last = instants.index(example.end if attempt.decided is None else attempt.decided)
     if first == last:
@@ -159,7 +159,7 @@ def _attempt(attempt: Attempt, example: Example, instants: Sequence[int], width:
 
 
 def label_of(t: int) -> str:
-    """An instant; one that is a tick beside a rounder one takes a sign for that.
+    """An instant; one tick before or after a round one is marked ⁻ or ⁺.
 
     >>> label_of(3_000_000_001), label_of(199_999_999), label_of(0), label_of(1_500_000_000)
     ('3 s⁺', '200 ms⁻', '0 s', '1500 ms')
@@ -170,7 +170,7 @@ def label_of(t: int) -> str:
 
 
 def legend_of(labels: list[str]) -> str:
-    """What the signs in some labels mean, or empty."""
+    """The legend of the signs in some labels; "" if there are none."""
     signs = {"⁺": "after", "⁻": "before"}
     used = [
         f"{sign} a tick {word}" for sign, word in signs.items() if any(sign in x for x in labels)
@@ -190,7 +190,7 @@ _SHOWN = (
 def explained(
     compiled: CompiledSpec, name: str, budget: Budget | None = None
 ) -> Iterator[RenderableType]:
-    """One requirement: words, facts, automaton, the shortest timeline of each verdict."""
+    """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
     from rich.text import Text
 
     one = compiled.requirements[name]
@@ -257,7 +257,7 @@ def _title(requirement: Requirement) -> RenderableType:
 
 
 def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str]:
-    """The verdicts that cannot be, each with the reason."""
+    """The impossible verdicts, each with the reason."""
     found = {}
     if _is_always_triggered(requirement):
         found[Verdict.NOT_TRIGGERED] = "never, every run triggers it"

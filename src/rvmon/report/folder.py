@@ -1,4 +1,4 @@
-"""The folder, or file, that output goes to."""
+"""Output folders and files, with errors for the user if they cannot be written."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from rvmon.files import write_whole
 
 
 def made(folder: str | Path) -> Path:
-    """Make a folder if it does not exist, and see that files can be written there.
+    """Make a folder if it does not exist, and check that files can be written there.
 
     Raises:
-        RvmonError: that is not possible; the message says why.
+        RvmonError: it cannot be made or written; the message says why.
     """
     path = Path(folder)
     if path.exists() and not path.is_dir():
@@ -28,10 +28,10 @@ def made(folder: str | Path) -> Path:
 
 
 def refuse_no_file(path: str | Path) -> None:
-    """Say, before any work is done for it, that a file cannot be written.
+    """Refuse an output file early, before any work is done for it.
 
     Raises:
-        RvmonError: it is a folder, or has none.
+        RvmonError: it is a folder, or its folder does not exist.
     """
     path = Path(path)
     if path.is_dir():
@@ -41,7 +41,7 @@ def refuse_no_file(path: str | Path) -> None:
 
 
 def write_file(path: str | Path, text: str) -> None:
-    """Write a file that a person named.
+    """Write a file that the user named.
 
     Raises:
         RvmonError: it cannot be written; the message says why.

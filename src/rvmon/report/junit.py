@@ -1,4 +1,4 @@
-"""Verdicts as JUnit XML, which CI servers show; suites and cases for who has others."""
+"""Verdicts as JUnit XML for CI servers, and helpers to write other suites."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def junit_xml(
 ) -> str:
     """A test suite per run, a test case per requirement.
 
-    F is a failure, as is a bin that must not be hit; NT, I, and F that is known are skipped with
-    their reason, since none of them is a pass. A recording that could not be read to its end is an
-    error, lest it count as nothing to complain of.
+    F is a failure, and so is an illegal bin that was hit; NT, I and known failures are skipped
+    with their reason, since none of them is a pass. A recording that could not be read to its end
+    (`broken`) is an error.
     """
     root = ET.Element("testsuites", name=shown(spec.name))
     for report in reports:
@@ -50,7 +50,7 @@ def junit_xml(
 
 
 def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
-    """A suite of cases, with how many of them failed, could not end, or are skipped."""
+    """Add a suite of cases, with the numbers of failures, errors and skipped cases."""
     counts = {
         kind: str(sum(case.find(tag) is not None for case in cases))
         for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped"))
@@ -63,7 +63,7 @@ def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
 
 
 def as_text(root: ET.Element) -> str:
-    """The document, indented."""
+    """The document as indented XML."""
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
@@ -92,7 +92,7 @@ def _case(report: Report, name: str, verdict: Verdict, requirement: Requirement)
 
 
 def _accept(case: ET.Element, why: str) -> None:
-    """Say of a failure that it is known."""
+    """Turn a failure into a skipped case with the reason why it is known."""
     for failure in case.findall("failure"):
         failure.tag = "skipped"
         failure.set("message", shown(f"known: {why}; {failure.get('message')}"))

@@ -1,4 +1,4 @@
-"""What a recording holds, as one page: each name drawn over time, with its gaps."""
+"""The contents of a recording, as page and as tables: each name over time, with its gaps."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_stamp, format_stamped
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 20
 _LONG = 3
-"""Between two updates usual times so much is a gap."""
+"""A distance of updates of more than this many usual ones is a gap."""
 
 _MOST_LABELS = 4
 _LONGEST = 16
-"""Characters of a label."""
+"""The most characters shown of a label."""
 
 _FEW = 3
 
 
 def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterator[Table | Text]:
-    """The names under the requirements that read them, and those that nothing reads by topic."""
+    """A table per requirement with the names that it reads, then per topic with the others."""
     span = duration_text(profile.end - profile.start)
     start = format_stamp(profile.start)
     yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
@@ -54,7 +54,7 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
 
 
 def _lost(outage: Outage, start: int) -> str:
-    """What was lost, from when on, and why."""
+    """An outage in words."""
     names = "everything" if outage.names is None else first_of(sorted(outage.names), _FEW)
     return f"{names} from {format_stamped(outage.since, start)} on: {outage.why}"
 
@@ -62,7 +62,7 @@ def _lost(outage: Outage, start: int) -> str:
 def grouped(
     profile: Profile, requirements: Sequence[Requirement]
 ) -> Iterator[tuple[str, list[Column]]]:
-    """The columns under titles: of requirements, then of topics, what is constant last."""
+    """The columns by title: of each requirement, then of each topic, constant ones last."""
     from rvmon.report.tracks import concerned_names
 
     by_name = {column.name: column for column in profile.columns}
@@ -81,12 +81,12 @@ def grouped(
 
 
 def is_constant(column: Column) -> bool:
-    """Whether its value is always the same."""
+    """Whether a signal never changes its value."""
     return not column.is_event and len(column.course.extremes) < 2
 
 
 def facts(column: Column) -> tuple[str, str, str, str]:
-    """Kind with unit, rate, longest gap if it is one, and range or labels."""
+    """Kind with unit, rate, longest gap (or ""), and range or labels."""
     shape = column.shape
     kind = "event" if shape.kind is None else str(shape.kind)
     kind += f" [{shape.unit}]" if shape.unit else ""
@@ -125,7 +125,7 @@ def values(column: Column) -> str:
 
 
 def spark(column: Column, profile: Profile) -> str:
-    """The course in a few characters; a blank is where nothing was said."""
+    """The course in a few characters, blank where there was no update."""
     if is_constant(column):
         return ""
     stretches = column.course.until(profile.end)
@@ -153,7 +153,7 @@ _HEIGHT = 40
 _EDGE = 3
 
 _OPEN = 8
-"""Topics that are unfolded."""
+"""The number of topics that are unfolded at first."""
 
 
 def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
@@ -161,7 +161,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
 
     Args:
         profile: of the recording.
-        requirements: that read it; without any it is by topic.
+        requirements: by which names are grouped first; the others are grouped by topic.
     """
     span = profile.end - profile.start
     groups = [
@@ -189,7 +189,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
 
 
 _LAST = 0.95
-"""Marks behind this share of the time would not find room."""
+"""The greatest place of a mark; a later one would have no room."""
 
 
 def _marks(start: int, end: int) -> list[tuple[str, str]]:
@@ -200,7 +200,7 @@ def _marks(start: int, end: int) -> list[tuple[str, str]]:
 
 
 def _short(name: str, title: str) -> str:
-    """A name without that of the topic that it stands under."""
+    """A name without the prefix of its topic."""
     return name.removeprefix(f"{title.strip('/').replace('/', '.')}.")
 
 
@@ -236,7 +236,7 @@ def _drawing(column: Column, profile: Profile) -> ET.Element:
 
 
 def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
-    """Stretches in a row in which something was said; short silences are no gaps."""
+    """Maximal runs of stretches without a gap; short silences are bridged."""
     said = [place for place, one in enumerate(stretches) if one.low is not None]
     steps = sorted(after - before for before, after in pairwise(said))
     usual = steps[len(steps) // 2] if steps else 1

@@ -1,4 +1,4 @@
-"""How much memory the windows of requirements take, in words."""
+"""The memory of measured windows, in words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rvmon.spec.print import format_duration, format_window
 
 
 def memory_lines(spec: CheckedSpec) -> list[str]:
-    r"""A line for each window of each requirement, and one for what it keeps in all, in bytes.
+    r"""A line for each window of each requirement, and one for their sum, in bytes.
 
     >>> import rvmon
     >>> text = "event e\nrequirement R\n  always count(e, 5 s) <= 3\n"
@@ -38,7 +38,7 @@ def _lines(requirement: Requirement) -> Iterator[str]:
 
 
 def _fixed(window: WindowValue) -> int:
-    """Bytes that it takes whatever comes."""
+    """The bytes of a window, independent of the input."""
     return window.measured.fixed + window.measured.each * (window.most or 0)
 
 

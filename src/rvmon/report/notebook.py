@@ -1,4 +1,4 @@
-"""Specifications, reports and attempts as notebooks show them: a piece of HTML each."""
+"""HTML fragments of specifications, reports and attempts, for notebooks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 
 DRAWN = 200
-"""Attempts of each verdict that are drawn per requirement, the first ones; the rest is counted."""
+"""The most attempts drawn per requirement and verdict; the rest is counted."""
 
 _DARK = re.compile(
     r"@media (?:screen and )?\(prefers-color-scheme: ?dark\) ?\{\s*:root ?\{(.*?)\}\s*\}", re.DOTALL
@@ -32,27 +32,26 @@ _THEMES = (
     r"@media(prefers-color-scheme:dark){:root:not([data-jp-theme-light=true] *){\1}}"
     r":is([data-jp-theme-light=false],.vscode-dark) :root{\1}"
 )
-"""A notebook's own theme comes before that of the system."""
+"""The theme of the notebook takes precedence over that of the system."""
 
 _OWN = (
     ":root{padding:.75rem 1rem;border-radius:.5rem}"
     ":root h1{font-size:1.05rem;margin:.25rem 0 .4rem}"
 )
-"""As specific as a notebook's own rules for headings, which come before."""
+"""Rules as specific as the notebook's own for headings, so that these later ones win."""
 
 
 def attempt_html(attempt: Attempt) -> str:
-    """What became of an attempt, and when: its window, trigger, deadline and decision.
+    """An attempt with its reason and a timeline of window, trigger, deadline and decision.
 
-    Args:
-        attempt: any; of its signals nothing is drawn, as it keeps no more than their values.
+    Its signals are not drawn: an attempt keeps only their values at two instants.
     """
     report = report_of([attempt.requirement], [attempt], origin=attempt.origin, end=attempt.decided)
     return _piece(attempt=attempt, facts_of=partial(_facts, report))
 
 
 def report_html(report: Report) -> str:
-    """The attempts of each requirement over the run, then those that did not pass, one by one."""
+    """The attempts of each requirement over the run, then details of those that did not pass."""
     view = whole_run(report, report.origin)
     return _piece(
         report=report,
@@ -69,7 +68,7 @@ def spec_html(spec: CheckedSpec) -> str:
 
 
 def _requirements(report: Report) -> Iterator[tuple[str, str, list[Attempt], int]]:
-    """Why one has no attempts, its attempts that did not pass, how many more there are."""
+    """Per requirement: why it has no attempt, its attempts not passed, how many more there are."""
     for name, attempts in shown_attempts(report).items():
         silence = ""
         if report.is_silent(name):
@@ -80,7 +79,7 @@ def _requirements(report: Report) -> Iterator[tuple[str, str, list[Attempt], int
 
 
 def _facts(report: Report, attempt: Attempt) -> tuple[str, Element, str]:
-    """Why an attempt ended so, its timeline, and values at its decision."""
+    """The reason of an attempt, its timeline, and values at its decision."""
     why = full_reason(attempt, report) or MARKS[attempt.verdict].word
     end = attempt.triggered if report.end is None else report.end
     drawing = timeline(attempt, (), view_of(attempt, report), origin=report.origin, end=end)
@@ -98,7 +97,7 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[Attempt, str]
 
 
 def _piece(**values: object) -> str:
-    """A piece of HTML whose style reaches nothing else."""
+    """A fragment of HTML whose style is scoped to it."""
     style = "".join([verdict_colours(), asset("base.css"), asset("run.css"), _OWN])
     style = re.sub(r"(?<![.\w-])body\b", ":root", _DARK.sub(_THEMES, style))
     scoped = Markup(f"@scope (.rvmon){{{style.replace(':root', ':scope')}}}")  # noqa: S704 - our own

@@ -1,7 +1,7 @@
-"""Pages from templates: texts in them are escaped, and no text can steer a reader or hide.
+"""HTML pages from templates: all text is escaped, and control characters in it are made visible.
 
-Drawings, whose attributes are computed, are built element by element (`markup.e`); a template
-takes them as they are.
+Drawings, whose attributes are computed, are built element by element (`e`) and inserted as they
+are.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def to_html(element: ET.Element) -> str:
 
 
 _UNIT = re.compile(r"(?<=\d) (?=(s|ns|us|ms|min|h|m|cm|mm)\b)")
-"""The space between a number and its unit, where no line should end."""
+"""The space between a number and its unit, at which a line must not break."""
 
 
 def render(name: str, **values: object) -> str:
@@ -78,13 +78,13 @@ def render(name: str, **values: object) -> str:
 
 
 def component(name: str, *values: object, **options: object) -> Markup:
-    """One macro of `components.html`, for who shows a piece of a page alone."""
+    """One macro of `components.html`, to show a fragment of a page alone."""
     macro = getattr(_environment().get_template("components.html").module, name)
     return Markup(macro(*values, **options))  # noqa: S704 - a template escapes
 
 
 def asset(name: str) -> Markup:
-    """The text of a style sheet or script, for a page that needs nothing but itself."""
+    """The text of a style sheet or script, to be inlined in a self-contained page."""
     path = resources.files("rvmon.report") / "assets" / name
     return Markup(path.read_text(encoding="utf-8").strip())  # noqa: S704 - our own
 
@@ -103,9 +103,9 @@ def with_code(sentence: str) -> Markup:
 
 
 def data(value: object) -> Markup:
-    r"""Data for a script, as JSON that cannot end the element it stands in.
+    r"""Data for a script, as JSON that cannot close the enclosing element.
 
-    Texts and keys in it are those that the page shows and has in its attributes.
+    Strings are escaped as in the text and attributes of the page, so that they compare equal.
 
     >>> data({"</script>": 1})
     Markup('{"\\u003c/script\\u003e":1}')
@@ -142,7 +142,7 @@ def _environment() -> Environment:
 
 
 def _finished(value: object) -> object:
-    """What is written where a template names a value."""
+    """The output of a template expression."""
     if isinstance(value, ET.Element):
         return Markup(to_html(value))  # noqa: S704 - escaped as it is written
     if value is None or isinstance(value, Markup):
@@ -163,7 +163,7 @@ def _as_shown(value: object) -> object:
 
 
 Link = Callable[[str, str, Verdict], str | None]
-"""The address of an example behind a count, from group, requirement and verdict."""
+"""From group, requirement and verdict, the address of an example of that count."""
 
 
 def table_html(

@@ -22,11 +22,11 @@ from rvmon.verdict.attempt import Blame
 from rvmon.verdict.report import Report
 
 DEEPEST = 8
-"""Parts that lie deeper are not indented further."""
+"""The greatest depth of a subformula that is indented further."""
 
 
 def parts_timeline(panel: Panel, report: Report) -> ET.Element:
-    """A row for the trigger and for each part of what is required of an attempt."""
+    """A row for the trigger and for each subformula of what is required of an attempt."""
     assert panel.attempt is not None, "as only these have part_truths"
     end = end_of(report)
     rows: list[Child] = []
@@ -67,7 +67,7 @@ def _row(part_truth: PartTruth, panel: Panel, end: int) -> ET.Element:
 
 
 def _changes(part_truth: PartTruth) -> tuple[tuple[int, Scalar], ...]:
-    """From when on it is true, false, or not known."""
+    """The truth of a subformula as the changes of a track; `None` is unknown."""
     stretches: Sequence[tuple[int, int, bool]] = sorted(
         [(a, b, True) for a, b in part_truth.true] + [(a, b, False) for a, b in part_truth.false]
     )
@@ -84,7 +84,7 @@ def _changes(part_truth: PartTruth) -> tuple[tuple[int, Scalar], ...]:
 
 
 def has_unknown(panel: Panel) -> bool:
-    """Whether something is unknown in a panel's tracks."""
+    """Whether a track of the panel has an unknown value in view."""
     return any(_is_unknown(track, panel) for track in panel.tracks)
 
 
@@ -105,7 +105,7 @@ class SpecLines(NamedTuple):
 
     Attributes:
         place: name of the file, and line.
-        lines: number of each, and its text before, within and behind what failed.
+        lines: per line its number, and its text before, within and after the blamed subformula.
     """
 
     place: str
@@ -147,7 +147,7 @@ def _marked(line: str, position: int, blame: Blame | None) -> tuple[str, str, st
 
 
 def headline(run: str, panel: Panel, origin: int) -> str:
-    """What became of a requirement in a run, or of one attempt.
+    """One line on the outcome of a requirement in a run, or of one attempt.
 
     Args:
         run: its name.

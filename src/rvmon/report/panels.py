@@ -1,4 +1,4 @@
-"""What the page of a run shows: its panels, an attempt each, and on which it opens."""
+"""The panels of a run's page, one per attempt shown, and the panel on which it opens."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class JudgedRun:
     """A run with its verdicts.
 
     Attributes:
-        name: what people call it, such as a test's name or a file's.
+        name: its display name, such as that of a test or file.
         report: the verdicts.
-        samples: that were judged, in time order; empty if they were not kept.
+        samples: the judged samples, in order of time; empty if they were not kept.
     """
 
     name: str
@@ -42,17 +42,17 @@ class JudgedRun:
 
 @dataclass(frozen=True, slots=True)
 class RunPage:
-    """What the page of a run is made of.
+    """The content of a run's page.
 
     Attributes:
-        run: the one that the page is about.
-        spec: that judged it.
-        command: replays it.
-        others: runs by the same spec, whose passing attempts a failed one can be held against.
+        run: the run.
+        spec: its specification.
+        command: the command that replays it.
+        others: other runs by the same specification, to find nearest passing attempts in.
         facts: more about the run, as pairs of name and value.
-        scene: what the robot did, if it is known.
-        back: address of the page that links here.
-        back_to: what that page lists.
+        scene: the motion of the robot, if it is known.
+        back: address of the page that links here; "" if there is none.
+        back_to: the text of the link back.
     """
 
     run: JudgedRun
@@ -67,20 +67,19 @@ class RunPage:
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """What a page shows of one attempt.
+    """The part of a page about one attempt, or about a requirement without any.
 
     Attributes:
-        id: of the element on the page, and its address behind `#`.
-        requirement: its id.
-        attempt: `None` if there is none.
-        verdict: of the attempt, or of a requirement without any.
+        id: the id of its element on the page, and so its address after `#`.
+        requirement: the id of the requirement.
+        attempt: the attempt; `None` if the requirement has none.
+        verdict: of the attempt, or of the requirement.
         view: the stretch of time that is shown.
         tracks: of the signals and events that the requirement reads.
         reference: the nearest passing attempt, for a failed one.
-        part_truths: when each part of the requirement was true in the view; empty if that would
-            take too long.
-        late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
-        miss: without an attempt, what the trigger lacked when it was nearest.
+        part_truths: the truths of its subformulas in the view; empty if the run is too long.
+        late: the instant of a response after the deadline, ticks; `None` if there was none.
+        miss: without an attempt, the parts that the trigger lacked when it came nearest.
     """
 
     id: str
@@ -96,17 +95,17 @@ class Panel:
 
     @property
     def instant(self) -> int:
-        """Where the cursor stands at first: at the decision, else at the trigger."""
+        """The initial instant of the cursor: the decision, else the trigger."""
         if self.attempt is None:
             return self.view.start
         return self.attempt.triggered if self.attempt.decided is None else self.attempt.decided
 
 
 LOOKS = 60
-"""Instants at which two runs are compared, evenly over the view."""
+"""The number of instants, evenly spaced over the view, at which two runs are compared."""
 
 MOST = 100
-"""Passing attempts that are compared, the first ones."""
+"""The most passing attempts that are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +121,9 @@ def nearest_passing(
 ) -> ReferenceAttempt | None:
     """The passing attempt whose signals differ least from those of a failed one.
 
-    Both are laid over each other at their triggers. Two tracks differ by the share of the view
-    over which their values are different, numbers by their mean distance over their range, events
-    by how far apart they occur.
+    Runs are aligned at the triggers. The distance of two tracks is the share of the view over which
+    their values differ; of numbers the mean distance relative to their range; of events the
+    distance of the first occurrences. Distances of all tracks are added.
     """
     best: tuple[float, Candidate, Attempt] | None = None
     looks = range(LOOKS)
@@ -167,7 +166,7 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
 
 
 def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
-    """How much the values of two signals differ, from 0 (not at all) to 1."""
+    """The distance of two signals, from 0 (equal) to 1."""
     pairs = list(zip(mine, other, strict=True))
     numbers = [abs(value) for value in (*mine, *other) if _is_number(value)]
     scale = max(numbers, default=0.0) or 1.0
@@ -179,7 +178,7 @@ def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
 
 
 def _first(track: Track, view: View, shift: int) -> float:
-    """Where in the view an event first occurs; at its end if it does not."""
+    """The place of the first occurrence of an event in the view; 1 if it does not occur."""
     index = bisect_left(track.changes, view.start - shift, key=lambda change: change[0])
     if index == len(track.changes):
         return 1.0
@@ -191,18 +190,18 @@ def _is_number(value: object) -> TypeGuard[float]:
 
 
 MOST_DISSECTED = 50_000
-"""Of longer runs the parts are not drawn; `rvmon why` takes the time for it."""
+"""The most samples of a run for which subformulas are drawn; `rvmon why` has no limit."""
 
 
 def panels_of(content: RunPage) -> list[Panel]:
-    """A panel for each attempt that is shown, and for each requirement without any."""
+    """The panels: one for each attempt shown, and for each requirement without an attempt."""
     shown = shown_attempts(content.run.report)
     made = _Panels(content, shown)
     return [panel for name, attempts in shown.items() for panel in made.of(name, attempts)]
 
 
 class _Panels:
-    """Makes the panels of a page, whose run is looked through once for all of them."""
+    """Makes the panels of a page; formulas are evaluated in one pass for all of them."""
 
     def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
         self._content = content
@@ -270,7 +269,7 @@ class _Panels:
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
 
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
-        """The truth of each part over a view, as far as the run reaches."""
+        """The truth of each subformula over the part of a view within the run."""
         samples = self._content.run.samples
         if self._seen is None or len(samples) > MOST_DISSECTED:
             return ()
@@ -281,37 +280,37 @@ class _Panels:
         return part_truths_of(requirement, attempt, self._seen, start, stop)
 
     def _miss(self, name: str) -> str:
-        """What the trigger lacked: as was found when the run was judged, or by looking now."""
+        """The near miss of a trigger, from the report or computed now."""
         found = self._content.run.report.misses.get(name)
         if found is not None or self._seen is None:
             return found or ""
         return miss_in(self._content.spec, self._content.spec.requirements[name], self._seen)
 
     def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
-        """What came after its deadline: as was found when the run was judged, or now."""
+        """By number of the attempt, late responses, from the report or computed now."""
         if name not in self._waits or self._seen is None:
             return self._content.run.report.late.get(name, {})
         return late_in(attempts, self._waits[name], self._seen)
 
 
 def _sources(content: RunPage) -> frozenset[str]:
-    """The signals and events that the run has."""
+    """The signals and events that have a source in the run."""
     return frozenset({*content.spec.signals, *content.spec.events} - content.run.report.absent)
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:
-    """The address of an attempt on the page, or of a requirement without any."""
+    """The id of the panel of an attempt, or of a requirement without any."""
     if attempt is None:
         return requirement
     return f"{requirement}-{'in-doubt-' if attempt.in_doubt else ''}{attempt.number}"
 
 
 SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
-"""Attempts per requirement and verdict that are shown, the first ones; the rest is counted."""
+"""The most attempts shown per requirement and verdict; the rest is counted."""
 
 
 def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
-    """By requirement, the attempts that get a timeline, in order of trigger."""
+    """By requirement, the attempts that are shown, by number."""
     shown = {}
     for name in report.verdicts:
         some = [
@@ -324,10 +323,10 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
 
 
 def opening(report: Report) -> tuple[str, Attempt | None]:
-    """The requirement and attempt that a page opens on: the first F, else I, else any.
+    """The requirement and attempt on which a page opens: the first F, else I, else any.
 
     Raises:
-        RvmonError: there is no requirement.
+        RvmonError: the specification has no requirement.
     """
     if not report.verdicts:
         raise RvmonError("a page shows requirements, and the specification has none: add one")

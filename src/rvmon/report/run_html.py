@@ -1,4 +1,4 @@
-"""The page of one run: what failed, why, when, and how to see it again."""
+"""The page of one run: its attempts with reasons, timelines and the command to replay it."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 
 UNITS = 1000
-"""Units of the drawing per metre, and of an angle per radian."""
+"""SVG units per metre; and integer steps per radian."""
 
 MILLISECOND = 1_000_000
-"""Ticks."""
+"""A millisecond in ticks."""
 
 
 def scene_svg(scene: Scene, instant: int) -> ET.Element:
-    """Draw a scene as it was at an instant, ticks."""
+    """Draw a scene at an instant (ticks)."""
     left, bottom, right, top = (round(edge * UNITS) for edge in scene.view)
     drawing = e(
         "svg",
@@ -57,9 +57,9 @@ def scene_svg(scene: Scene, instant: int) -> ET.Element:
 
 
 def scene_data(scene: Scene, origin: int) -> dict[str, object]:
-    """The frames as small integers: each the difference to the one before.
+    """The frames as small integers, delta-encoded.
 
-    Times are milliseconds since `origin`, places millimetres, angles milliradians.
+    Times are milliseconds since `origin`, positions millimetres, angles milliradians.
     """
     times = [(t - origin) // MILLISECOND for t, _ in scene.frames]
     columns = zip(*(pose for _, pose in scene.frames), strict=True)
@@ -93,14 +93,14 @@ def _differences(values: list[int]) -> list[int]:
 WORST_FIRST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS, Verdict.NOT_TRIGGERED)
 
 MOST_DRAWN = 5_000
-"""Attempts per requirement and verdict that are drawn: each is explained when it is looked at."""
+"""The most attempts drawn per requirement and verdict in the overview."""
 
 
 def run_page(content: RunPage) -> str:
-    """Write the page of a run.
+    """The page of a run as HTML.
 
-    Without a script it shows all attempts one below the other; the script shows one at a time,
-    moves the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
+    Without scripts it shows all attempts below each other; the script shows one at a time, moves
+    the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
     """
     report, samples, scene = content.run.report, content.run.samples, content.scene
     panels = panels_of(content)
@@ -149,13 +149,13 @@ def run_page(content: RunPage) -> str:
 
 
 Bar = tuple[str, Verdict]
-"""The style of an attempt's place, and its verdict."""
+"""The CSS position of an attempt, and its verdict."""
 
 
 def _rows(
     report: Report, panels: Sequence[Panel], view: View
 ) -> list[tuple[str, Panel, list[Bar]]]:
-    """A row per requirement, the worst first, which leads to its worst attempt."""
+    """A row per requirement, the worst first: its id, worst panel and bars."""
     worst: dict[str, Panel] = {}
     for panel in sorted(panels, key=lambda one: WORST_FIRST.index(one.verdict)):
         worst.setdefault(panel.requirement, panel)
@@ -171,13 +171,13 @@ def _rows(
 
 
 def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[list[Panel], int]:
-    """The attempts of a panel's requirement on the page, and how many are not shown."""
+    """The panels of the same requirement, and the number of its attempts that are not shown."""
     own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
     return own, max(sum(report.counts[panel.requirement].values()) - len(own), 0)
 
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
-    """Left edge, width and verdict of where attempts ran; where several did, the worst."""
+    """Left edge, width and verdict of bars over the run; where attempts overlap, the worst."""
     places: list[Verdict | None] = [None] * PLACES
     for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
         for attempt in islice(report.of(name, verdict), MOST_DRAWN):
@@ -196,11 +196,11 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float,
 
 
 READ_OUT = 2_000
-"""Values of a track that the cursor can read out, at most."""
+"""The most values of a track that the cursor can read out."""
 
 
 def script_data(content: RunPage, panels: Sequence[Panel], view: View) -> dict[str, object]:
-    """All of it, as JSON can hold it; times are seconds since the origin."""
+    """The data for the page's script as JSON values; times are in seconds since the origin."""
     origin = content.run.report.origin
     document: dict[str, object] = {
         "start": _seconds(view.start, origin),
@@ -244,5 +244,5 @@ def _seconds(instant: int, origin: int) -> float:
 
 
 def _finite(value: Scalar) -> Scalar:
-    """JSON knows no infinity."""
+    """A value that JSON can represent: infinities become text."""
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value

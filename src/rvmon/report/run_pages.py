@@ -1,4 +1,4 @@
-"""Write the pages of judged recordings, and a list of them."""
+"""Writes the pages of judged recordings, and their index."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rvmon.verdict.report import Report
 _BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"
 ASKED = "name, failed requirement, severity"
-"""What a person may type a part of."""
+"""The placeholder of the search field of the index."""
 
 _GROUPS = {
     _BROKEN: _BROKEN,
@@ -35,18 +35,18 @@ _GROUPS = {
     "NT": "not triggered",
     "P": "pass",
 }
-"""What a recording counts as, by what is worst about it; in the order in which they are listed."""
+"""The groups of the index, in order: a recording belongs to that of its worst verdict."""
 
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """A recording in the list.
+    """A recording in the index.
 
     Attributes:
-        name: for people.
-        page: its address; empty if it has none.
-        report: the verdicts; `None` if it cannot be judged.
-        error: why not.
+        name: its display name.
+        page: the address of its page; "" if it has none.
+        report: the verdicts; `None` if it could not be judged.
+        error: why it could not be judged.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Listed:
 
 
 class _Cell(NamedTuple):
-    """A verdict in the list, with why it is one."""
+    """A verdict in the index, with its reason."""
 
     requirement: str
     verdict: Verdict
@@ -65,7 +65,7 @@ class _Cell(NamedTuple):
 
 
 class _Row(NamedTuple):
-    """A recording's line: what it counts as, what may be typed to find it."""
+    """A recording's row: its group, and the text that a search matches."""
 
     one: Listed
     group: str
@@ -75,7 +75,7 @@ class _Row(NamedTuple):
 
 
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
-    """Write the list; without scripts it is whole, but cannot be filtered."""
+    """The index as HTML; without scripts it is complete, but cannot be filtered."""
     places = list(_GROUPS)
     rows = [_row(one, spec, known) for one in recordings]
     rows.sort(key=lambda row: (places.index(row.group), -len(_failed(row.one))))
@@ -96,7 +96,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
 def _requirements(
     spec: CheckedSpec, recordings: Sequence[Listed]
 ) -> Iterator[tuple[Requirement, Counter[Verdict], str]]:
-    """Each with how many recordings have which verdict, its severity and tags."""
+    """Each requirement with its counts of verdicts, its severity and tags."""
     reports = [one.report for one in recordings if one.report is not None]
     for name in reports[0].verdicts if reports else ():
         requirement = spec.requirements[name]
@@ -106,7 +106,7 @@ def _requirements(
 
 
 def _folder(names: Sequence[str]) -> str:
-    """What stands before all names, up to its last slash."""
+    """The common folder of all names, with its slash; "" if there is none."""
     shared = os.path.commonprefix(list(names))  # noqa: RUF071 - it is cut at a slash
     return shared[: shared.rfind("/") + 1]
 
@@ -117,7 +117,7 @@ def _failed(one: Listed) -> list[str]:
 
 
 def _group(one: Listed, known: KnownFailures) -> str:
-    """What a recording counts as."""
+    """The group of a recording."""
     if one.report is None:
         return _BROKEN
     if known.failures(one.report) or one.report.illegal:
@@ -154,7 +154,7 @@ def _cell(report: Report, requirement: str, known: str) -> _Cell:
 
 
 COMPARED = 10
-"""Recordings at most in which a nearest passing attempt is looked for: they are read again."""
+"""The most recordings searched for a nearest passing attempt; each is read again for it."""
 
 INDEX = "index.html"
 
@@ -173,11 +173,11 @@ def write_run_pages(
 
     Args:
         folder: made if it does not exist.
-        spec: that judged them.
+        spec: the specification.
         reports: one per recording, named by `trace`.
-        read: the samples of a recording, by its name.
-        command: judges a recording again, by its name.
-        broken: the other recordings, each with what is wrong with it.
+        read: from the name of a recording, its samples.
+        command: from the name of a recording, the command that judges it again.
+        broken: recordings that could not be judged, each with its error.
         known: failures that are accepted.
 
     Returns:

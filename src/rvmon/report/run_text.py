@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
-    """What several runs by one specification hit; when first is not asked for any more."""
+    """The sum of the coverage of several runs by one specification, without first instants."""
     return [
         replace(groups[0], bins=tuple(map(_sum, zip(*(one.bins for one in groups), strict=True))))
         for groups in zip(*several, strict=True)
@@ -46,7 +46,7 @@ def _sum(bins: Sequence[CoveredBin]) -> CoveredBin:
 
 
 def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
-    """How often each bin was hit, then what was hit too rarely; a line or two for each group.
+    """Per group, a line with the hits of its bins, and one with its holes if it has any.
 
     >>> low = CoveredBin("low", BinKind.GOAL, 1, 4)
     >>> high = CoveredBin("high", BinKind.GOAL, 3, 1)
@@ -74,15 +74,15 @@ def _missing(one: CoveredBin) -> str:
 
 
 SHOWN_PER_REQUIREMENT = 3
-"""Failed or undecided attempts that are shown in full; the rest is counted."""
+"""The most failed or undecided attempts shown in full; the rest is counted."""
 
 
 def print_reports(
     reports: Sequence[Report], spec: CheckedSpec, *, counts_only: bool = False
 ) -> None:
-    """Print the verdicts on each recording, and for several the counts of runs.
+    """Print the verdicts on each recording, and for several recordings their counts.
 
-    Every F comes with cause, window and spec line; every I with what is still required.
+    Every F comes with cause, window and line of the specification, every I with its obligation.
     """
     from rvmon.report.terminal import Terminal
 
@@ -162,9 +162,9 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
 
 
 def _least_robustness(report: Report) -> dict[str, str]:
-    """By requirement the least robustness of its attempts, where it was found."""
+    """By requirement the least robustness of its attempts, where it was measured."""
     if isinstance(report.attempts, LazyAttempts):
-        return {}  # nobody has measured these
+        return {}  # robustness was not measured
     least: dict[str, float] = {}
     for attempt in report.attempts:
         if attempt.robustness is not None:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """What a body looks like: a convex polygon in its own coordinates, metres.
+    """The outline of a body: a convex polygon in the body's coordinates, metres.
 
     Attributes:
-        body: that it belongs to; one that is not among the scene's bodies never moves.
+        body: the body it belongs to; one that is not among the scene's bodies never moves.
         corners: one for a disc, two for a bar, more for a polygon.
-        radius: rounds the corners.
-        role: what the page's style sheet colours it as.
+        radius: the radius of rounded corners.
+        role: its class in the page's style sheet.
     """
 
     body: str
@@ -24,7 +24,7 @@ class Outline:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Bodies in a vertical plane; between two frames far apart they stand still.
+    """The motion of bodies in a vertical plane; between frames they stand still.
 
     Attributes:
         bodies: in the order of each frame.

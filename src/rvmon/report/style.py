@@ -1,4 +1,4 @@
-"""How verdicts look, in the terminal and on pages: always a letter, then sign and colour."""
+"""The look of verdicts in the terminal and on pages: always a letter, then sign and colour."""
 
 from __future__ import annotations
 

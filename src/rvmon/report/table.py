@@ -1,4 +1,4 @@
-"""Verdicts of many runs as a table: its data, as CSV, as LaTeX, and as text."""
+"""Tables of verdicts of many runs: their data, as CSV, LaTeX and text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 Counts = Mapping[Verdict, int]
-"""How many runs got each of the four verdicts."""
+"""By verdict, the number of runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +39,11 @@ class VerdictTable:
         title: one line.
         requirements: id → text, in the order of the rows.
         groups: in the order of the columns.
-        checked: what model checking says by requirement, `None` if it cannot be expressed;
+        checked: by requirement, the result of model checking, `None` if it cannot be expressed;
             empty if nothing was checked.
         notes: remarks below the table.
-        shows_intervals: whether each count comes with the interval of its share: that runs are
-            drawn at random makes sense of it.
+        shows_intervals: whether each count comes with the confidence interval of its share;
+            meaningful only if runs are drawn at random.
     """
 
     title: str
@@ -63,12 +63,12 @@ _FORMULA = ("=", "+", "-", "@")
 
 
 def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
-    """Several tables as one CSV text; a name that would be a formula begins with an apostrophe.
+    """Several tables as one CSV text; names are escaped by `plain`.
 
-    The bounds of intervals are shares from 0 to 1; a table that shows none leaves them empty.
+    Bounds of intervals are shares from 0 to 1, empty for a table that shows none.
 
     Args:
-        tables: by what the first column calls them.
+        tables: by their names in the first column.
         key: heading of the first column.
     """
     text = io.StringIO()
@@ -97,23 +97,23 @@ def _bounds(counts: Sequence[int], runs: int) -> list[str]:
 
 
 def plain(name: str) -> str:
-    """A name that no spreadsheet takes for a formula: before such a one stands an apostrophe."""
-    # Written out, a TAB or an end of line is neither the start of a formula nor the end of a row.
+    """A name that no spreadsheet takes for a formula: an apostrophe is put before such a one."""
+    # `shown_line` escapes tabs and line ends, which could also start a formula or end a row.
     text = shown_line(name)
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 
 ZERO = "·"
-"""A count of nothing, so that the others stand out."""
+"""How a count of 0 is printed, so that the others stand out."""
 
 WIDTH = 4
-"""Characters of a column of counts, at least: two more than the longest has."""
+"""The least width of a column of counts, in characters."""
 
 WIDE = 7
 """The same with intervals."""
 
 ABREAST = 14
-"""Characters of a verdict's columns, of all groups that fit into 80."""
+"""The characters per verdict that the groups side by side may take within 80 columns."""
 
 
 def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None = None) -> Group:
@@ -139,7 +139,7 @@ def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None
 
 
 def _width(table: VerdictTable, *others: VerdictTable) -> int:
-    """Characters of a column of counts: no two counts run together."""
+    """The width of a column of counts: two more than the longest count."""
     counts = (
         count
         for one in (table, *others)
@@ -229,7 +229,7 @@ _SPECIAL = {
     "<": r"\textless{}",
     ">": r"\textgreater{}",
     "|": r"\textbar{}",
-    "[": "{[}",  # behind the end of a row, these two would be its options
+    "[": "{[}",  # after `\\`, these two would be read as its options
     "*": "{*}",
     "–": "--",
     "·": r"\textperiodcentered{}",
@@ -272,7 +272,7 @@ def table_latex(table: VerdictTable) -> str:
 
 
 def escape(text: str) -> str:
-    r"""Text in which no character means anything to LaTeX.
+    r"""Text with all characters special to LaTeX escaped.
 
     >>> escape("50 % of hand_distance")
     '50 \\% of hand\\_distance'
@@ -281,7 +281,7 @@ def escape(text: str) -> str:
 
 
 def _rows(table: VerdictTable, name: str) -> list[str]:
-    """The line of a requirement, and below it that of the intervals."""
+    """The row of a requirement, and the row of intervals below it."""
     rows = [_row(_cells(table, name))]
     if table.shows_intervals:
         cells = [""] * (2 if table.checked else 1)

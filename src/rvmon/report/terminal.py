@@ -1,4 +1,4 @@
-"""What stands in a terminal: Rich's console for texts that hold names of others, tables, lines."""
+"""Terminal output: a console that is safe for foreign text, plain tables, wrapped sentences."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from rvmon.texts import shown
 
 
 class Terminal(Console):
-    """A console to which no text is an escape, markup or the name of an emoji."""
+    """A console that never interprets text as an escape sequence, markup or emoji name."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, emoji=False, **options)
 
     def render_str(self, text: str, **how: Any) -> Text:
-        """The text as it will be shown, so that cells of tables are as wide as that."""
+        """The text as it will be shown, so that table cells are measured by it."""
         return super().render_str(shown(text), **how)
 
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None
     ) -> Iterable[Segment]:
-        """Rich's segments, those of text as they are shown."""
+        """Rich's segments, with unsafe characters of their text escaped."""
         how = options or self.options
         if isinstance(renderable, Text) and _fits(renderable, how):
             segments = renderable.render(self, end=renderable.end)
@@ -40,7 +40,7 @@ class Terminal(Console):
 
 
 def _fits(text: Text, options: ConsoleOptions) -> bool:
-    """Whether no line of a text has to be folded, cut or moved: looking for that takes its time."""
+    """Whether no line of a text needs to be folded, cut or aligned, so that a fast path applies."""
     plain, justify = text.plain, text.justify or options.justify or "left"
     if justify not in ("default", "left") or "\t" in plain or (text.style and not text.spans):
         return False
@@ -71,9 +71,9 @@ _TOGETHER = "\N{NO-BREAK SPACE}"
 
 
 def wrapped(sentence: str, width: int) -> str:
-    """A sentence in lines, indented by two columns, from the second on by four.
+    """A sentence in lines, the first indented by two columns, the others by four.
 
-    A number stays with its unit, and with the name that it is the value of.
+    A number is kept on one line with its unit, and with `name =` before it.
 
     Args:
         sentence: without line breaks.
@@ -95,7 +95,7 @@ def wrapped(sentence: str, width: int) -> str:
 
 
 def in_short(message: str) -> str:
-    r"""What is wrong, of a message that goes on with how to fix it in further lines.
+    r"""The first line of a message, with the second one if it ends in a colon.
 
     >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
     'there is no column for what is read: `go`, read by R1'

@@ -11,17 +11,17 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 MARGIN = 0.2
-"""Of the attempt's length, shown on either side."""
+"""The margin on either side, relative to the attempt's length."""
 
 SMALLEST_MARGIN = TICKS_PER_SECOND
-"""For attempts that are decided at once; less if the run is short."""
+"""The least margin, for attempts that are decided at once; less if the run is short."""
 
 STEPS = (1, 2, 5)
 
 _SECONDS = re.compile(r"\b(\d+\.\d+) s\b")
 
 SHOWN_DIGITS = 4
-"""The last digit of an instant is between a thousandth and a ten-thousandth of the view."""
+"""Digits of an instant: its last one is 1/1000 to 1/10000 of the view."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,17 +32,17 @@ class View:
     end: int
 
     def fraction(self, instant: int) -> float:
-        """Where an instant lies: 0 at the start, 1 at the end."""
+        """The place of an instant: 0 at the start, 1 at the end."""
         return (instant - self.start) / (self.end - self.start)
 
 
 def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
-    """From before the trigger to behind the decision and the deadline.
+    """The view from before the trigger to after the decision and the deadline.
 
     Args:
-        attempt: the one that is shown.
-        report: that it is in.
-        late: when what it had awaited came after the deadline, ticks; shown if that is near.
+        attempt: the attempt to be shown.
+        report: the report it belongs to.
+        late: the instant of a response after the deadline, ticks; in view if it is near.
     """
     instants = [attempt.triggered]
     if attempt.decided is not None:
@@ -58,7 +58,7 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     if late is not None and late - last <= last - first:
         last = max(last, late)
     margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
-    # Outside the run there is nothing to see: a little is shown, to mark where it begins and ends.
+    # A quarter of the margin beyond the run marks where it begins and ends.
     little = margin // 4
     start = max(first - margin, min(report.origin, first) - little)
     if report.end is None:
@@ -67,7 +67,7 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
 
 
 def whole_run(report: Report, first: int) -> View:
-    """All of a run that starts with a sample at `first`."""
+    """The view of the whole run, which starts with a sample at `first`."""
     last = first if report.end is None else report.end
     return View(first, max(last, first + 1))
 
@@ -77,7 +77,7 @@ def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
 
     Args:
         view: what is shown.
-        origin: the instant from which people count.
+        origin: the instant that is shown as 0 s, ticks.
         count: how many are wanted.
 
     >>> second = 1_000_000_000
@@ -92,9 +92,9 @@ def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
 
 
 def moment(instant: int, origin: int, view: View) -> str:
-    """An instant for people: seconds since the origin, as fine as it can be seen in a view.
+    """An instant as seconds since the origin, rounded to what can be distinguished in a view.
 
-    A missed deadline is decided one tick behind it; that tick is not shown.
+    So the one tick between a missed deadline and its decision is not shown.
 
     >>> moment(3_234_567_891, 0, View(0, 10_000_000_000)), moment(17, 5, View(0, 20))
     ('3.235 s', '12 ns')
@@ -105,7 +105,7 @@ def moment(instant: int, origin: int, view: View) -> str:
 
 
 def with_moments(sentence: str, view: View) -> str:
-    """A sentence with its exact instants and durations as fine as they can be seen in a view.
+    """A sentence with its exact instants and durations rounded as by `moment`.
 
     >>> with_moments("never since 25.682548547 s", View(0, 10_000_000_000))
     'never since 25.683 s'

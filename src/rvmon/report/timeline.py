@@ -1,4 +1,4 @@
-"""The timeline of one attempt as HTML: obligation, axis, and a track per signal that is read."""
+"""The timeline of one attempt as HTML: obligation, axis, and a track per signal."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from rvmon.report.wording import duration_text
 from rvmon.verdict.attempt import Attempt
 
 WIDTH, HEIGHT = 1000, 100
-"""Units of a number's drawing, which is stretched to the width of the page."""
+"""The size of a number's drawing in SVG units; it is stretched to the width of the page."""
 
 SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}
-"""Comparisons as people write them."""
+"""Comparison signs for display."""
 
 EDGE = 0.12
-"""Of a number's range, left free above and below."""
+"""The margin above and below, relative to a number's range."""
 
 LABELLED = 0.25
-"""Share of the width, at the right, beside the label of a threshold."""
+"""The share of the width, at the right, taken by the label of a threshold."""
 
 LOWEST_UNDER = 0.75
-"""From the top of a track: a label has room under a threshold that is not lower."""
+"""The lowest threshold, from the top of a track, that has room for its label below."""
 
 
 def track_row(
@@ -49,10 +49,10 @@ def track_row(
     """Draw one track.
 
     Args:
-        track: what to draw.
+        track: the track.
         view: the stretch of time that is shown.
         end: the last instant of the run, ticks.
-        blamed: instants of the offending samples.
+        blamed: instants of the blamed samples, ticks.
         reference: the same signal in another run, drawn behind, dashed.
         reference_end: the last instant of that run.
     """
@@ -156,13 +156,13 @@ def _add_number(
 
 
 def _is_above(pieces: Sequence[Stretch], value: float) -> bool:
-    """Whether a number is above a value where the value's label stands."""
+    """Whether the line is above a threshold where the threshold's label is placed."""
     there = [one.value for one in pieces if one.right > 1 - LABELLED]
     return any(isinstance(one, int | float) and one > value for one in there)
 
 
 def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
-    """What a number's track spans: all finite values in sight, and the thresholds."""
+    """The range of a number's track: all finite values in view, and the thresholds."""
     values = [float(one.value) for one in pieces if isinstance(one.value, int | float)]
     values = [value for value in values if math.isfinite(value)]
     values += [threshold.value for threshold in track.thresholds]
@@ -171,7 +171,7 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
 
 
 def _ring(place: float) -> ET.Element:
-    """A ring around the sample that is to blame."""
+    """A ring around the blamed sample."""
     return e("span", {"class": "mark offending", "style": f"left:{place:.2%}"})
 
 
@@ -180,7 +180,7 @@ def _points(points: Sequence[tuple[float, float]]) -> str:
 
 
 def place_of(left: float, width: float) -> str:
-    """Position of something within a track, from fractions of its width."""
+    """The CSS position of an element within a track, from fractions of its width."""
     return f"left:{left:.3%};width:{width:.3%}"
 
 
@@ -193,19 +193,19 @@ def _unit(track: Track) -> str:
 
 
 LABEL = 0.44
-"""Share of the width that a label takes on a phone: those that would meet there get a row each."""
+"""The share of the width that a label takes on a phone; overlapping ones get own rows."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceAttempt:
-    """The nearest passing attempt, laid over the failed one.
+    """The nearest passing attempt, aligned with the failed one at the trigger.
 
     Attributes:
-        name: of its run.
-        number: of the attempt.
-        tracks: of its run, shifted in time so that both attempts are triggered together.
-        end: of its run, shifted likewise.
-        decided: shifted likewise.
+        name: the name of its run.
+        number: the number of the attempt.
+        tracks: of its run, shifted in time.
+        end: the end of its run in ticks, shifted.
+        decided: the instant of its decision in ticks, shifted.
     """
 
     name: str
@@ -229,13 +229,13 @@ def timeline(
     """Draw a timeline.
 
     Args:
-        attempt: the one that it is about; `None` if there was none.
+        attempt: the attempt; `None` if the requirement has none.
         tracks: of the signals and events that the requirement reads.
         view: what is shown.
-        origin: the instant from which people count seconds, ticks.
+        origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the run, ticks.
-        blamed: the names that the failed part of the requirement reads.
-        late: when what the attempt had awaited came after its deadline, ticks.
+        blamed: the names that the blamed subformula reads.
+        late: the instant of a response after the deadline, ticks.
         reference: drawn behind the tracks, dashed.
     """
     references = {track.name: track for track in reference.tracks} if reference else {}
@@ -255,7 +255,7 @@ def timeline(
 
 
 def _offending(attempt: Attempt | None) -> tuple[int, ...]:
-    """What is to blame became so at `at`, perhaps before the window in which it mattered."""
+    """The blamed instants, moved into the window if the value was there before it."""
     if attempt is None or attempt.blame is None:
         return ()
     return tuple(max(instant, attempt.blame.window[0]) for instant in attempt.blame.at)
@@ -264,10 +264,10 @@ def _offending(attempt: Attempt | None) -> tuple[int, ...]:
 def _obligation(
     attempt: Attempt, view: View, origin: int, end: int, late: int | None
 ) -> ET.Element:
-    """The window in which something was required, between labels of its instants."""
+    """The row with the window of the obligation, and labels of its instants."""
     first, last = _window(attempt)
     if last is None:
-        last = attempt.decided  # nothing was required any more
+        last = attempt.decided  # the decision ended the obligation
     left = view.fraction(first)
     right = min(view.fraction(max(end, first) if last is None else last), 1.0)
     kind = "window unbounded" if last is None else "window"
@@ -302,8 +302,8 @@ def _labels(
         sign = "◆" if late <= view.end else "→"
         word = with_moments(f"came {duration_text(late - deadline)} late", view)
         wanted.append((late, "late", sign, word))
-    # By importance, each into the topmost row where its share of the width is free: the page is
-    # laid out without a browser, so the share is that of the narrowest screen.
+    # In order of importance, each in the topmost row with free space. The layout is computed
+    # without a browser, so for the narrowest screen.
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:
@@ -351,7 +351,7 @@ def guides_of(attempt: Attempt, view: View, end: int, late: int | None) -> list[
 
 
 def axis_row(view: View, origin: int) -> ET.Element:
-    """The row with the instants."""
+    """The row of the time axis."""
     ticks = [
         e(
             "span",

@@ -1,4 +1,4 @@
-"""What a timeline shows of signals and events: what an attempt read, and how it is drawn."""
+"""Tracks: the signals and events of a requirement over time, prepared for drawing."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 
 
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
-    """The names that the failed part of a requirement reads; if that is unknown, all of it."""
+    """The names that the blamed subformula reads; if it has no place, those of the consequent."""
     parts = subformulas(requirement.consequent)
     required = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
@@ -81,7 +81,7 @@ class TrackKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """A constant that the requirement compares the signal with, in the signal's unit."""
+    """A comparison of the signal with a constant, in the signal's unit."""
 
     op: str
     value: float
@@ -94,11 +94,11 @@ class Track:
     Attributes:
         name: as declared.
         kind: how to draw it.
-        changes: `(ticks, value)` in order: from then on a signal has the value (`None`:
-            unknown); an event occurred then (`None`: nobody knows whether).
+        changes: `(ticks, value)` in order: a signal has the value from then on (`None`:
+            unknown); an event occurred then (`None`: perhaps).
         unit: of a number.
         thresholds: that the requirement compares it with.
-        absent: whether it has no source at all, so that nothing is known of it.
+        absent: whether it has no source, so that it is unknown throughout.
     """
 
     name: str
@@ -114,7 +114,7 @@ class Track:
         return self.changes[index - 1][1] if index else None
 
     def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
-        """The same at several instants."""
+        """The signal's values at several instants."""
         if isinstance(self.changes, Course):
             return self.changes.values_at(instants)
         return [self.value_at(instant) for instant in instants]
@@ -124,14 +124,14 @@ class Track:
         return self.changes[self._behind(first - 1) : self._behind(last)]
 
     def _behind(self, instant: int) -> int:
-        """How many changes there are up to an instant."""
+        """The number of changes up to an instant, inclusive."""
         if isinstance(self.changes, Course):
             return self.changes.behind(instant)
         return bisect_right(self.changes, instant, key=lambda change: change[0])
 
 
 def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
-    """By name what signals are at an instant, with their units; events are left out.
+    """By signal, its value at an instant with its unit; events are left out.
 
     >>> force = Track("force", TrackKind.NUMBER, ((0, 40.5), (9, None)), "N")
     >>> signals_told([force], 3), signals_told([force], 9)
@@ -145,7 +145,7 @@ def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
 
 
 PLACES = 400
-"""Places of a track that can be distinguished; what is denser is summed up at its place."""
+"""Horizontal resolution of a track; denser changes are summarised per place."""
 
 Point = tuple[float, float]
 """x and y as fractions of a track, y downwards."""
@@ -157,9 +157,9 @@ class Stretch:
 
     Attributes:
         left: as a fraction of the view, 0 to 1.
-        right: the same.
+        right: likewise.
         value: `None` where it is unknown.
-        busy: whether it stands for several values that are too short to be drawn.
+        busy: whether it replaces several stretches that are too short to be drawn.
     """
 
     left: float
@@ -189,7 +189,7 @@ def stretches(track: Track, view: View, end: int) -> list[Stretch]:
 
 
 def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
-    """The same, with neighbours that are too narrow to be seen joined into busy ones."""
+    """The stretches with neighbours that are too narrow to be seen merged into busy ones."""
     if len(pieces) <= PLACES:
         return list(pieces)
     joined: list[Stretch] = []
@@ -203,7 +203,7 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
 
 
 def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
-    """Where in a view an event occurred (`True`), or may have (`None`); one per place."""
+    """Places in a view at which an event occurred (`True`), or may have (`None`)."""
     inside = [(view.fraction(t), value) for t, value in track.between(view.start, view.end)]
     if len(inside) <= PLACES:
         return inside
@@ -225,7 +225,7 @@ def polylines(pieces: Sequence[Stretch], lowest: float, highest: float) -> list[
 
 
 def _outlined(points: Sequence[Point]) -> list[Point]:
-    """Of each place the first and last point and the extremes between, so that no peak is lost."""
+    """Per place the first, last, lowest and highest point, so that no peak is lost."""
     kept: list[Point] = []
     for _, group in groupby(points, key=lambda point: int(point[0] * PLACES)):
         some = list(group)

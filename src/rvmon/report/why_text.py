@@ -1,4 +1,4 @@
-"""An attempt taken apart, drawn in the terminal."""
+"""The dissection of an attempt, drawn in the terminal."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 PLOT = 46
-"""Columns of the drawing; the rest is for the formulas."""
+"""Columns of the drawing; the formulas take the rest."""
 
 TRUE, FALSE, UNKNOWN, RISES, FALLS, PULSE, DIP = "▇▁?╱╲●○"
 LEGEND = (
@@ -57,11 +57,11 @@ def why_lines(
 
 
 def values_told(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
-    """By name of a signal what it was at the trigger, and when the attempt ended if that is later.
+    """By signal, its value at the trigger, and at the end of the attempt if that is later.
 
     Args:
-        tracks: of what the requirement reads.
-        attempt: whose instants are meant.
+        tracks: of the names that the requirement reads.
+        attempt: gives the instants.
         end: the last instant of the run, ticks, where an open attempt ends.
     """
     last = end if attempt.decided is None else attempt.decided
@@ -90,7 +90,7 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
 
 
 def _axis(breakdown: Breakdown) -> Iterator[Text]:
-    """Where the trigger and the decision are."""
+    """The time axis with marks at the trigger and the decision."""
     from rich.text import Text
 
     attempt = breakdown.attempt
@@ -123,7 +123,7 @@ def _row(part_truth: PartTruth, breakdown: Breakdown) -> Iterator[Text]:
 
 
 def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
-    """One column: what the formula is in its ticks."""
+    """One column: the truth of the formula over its ticks, with changes as edges or pulses."""
     span = breakdown.end - breakdown.start + 1
     low = breakdown.start + column * span // PLOT
     high = max(breakdown.start + (column + 1) * span // PLOT - 1, low)
@@ -143,7 +143,7 @@ def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
 
 
 def _inside(spans: Sequence[tuple[int, int]], low: int, high: int) -> bool:
-    """Whether all that touches a stretch of time lies within it."""
+    """Whether all spans that intersect [low, high] lie within it."""
     return all(low <= a and b <= high for a, b in spans if a <= high and low <= b)
 
 

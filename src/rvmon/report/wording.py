@@ -1,4 +1,4 @@
-"""Why, in full: what the rest of a recording adds to reasons, or says where there is none."""
+"""Shared wording of reports: reasons, instants, input health, values, durations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
 
     Args:
         verdict: of the requirement: `NT`, or `I` if its trigger was never known.
-        miss: what the trigger lacked when it was nearest; empty if nobody looked.
+        miss: the near miss of its trigger; "" if it was not computed.
 
     >>> without_attempts(Verdict.NOT_TRIGGERED, "`near` was never true")
     'never triggered: `near` was never true'
@@ -33,7 +33,7 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
 
 
 def instants_of(attempt: Attempt) -> Sequence[str]:
-    """When an attempt was triggered and decided; where stamps stand beside, in a line each.
+    """When an attempt was triggered and decided; with absolute stamps, one line for each.
 
     >>> instants_of(Attempt("R1", 1, 5, 9, Verdict.PASS))
     ('triggered 5 ns, decided 9 ns',)
@@ -45,19 +45,19 @@ def instants_of(attempt: Attempt) -> Sequence[str]:
 
 
 def full_reason(attempt: Attempt, report: Report) -> str:
-    """The reason of an attempt with what the report knows besides: values, and how late it came."""
+    """The reason of an attempt with the report's values at its decision and late response."""
     late = report.late.get(attempt.requirement, {}).get(attempt.number)
     values = report.values.get(attempt.requirement, {}).get(attempt.number, {})
     return told_reason(attempt, late, values)
 
 
 def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
-    """The reason of an attempt, with values; if what it awaited came too late, also how late.
+    """The reason of an attempt, with values at its decision, and how late the response came.
 
     Args:
         attempt: any.
-        came: the instant at which it came, ticks; `None`: it did not, or nobody looked.
-        values: what signals were at its decision, with units.
+        came: the instant of a late response, ticks; `None` if none is known.
+        values: by signal, its value at the decision, with its unit.
 
     >>> from rvmon.verdict.attempt import Blame
     >>> from rvmon.verdict import Verdict
@@ -81,10 +81,10 @@ def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = 
 
 
 def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, str]]:
-    """What was not known of the input, or noticed while it was read: of which names, and what.
+    """Entries of input health in words, as pairs of names and fact.
 
     Args:
-        found: of the run.
+        found: the entries of a run.
         origin: its first instant, ticks.
 
     >>> speed = Health(HealthKind.NAN, "speed", 3, 2 * TICKS_PER_SECOND, ("R1",))
@@ -110,11 +110,11 @@ def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, st
 
 
 SHOWN = 12
-"""Names of a kind that are listed; the rest is counted."""
+"""The most names listed for one fact; the rest is counted."""
 
 
 def first_of(names: Sequence[str], most: int) -> str:
-    """The first of some names, and how many more there are.
+    """The first `most` names, and the number of the others.
 
     >>> first_of(["a", "b", "c"], 2)
     'a, b, … and 1 more'
@@ -124,7 +124,7 @@ def first_of(names: Sequence[str], most: int) -> str:
 
 
 def value_text(value: Scalar, unit: str = "") -> str:
-    """A value of a signal or proposition.
+    """The value of a signal or proposition as text.
 
     >>> value_text(True), value_text(0.1 + 0.2, "m"), value_text("closed"), value_text(None, "m")
     ('true', '0.3 m', 'closed', 'not known')
@@ -143,7 +143,7 @@ def value_text(value: Scalar, unit: str = "") -> str:
 
 
 def duration_text(ticks: int) -> str:
-    """A duration for people, in a unit of its size.
+    """A duration in a suitable unit.
 
     >>> duration_text(20_000_000), duration_text(2_500_000_000)
     ('20 ms', '2.5 s')
@@ -152,7 +152,7 @@ def duration_text(ticks: int) -> str:
 
 
 def forecast_sentence(forecast: Verdict) -> str:
-    """What an undecided attempt comes to, however the run goes on.
+    """The forecast of an undecided attempt, as a sentence.
 
     >>> forecast_sentence(Verdict.FAIL)
     'forecast F: no continuation can fulfil it'

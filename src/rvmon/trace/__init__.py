@@ -1,1 +1,1 @@
-"""Time and samples: what a monitor is fed with."""
+"""Time, samples and recordings: the input of monitors, and the schema of its names."""

@@ -1,4 +1,4 @@
-"""What arrives: samples of signals and events; and why something was not known (input health).
+"""Samples of signals and events, outages, and input health.
 
 Source: SEMANTICS 1 and 6.
 """
@@ -13,7 +13,7 @@ from typing import Protocol
 
 
 class HealthKind(StrEnum):
-    """A cause of not knowing."""
+    """A kind of finding about the input: a cause of unknown values, or a warning."""
 
     MISSING = "missing"
     ABSENT = "absent"
@@ -35,15 +35,15 @@ _DOUBTS = (HealthKind.UNIT, HealthKind.CLOCK, HealthKind.CUT)
 
 @dataclass(frozen=True, slots=True)
 class Health:
-    """One kind of trouble with one input on one run.
+    """One kind of finding about one input on one run.
 
     Attributes:
-        kind: what it was.
-        name: the signal or event, or the column.
-        count: how often.
+        kind: the kind.
+        name: the signal, event or column.
+        count: how often it occurred.
         first: the first instant, ticks; `None` if it has none.
         requirements: ids of the requirements that read the name.
-        remark: more for people, or empty.
+        remark: further explanation, or "".
     """
 
     kind: HealthKind
@@ -55,7 +55,7 @@ class Health:
 
     @property
     def is_doubt(self) -> bool:
-        """Whether it is a warning: the recording may not be what it seems."""
+        """Whether it is a warning that the recording may be misread."""
         return self.kind in _DOUBTS
 
 
@@ -66,11 +66,11 @@ Payload = Mapping[str, Scalar]
 """The fields of one occurrence of an event."""
 
 Value = Scalar | Payload | tuple[Payload, ...]
-"""What a sample says of a name: a signal's value; of an event `True`, its payload or payloads."""
+"""The value of a name in a sample: of a signal its value; of an event `True`, or its payloads."""
 
 
 def payloads_of(value: Value) -> tuple[Payload | None, ...]:
-    """The payloads of a report of an event: one per occurrence, `None` if it is unknown."""
+    """The payloads in the value of an event: one per occurrence; `None` for an unknown one."""
     if isinstance(value, tuple):
         return value
     if isinstance(value, Mapping):
@@ -79,9 +79,9 @@ def payloads_of(value: Value) -> tuple[Payload | None, ...]:
 
 
 def calculated(operation: Callable[..., float], *values: Scalar) -> float | None:
-    """What an operation on numbers gives; unknown if one is, or if it is no finite number.
+    """The result of a numeric operation; `None` if an operand is unknown or it is not finite.
 
-    So is what bits a number has that is not whole.
+    The latter includes bit operations on numbers that are not integers.
     """
     for value in values:
         if value is None or isinstance(value, str):
@@ -95,30 +95,30 @@ def calculated(operation: Callable[..., float], *values: Scalar) -> float | None
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """All that became known at one instant.
+    """The updates and occurrences at one instant.
 
     Attributes:
-        t: ticks.
-        values: by name, only what was updated or occurred.
+        t: the instant, ticks.
+        values: by name; only names that were updated or occurred.
     """
 
     t: int
     values: Mapping[str, Value]
 
     def without(self, names: Set[str]) -> Sample:
-        """The same with nothing of some names."""
+        """The sample without some names."""
         return Sample(self.t, {name: self.values[name] for name in self.values.keys() - names})
 
 
 @dataclass(frozen=True, slots=True)
 class Outage:
-    """A stretch of a recording in which names were lost.
+    """A stretch of a recording in which updates of names may have been lost.
 
     Attributes:
         since: its first instant, ticks.
-        until: its last one.
-        why: it is one.
-        names: that were lost; `None`: all.
+        until: its last instant, ticks.
+        why: its cause, in words.
+        names: the names concerned; `None`: all.
     """
 
     since: int
@@ -132,11 +132,11 @@ class Recording(Protocol):
 
     @property
     def names(self) -> frozenset[str] | None:
-        """The signals and events that have a source (a column, a topic); `None`: any may come."""
+        """The signals and events that have a source (a column, a topic); `None`: any may occur."""
 
     @property
     def end(self) -> int | None:
-        """The instant at which the recording ended, in ticks, if it says so by itself."""
+        """The instant at which the recording ended, ticks; `None` if it does not say so."""
 
     def __iter__(self) -> Iterator[Sample]: ...
 
@@ -147,9 +147,9 @@ class Trace:
 
     Attributes:
         samples: with strictly increasing `t`.
-        names: the names that have a source; `None` if any may come.
-        end: the instant at which the recording ended, in ticks; `None`: at its last sample.
-        outages: what it lost.
+        names: the names that have a source; `None` if any may occur.
+        end: the instant at which the recording ended, ticks; `None`: at its last sample.
+        outages: its outages.
     """
 
     samples: tuple[Sample, ...]

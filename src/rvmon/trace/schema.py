@@ -1,6 +1,6 @@
-"""What a spec says of the names in a trace, as far as reading them needs it.
+"""The schema of a trace: the declarations of a specification that readers need.
 
-A name may be bound to a topic and a field of recorded messages, and to what stands for "no update".
+It also binds names to topics and fields of recorded messages, and defines values for "no update".
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rvmon.errors import UnknownNameError
 
 
 class Clock(StrEnum):
-    """Which of the stamps of a message counts: when it was recorded, or what its header says."""
+    """The stamp of a message that counts: that of the log, or that in its header."""
 
     LOG = "log"
     HEADER = "header"
@@ -23,7 +23,7 @@ class Clock(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """The element of an array that has a name: beside the array, or in the element itself."""
+    """An element of an array by its name, which is in a parallel array or in the element."""
 
     name: str
 
@@ -39,7 +39,7 @@ class Field:
     """A field of a message.
 
     Attributes:
-        path: names that lead to it, and the places or names of elements of arrays.
+        path: names of nested fields, and indices or names of array elements.
 
     >>> str(Field(("poses", 0, "position", "x"))), str(Field(("position", Named("elbow"))))
     ('poses[0].position.x', 'position[elbow]')
@@ -68,7 +68,7 @@ class Elements:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A number, or a truth value."""
+    """A constant number or truth value."""
 
     value: float | int | bool
 
@@ -78,12 +78,12 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Applied:
-    """An operation on terms, of which `Elements` is alone; what is no number is unknown.
+    """An operation on terms; `Elements` can only be its sole argument. Non-numbers are unknown.
 
     Attributes:
-        operation: yields the result.
-        args: on what.
-        sign: as it is written; empty of a conversion of units.
+        operation: computes the result.
+        args: the operands.
+        sign: its sign or name; "" for a conversion of units.
     """
 
     operation: Callable[..., Any]
@@ -102,25 +102,25 @@ class Applied:
 
 
 TURNS = ("yaw", "pitch", "roll")
-"""Functions of a quaternion: its turns about z, y and x."""
+"""Functions of a quaternion: its rotations about z, y and x."""
 
 Term = Field | Elements | Constant | Applied
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What feeds a signal or an event.
+    """The source of a signal or event in recorded messages.
 
     Attributes:
-        topic: of the messages.
-        value: of a signal its value, of an event whether it occurs; `None`: an event occurs with
-            each message.
-        fields: of an event's payload, by name.
-        labels: of a signal of labels, by the number or text that stands for it; empty: the text.
-        clock: which stamp counts; `None`: that of the whole recording.
-        on_change: whether a message whose value is that of the one before says nothing.
-        type: of the messages; empty: any.
-        unit: of the value, before it is converted; empty: the declared one.
+        topic: the topic of the messages.
+        value: the value of a signal, or whether an event occurs; `None`: an event occurs with each
+            message.
+        fields: of an event, the terms of its payload by field.
+        labels: of a signal of labels, the label by recorded number or text; empty: the text itself.
+        clock: the stamp that counts; `None`: the one chosen for the whole recording.
+        on_change: whether a message with the same value as the previous one is no update.
+        type: the type of the messages; "": any.
+        unit: the unit of the recorded value; "": the declared one.
     """
 
     topic: str
@@ -138,10 +138,10 @@ class Binding:
     """How recorded messages are read.
 
     Attributes:
-        bounds: by declared name.
-        clock: which stamps count.
-        definitions: texts of message definitions by type, for recordings that bring none along.
-        robot: what stands for `*` in the names of topics; empty: what the recording has.
+        bounds: by declared name, its source.
+        clock: the stamps that count.
+        definitions: by type, texts of message definitions, for recordings without them.
+        robot: the replacement of `*` in the names of topics; "": taken from the recording.
     """
 
     bounds: Mapping[str, Bound] = field(default_factory=dict)
@@ -151,20 +151,20 @@ class Binding:
 
 
 BY_NAME = Binding()
-"""Names lead to topics and fields, and what was recorded when counts."""
+"""The default binding: names are matched with topics and fields, log stamps count."""
 
 
 READINGS_OF_NAN = ("unknown", "no update")
-"""What NaN may say of a name: that it became unknown, or nothing."""
+"""The meanings of NaN: the name became unknown, or was not updated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gaps:
-    """Values that say nothing of their name.
+    """Values that mean "no update".
 
     Attributes:
-        no_update: a value; `None`: no further one.
-        nan: whether NaN is one.
+        no_update: such a value; `None`: there is none.
+        nan: whether NaN means it.
     """
 
     no_update: bool | int | float | str | None = None
@@ -179,7 +179,7 @@ class Gaps:
         return READINGS_OF_NAN[self.nan]
 
     def holds(self, value: Any) -> bool:
-        """Whether a value of a cell, or of a sample, says nothing.
+        """Whether a value of a cell or sample means "no update".
 
         >>> Gaps(no_update=-1).holds(-1.0), Gaps(no_update=1).holds(True), Gaps(nan=True).holds(2)
         (True, False, False)
@@ -193,23 +193,23 @@ class Gaps:
 
 
 def is_unknown(value: Any) -> bool:
-    """Whether the value of a sample is none: NaN, or nothing."""
+    """Whether a value in a sample makes its name unknown: NaN or `None`."""
     return value is None or (isinstance(value, float) and value != value)
 
 
 NO_GAPS = Gaps()
-"""Only what is absent says nothing."""
+"""Only an absent value means "no update"."""
 
 
 def gaps_of(nan: str, no_update: Any) -> Gaps:
-    """What a caller names.
+    """The gaps from a caller's options.
 
     Args:
         nan: one of `READINGS_OF_NAN`.
-        no_update: a value, NumPy's too; NaN is as good as `nan="no update"`; `None`: no further.
+        no_update: a value, also of NumPy; NaN is the same as `nan="no update"`.
 
     Raises:
-        UnknownNameError: there is no such reading of NaN, or the value is none that a cell holds.
+        UnknownNameError: there is no such reading of NaN, or no cell can have such a value.
     """
     if nan not in READINGS_OF_NAN:
         known = " or ".join(f"nan={one!r}" for one in READINGS_OF_NAN)
@@ -225,7 +225,7 @@ def gaps_of(nan: str, no_update: Any) -> Gaps:
 
 
 class Kind(StrEnum):
-    """What values a signal or a payload field takes."""
+    """The kind of the values of a signal or payload field."""
 
     BOOL = "bool"
     INT = "int"
@@ -235,13 +235,13 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Stamps:
-    """Where a recording says when.
+    """The source of the stamps of a recording.
 
     Attributes:
-        column: the name of the column, in JSON lines of the field.
+        column: the name of the column, or of the field in JSON lines.
         unit: `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601.
-        is_stated: whether a person named the unit, or it is what goes without saying.
-        pattern: of dates that are no ISO 8601, as `datetime.strptime` takes it.
+        is_stated: whether the user named the unit, so that it is not a default.
+        pattern: of dates that are not ISO 8601, for `datetime.strptime`.
     """
 
     column: str
@@ -252,19 +252,17 @@ class Stamps:
 
 @dataclass(frozen=True, slots=True)
 class Schema:
-    """The declared names with their kinds, and how recordings give them.
+    """The declared names with their kinds, and how recordings provide them.
 
     Attributes:
         signals: kind by name.
-        events: for each event the kinds of its payload's fields.
-        ignoring: the signals of which NaN and null are no update.
-        stamps: of recordings; `None`: seconds in `t`, or nanoseconds in `t_ns`.
-        columns: by declared name (of an event's field `event.field`) the column that stands for
-            it, where that has another name.
-        gaps: values that stand for no update, of whatever name.
-        binding: which topics and fields of messages stand for what.
-        units: in which the declared names are, of an event's field by `event.field`; those
-            without one are not in it.
+        events: by event, the kinds of its payload's fields.
+        ignoring: the signals for which NaN and null are no update.
+        stamps: the source of stamps; `None`: seconds in `t`, or nanoseconds in `t_ns`.
+        columns: by declared name (`event.field` for a field), the column, if it has another name.
+        gaps: values that mean "no update", for all names.
+        binding: the topics and fields of messages by name.
+        units: the unit of each declared name (`event.field` for a field) that has one.
     """
 
     signals: Mapping[str, Kind]
@@ -278,6 +276,6 @@ class Schema:
 
     @property
     def named(self) -> Mapping[str, str]:
-        """By declared name the column or topic that a person named for it."""
+        """By declared name, the column or topic that the user mapped to it."""
         topics = {name: bound.topic for name, bound in self.binding.bounds.items()}
         return {**topics, **self.columns}

@@ -1,4 +1,4 @@
-"""Stamps of recordings in their units as ticks, exactly."""
+"""Exact conversion of the stamps of recordings to ticks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rvmon.trace.time import (
 )
 
 UNITS = (*UNIT_WORDS, "iso")
-"""What stamps may be counted in."""
+"""The units of stamps."""
 
 _ISO = re.compile(
     r"(?P<date>\d{4}-?\d\d-?\d\d)"
@@ -40,13 +40,13 @@ _SHOWN.maxstring = 60
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 _EPOCHS = {"ms": (1e11, 1e14), "us": (1e14, 1e17), "ns": (1e17, 1e20)}
-"""From where to where numbers are instants since 1970 in a unit, if they are no seconds."""
+"""The ranges in which a number is probably an instant since 1970 in that unit, not in seconds."""
 
 
 def stamps_of(text: str) -> Stamps:
-    """Read `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` holds nanoseconds.
+    """Parse `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` is in nanoseconds.
 
-    Two columns, `SECONDS+NANOSECONDS`, are one in nanoseconds; a unit may be a pattern of dates.
+    `SECONDS+NANOSECONDS` names two columns to be added; a unit may also be a pattern of dates.
 
     >>> stamps_of("stamp:ms")
     Stamps(column='stamp', unit='ms', is_stated=True, pattern='')
@@ -79,12 +79,12 @@ def ticks_of_cell(text: str, stamps: Stamps) -> int:
         except TraceError as error:
             raise TraceError(f"{error}{_other_unit(text, stamps)}") from None
     with suppress(ValueError):
-        # Python reads 1_000 as a number; no recording means it.
+        # Python accepts 1_000 as a number; in a recording it is an error.
         t = int(text.replace("_", "?"))
         if abs(t) < TIME_LIMIT:
             return t
     shown = _SHOWN.repr(text)[1:-1]
-    # Python reads no more than some thousand digits, which are a whole number as well.
+    # `int` refuses more than some thousand digits; such a text is out of range, not malformed.
     if is_whole(text):
         raise TraceError(f"time `{shown}` is out of range: at most 2**62 ns (146 years)")
     raise TraceError(f"time `{shown}` is not a whole number of nanoseconds")
@@ -96,14 +96,14 @@ def is_whole(text: str) -> bool:
 
 
 def ticks_of_stamp(stamp: Any, stamps: Stamps) -> int:
-    """A stamp that is held as a number, or as text or a date for `iso`, as ticks.
+    """A stamp as ticks.
 
     Args:
-        stamp: of `s`, `ms` and `us` any number; of `ns` a whole one.
-        stamps: says the unit.
+        stamp: for `s`, `ms` and `us` any number, for `ns` an integer, for `iso` a text or date.
+        stamps: gives the unit.
 
     Raises:
-        TraceError: it is none in that unit, or out of range.
+        TraceError: it is no stamp in that unit, or out of range.
 
     >>> ticks_of_stamp(1_500, stamps_of("t:us")), ticks_of_stamp(0.25, stamps_of("t:ms"))
     (1500000, 250000)
@@ -144,10 +144,10 @@ def _seconds(stamp: float | Fraction | Decimal, unit: str) -> Fraction:
 
 
 def ticks_of_iso(text: str) -> int:
-    """Read a date and time of ISO 8601 as ticks since 1970, exactly; without an offset it is UTC.
+    """Read a date and time of ISO 8601 exactly as ticks since 1970; the default offset is UTC.
 
     Raises:
-        TraceError: it is none, has more than nine digits of a second, or is out of range.
+        TraceError: it is malformed, has more than nine digits of a second, or is out of range.
 
     >>> ticks_of_iso("1970-01-01T02:00:00.000000001+02:00")
     1
@@ -170,7 +170,7 @@ def ticks_of_iso(text: str) -> int:
 
 
 def _other_unit(stamp: object, stamps: Stamps) -> str:
-    """A question after the unit that was probably meant, where it went without saying."""
+    """A hint at the unit that was probably meant, if the user did not name one."""
     if stamps.is_stated:
         return ""
     if _ISO.fullmatch(str(stamp).strip()) and not str(stamp).isdigit():

@@ -1,4 +1,4 @@
-"""Time as integer ticks of one nanosecond, and the exact conversions at its edge."""
+"""Time as integer ticks of one nanosecond, with exact conversions from and to text and numbers."""
 
 from __future__ import annotations
 
@@ -31,32 +31,32 @@ TICKS_PER_UNIT = {
 """Units of duration, each as a whole number of ticks."""
 
 UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
-"""Units of stamps, as people call them."""
+"""The names of the units of stamps."""
 
 _DATES_FROM = 946_684_800 * TICKS_PER_SECOND
-"""The year 2000: stamps from it on are counted from 1970, for no clock of a robot runs so long."""
+"""The year 2000: later stamps count from 1970, as no clock of a robot runs so long."""
 
 _COARSE = 2.0**23
-"""From so many seconds on the next float is more than a tick away."""
+"""From this many seconds on, the spacing of floats exceeds a tick."""
 
 _FAR = 4e9
-"""Seconds within `TIME_LIMIT`."""
+"""A bound in seconds that is within `TIME_LIMIT`."""
 
 _FEW_DIGITS = 28
-"""So many are read as a whole number before anything else is tried."""
+"""The most digits that are read as an integer, the fast path."""
 
 _SURE = 0.4999
-"""So near to a whole number, a product of a fraction and 1e9 is rounded as the exact one is."""
+"""If a fraction times 1e9 is this near to an integer, it rounds as the exact product does."""
 
 
 def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
-    """Seconds as ticks, rounded to the nearest once.
+    """Seconds as ticks, rounded once to the nearest.
 
     Args:
-        seconds: a finite number, NumPy's too; an `int`, `Fraction` or `Decimal` is
-            converted exactly. A float whose neighbours are more than a tick away, as that of an
-            instant since 1970, stands for the shortest decimal that reads as it, which Python
-            prints: what was written with a few digits is exact.
+        seconds: a finite number, also of NumPy; an `int`, `Fraction` or `Decimal` is converted
+            exactly. A float whose spacing exceeds a tick, such as an instant since 1970, stands for
+            the shortest decimal that reads as it (its `repr`), so that stamps written with a few
+            digits are exact.
 
     Raises:
         TraceError: it is no number, not finite or beyond `TIME_LIMIT` ticks.
@@ -84,13 +84,13 @@ def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
 
 
 def exact(number: float | Fraction | Decimal, unit: str) -> float | Fraction | Decimal:
-    """The number that a stamp in a unit stands for: of a coarse float its shortest decimal."""
+    """The exact value of a stamp in a unit: of a float coarser than a tick its decimal."""
     coarse = isinstance(number, float) and math.ulp(number) * TICKS_PER_UNIT[unit] > 1
     return Decimal(repr(number)) if coarse else number
 
 
 def whole_ticks(t: Any) -> int:
-    """A number of ticks as a plain integer, NumPy's too.
+    """A number of ticks, also of NumPy, as a plain integer.
 
     Raises:
         TraceError: it is no whole number, or beyond `TIME_LIMIT`.
@@ -111,15 +111,15 @@ def whole_ticks(t: Any) -> int:
 
 
 def _shown(number: float | Decimal) -> str:
-    """A number for a message; of a very long integer only that it is one."""
+    """A number for a message; a huge integer is not written out."""
     long = isinstance(number, int) and abs(number) > 10**30
     return "beyond 10**30" if long else repr(number)
 
 
 def _plain(seconds: Any) -> float | Fraction:
-    """What is no plain number as one, if it is a number."""
+    """A number of another type as a plain one."""
     try:
-        # NumPy's dates and durations would give a number of some unit of theirs.
+        # NumPy's dates and durations are refused: their `item` depends on their unit.
         kind = getattr(getattr(seconds, "dtype", None), "kind", "")
         if not isinstance(seconds, str) and kind not in ("m", "M"):
             plain = seconds.item() if hasattr(seconds, "item") else seconds
@@ -130,11 +130,11 @@ def _plain(seconds: Any) -> float | Fraction:
 
 
 def ticks_of_text(text: str, unit: str = "s") -> int:
-    """Read a decimal number exactly; what lies between two ticks is rounded to the nearest.
+    """Read a decimal number of a unit exactly as ticks, rounded once to the nearest.
 
     Args:
         text: the number.
-        unit: of it, one of `TICKS_PER_UNIT`.
+        unit: one of `TICKS_PER_UNIT`.
 
     Raises:
         TraceError: the text is no finite decimal number, or out of range.
@@ -151,7 +151,7 @@ def ticks_of_text(text: str, unit: str = "s") -> int:
             return ticks
     shown = reprlib.repr(text)[1:-1]
     try:
-        # Python reads 1_000 as a number; no recording means it.
+        # Python accepts 1_000 as a number; in a recording it is an error.
         number = Decimal(text.replace("_", "?"))
     except InvalidOperation:
         raise TraceError(f"time `{shown}` is not a number of {UNIT_WORDS[unit]}") from None
@@ -174,7 +174,7 @@ def later(t: int, duration: int) -> int:
 
 
 def format_ticks(ticks: int) -> str:
-    """Ticks as seconds (or the largest smaller unit below a microsecond's worth), exactly.
+    """Ticks as seconds, exactly; below a microsecond as nanoseconds.
 
     >>> format_ticks(14_250_000_000), format_ticks(3), format_ticks(0)
     ('14.25 s', '3 ns', '0 s')
@@ -188,7 +188,7 @@ def format_ticks(ticks: int) -> str:
 
 
 def format_instant(t: int, origin: int) -> str:
-    """An instant as people speak of it: since the first one of its run; both in ticks.
+    """An instant relative to the first one of its run (`origin`); both in ticks.
 
     >>> format_instant(1_700_000_014_250_000_000, 1_700_000_000_000_000_000)
     '14.25 s'
@@ -197,7 +197,7 @@ def format_instant(t: int, origin: int) -> str:
 
 
 def format_stamp(t: int) -> str:
-    """An instant as its recording has it, ticks; with its date to the second, if it is one.
+    """An instant (ticks) as stamped in its recording; with the date if it is counted from 1970.
 
     >>> format_stamp(14_250_000_000), format_stamp(1_700_000_014_250_000_000)
     ('14.25 s', '1700000014.25 s, 2023-11-14 22:13:34 UTC')
@@ -209,7 +209,7 @@ def format_stamp(t: int) -> str:
 
 
 def format_stamped(t: int, origin: int) -> str:
-    """An instant as people speak of it, and its stamp where that is another; both in ticks.
+    """An instant relative to `origin`, with its stamp if that differs; both in ticks.
 
     >>> format_stamped(14_250_000_000, 5_000_000_000), format_stamped(14_250_000_000, 0)
     ('9.25 s (stamp 14.25 s)', '14.25 s')

@@ -1,4 +1,4 @@
-"""The four verdicts and their fold; attempts, reports and tables of them are the modules here."""
+"""The four verdicts and their fold; the modules define attempts, reports and tables of them."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Iterable
 from enum import StrEnum
 
 LAW = 3
-"""Version of the law by which verdicts are judged; raised when the same run may get another one.
+"""Version of the semantics ("law"); raised when a run may get another verdict than before.
 
-It stands in reports, and in what a page or a command says of itself; the changes are complete in
+It is stored in reports and shown on pages and by commands. All changes are listed in
 docs/reference/what-changed-in-the-law.md.
 """
 
 
 class Verdict(StrEnum):
-    """What can be reported of a requirement, or of one attempt of it, on one run."""
+    """The verdict on a requirement, or on one of its attempts, for one run."""
 
     PASS = "P"
     FAIL = "F"
@@ -27,8 +27,8 @@ def fold(verdicts: Iterable[Verdict], *, complete: bool = True) -> Verdict:
 
     Args:
         verdicts: of its attempts.
-        complete: whether all attempts that it may have are among these; if not, as when its trigger
-            was never true or false, only that one failed says something.
+        complete: whether these are all attempts it may have. Not so if its trigger was never TRUE
+            or FALSE: then the result is `F` or `I`.
 
     Source: SEMANTICS, section 3.
 

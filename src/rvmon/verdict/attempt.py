@@ -1,4 +1,4 @@
-"""The record of one attempt; attempts that are made when someone looks at them."""
+"""The record of one attempt, and sequences whose attempts are made on access."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from rvmon.verdict import Verdict
 
 
 class Decision(StrEnum):
-    """What settled an attempt."""
+    """How an attempt was settled."""
 
     PREFIX = "prefix"
-    """The samples so far leave no other value."""
+    """Decided by a prefix of the trace, for every continuation."""
 
     HELD_TO_END = "held to the end"
     """Only unbounded `always` obligations were open when the trace ended."""
 
     POLICY = "policy"
-    """The requirement's `at end` policy."""
+    """Settled by the requirement's `at end` policy."""
 
     OPEN = "open"
-    """Nothing: undecided when the trace ended, or still running."""
+    """Not settled: undecided when the trace ended, or still open."""
 
 
 @dataclass(frozen=True, slots=True)
 class Blame:
-    """The obligation that decided an attempt, and the window it spoke of.
+    """The obligation that failed, and its window.
 
     Attributes:
-        subformula: its text as in the spec.
-        start: span of the subformula in the spec's text, first character.
-        end: behind the last character.
+        subformula: its text in the language.
+        start: index of its first character in the text of the specification.
+        end: index after its last character.
         window: first and last instant of its window in ticks; the last is `None` if unbounded.
-        at: the instants of the samples that are to blame, in ticks.
+        at: the instants of the offending samples, in ticks.
     """
 
     subformula: str
@@ -51,32 +51,32 @@ class Blame:
 
 @dataclass(slots=True)
 class Attempt(Record):
-    """One obligation that a trigger started; a record, which is not to be changed.
+    """One attempt: the obligation that a trigger started, with its verdict. Treat as immutable.
 
-    It is not frozen: to make one would take three times as long.
+    It is not frozen, as creation would take three times as long.
 
     Attributes:
-        requirement: its id.
+        requirement: the id of its requirement.
         number: from 1 per requirement, in the order in which triggers became certain; attempts in
-            doubt have numbers of their own, in the order of their starts.
-        triggered: instant of the trigger, ticks; of an attempt in doubt, the first at which there
-            may have been one.
-        decided: the first instant at which the prefix left one value; the end of the trace
-            for what the end rule or a policy settled; `None` for `I`.
+            doubt are numbered separately, in the order of their starts.
+        triggered: instant of the trigger, ticks; of an attempt in doubt, the first instant at which
+            there may have been one.
+        decided: the first instant at which the prefix decided it, ticks; the end of the trace if
+            the end rule or a policy settled it; `None` for `I`.
         verdict: `P`, `F` or `I` (undecided).
-        decision: what settled it.
-        reason: one sentence for people.
-        deadline: the last instant before time alone settles what is still required (or was),
-            ticks: if no position comes that does so before, it is decided a tick later.
-        at_trigger: values of its propositions at the trigger, by their text.
+        decision: how it was settled.
+        reason: one sentence.
+        deadline: the last instant before time alone decides the obligation, ticks: unless a
+            position decides it earlier, it is decided one tick later.
+        at_trigger: by text, the values of its propositions at the trigger.
         at_decision: the same at the decision.
-        required: what was open at the end, as text of the spec.
+        required: the obligation open at the end, in the language.
         captured: values captured by `let` and `for each`.
-        blame: what failed, for `F`.
-        forecast: `P` or `F` if no continuation can change that any more, though undecided.
-        in_doubt: whether it is not known that there was a trigger: it is `I`, or undecided.
-        origin: the first instant of its run, ticks: people count seconds from it.
-        robustness: how far from the other verdict at least, in SI units, where somebody measured.
+        blame: the obligation that failed, for `F`.
+        forecast: of an undecided attempt, `P` or `F` if every continuation leads to that.
+        in_doubt: whether the trigger itself is uncertain; its verdict is `P` or `I`, never `F`.
+        origin: the first instant of its run, ticks, which is shown as 0 s.
+        robustness: a lower bound of the distance to the other verdict, in SI units; if measured.
     """
 
     requirement: str
@@ -98,10 +98,10 @@ class Attempt(Record):
     origin: int = 0
 
     _repr_html_: ClassVar[Callable[[Attempt], str]]
-    """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
+    """HTML for notebooks; set by `rvmon.session`, as `report` is a layer above this one."""
 
     def _work_out(self) -> None:
-        """Set the fields that were never set: called when someone asks for one."""
+        """Compute the lazy fields; `Record` calls it on the first access to one of them."""
         if not hasattr(self, "_details"):
             raise AttributeError("of this attempt nothing more is known")
         for name, value in self._details(self, self._noted).items():
@@ -109,12 +109,12 @@ class Attempt(Record):
         del self._details, self._noted
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
-        """What copies and other processes get: all fields, worked out."""
+        """Copies and pickles have all fields computed."""
         return Attempt, tuple(getattr(self, one.name) for one in fields(self))
 
     @property
     def name(self) -> str:
-        """How people name it.
+        """Its name in texts.
 
         >>> Attempt("R1", 2, 0, None, Verdict.INCONCLUSIVE, Decision.OPEN, in_doubt=True).name
         'R1?2'
@@ -123,11 +123,11 @@ class Attempt(Record):
 
     @property
     def numbered(self) -> str:
-        """Its number, behind a question mark if it is in doubt."""
+        """Its number, after a question mark if it is in doubt."""
         return f"?{self.number}" if self.in_doubt else str(self.number)
 
     def __str__(self) -> str:
-        """One line for people.
+        """One line of text.
 
         >>> print(Attempt("R1", 3, 0, 2 * 10**9, Verdict.FAIL, reason="`a` false at 2 s"))
         R1 #3 FAIL at 2 s: `a` false at 2 s
@@ -144,13 +144,13 @@ _EARLY = (
     *("requirement", "number", "triggered", "decided"),
     *("verdict", "decision", "in_doubt", "origin"),
 )
-"""The fields that every record has from the start; the others may be worked out late."""
+"""The fields that every record has from the start; the others may be computed lazily."""
 
 _LATE = tuple(one.name for one in fields(Attempt) if one.name not in (*_EARLY, "robustness"))
 
 
 def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
-    """The same attempt with its robustness; what is worked out later still is.
+    """A copy of an attempt with its robustness set; lazy fields stay lazy.
 
     Args:
         attempt: without robustness.
@@ -169,26 +169,26 @@ def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
 
 
 _SHOWN = 3
-"""So many attempts stand in the text of many."""
+"""The number of attempts in the `repr` of a sequence."""
 
 
 class LazyAttempts(Sequence[Attempt]):
-    """Equal to any sequence of the same attempts; its text shows the first few."""
+    """A sequence whose attempts are made on access; equal to any sequence of equal attempts."""
 
     @abstractmethod
     def __iter__(self) -> Iterator[Attempt]:
-        """The attempts, each made as it is asked for."""
+        """The attempts in order."""
 
     @abstractmethod
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
-        """Those of a requirement with one verdict, in their order, each made as it is asked for."""
+        """The attempts of a requirement with one verdict, in order."""
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
             return NotImplemented
         return tuple(self) == tuple(other)
 
-    __hash__ = None  # type: ignore[assignment]  # as of a list: it equals other sequences
+    __hash__ = None  # type: ignore[assignment]  # unhashable like a list, as it equals sequences
 
     def __repr__(self) -> str:
         first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])

@@ -1,4 +1,4 @@
-"""What has changed between two files of verdicts."""
+"""Compares two files of verdicts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rvmon.verdict.rows import VerdictRow
 
 
 class Change(StrEnum):
-    """What became of a requirement in a recording; what people look at first stands first."""
+    """The kinds of changes of a requirement in a recording, the most important first."""
 
     BROKE = "fails now"
     UNREADABLE = "can no longer be evaluated"
@@ -25,27 +25,27 @@ class Change(StrEnum):
 
     @property
     def is_loss(self) -> bool:
-        """Whether less holds than before."""
+        """Whether it is a regression."""
         return self in (Change.BROKE, Change.UNREADABLE, Change.NO_LONGER_SHOWN)
 
     @property
     def is_gain(self) -> bool:
-        """Whether more holds than before."""
+        """Whether it is an improvement."""
         return self in (Change.FIXED, Change.NEWLY_SHOWN, Change.READABLE)
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A requirement that is judged otherwise in a recording; or a recording that can be judged now.
+    """A changed verdict of a requirement in a recording, or a change of the whole recording.
 
     Attributes:
-        change: what kind of difference it is.
+        change: the kind of change.
         recording: its name in the newer file.
-        requirement: its id; empty if it is about the recording.
-        before: its verdict; `None` if it is about the recording.
-        after: likewise.
-        failures: how many attempts failed before, and how many fail now.
-        reason: why the first of these failed, or what is wrong with the recording.
+        requirement: its id; "" if the change is about the recording.
+        before: the older verdict; `None` if the change is about the recording.
+        after: the newer verdict; likewise.
+        failures: the numbers of failed attempts before and now.
+        reason: the reason of the first failure, or the error of the recording.
     """
 
     change: Change
@@ -59,14 +59,14 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two files of verdicts, compared.
+    """The comparison of two files of verdicts.
 
     Attributes:
-        differences: of recordings and requirements that both have; losses first.
-        failing: requirements that failed in both, by recording.
-        only_before: recordings and requirements that only the older file has, in words.
-        only_after: likewise of the newer one.
-        same: how many verdicts of recordings and requirements that both have are equal.
+        differences: of recordings and requirements in both files; regressions first.
+        failing: by recording, the requirements that fail in both files.
+        only_before: recordings and requirements in the older file only, in words.
+        only_after: those in the newer file only.
+        same: the number of equal verdicts.
     """
 
     differences: Sequence[Difference]
@@ -78,7 +78,7 @@ class Comparison:
 
 @dataclass(slots=True)
 class _Run:
-    """What a file says of one recording."""
+    """The verdicts on one recording in a file."""
 
     error: str = ""
     verdicts: dict[str, list[Verdict]] = field(default_factory=dict)
@@ -88,8 +88,8 @@ class _Run:
 def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Comparison:
     """Compare two files of verdicts, by recording and requirement.
 
-    Recordings are the same that have the same name. If no name stands in both files, the folder
-    that all recordings of a file lie in is left out: the recordings were moved.
+    Recordings are matched by name. If the files have no name in common, the recordings are taken to
+    have been moved, and names are matched relative to the common folder of each file.
 
     >>> old = VerdictRow("a.csv", "R1", "R1#1", verdict="P")
     >>> compare([old], [old._replace(verdict="F", reason="late")]).differences[0].change.value
@@ -169,7 +169,7 @@ def _runs(rows: Iterable[VerdictRow]) -> dict[str, _Run]:
 
 
 def _moved(runs: Mapping[str, _Run]) -> dict[str, _Run]:
-    """The same without the folder that all lie in."""
+    """The runs by names relative to their common folder."""
     folders = {os.path.dirname(name) for name in runs}
     try:
         common = os.path.commonpath(folders)

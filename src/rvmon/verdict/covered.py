@@ -1,4 +1,4 @@
-"""What one run hit of coverpoints and crosses, and what not, and what it must not hit: data."""
+"""The coverage of one run: the hits of coverpoints and crosses, and illegal hits, as data."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class CoveredBin:
 
     Attributes:
         name: of the bin or combination.
-        kind: what a hit means.
-        goal: hits that it needs.
-        hits: how often it was hit.
+        kind: goal, ignored or illegal.
+        goal: the hits it needs.
+        hits: the number of hits.
         first: the instant of the first hit, ticks; `None` without one.
     """
 
@@ -28,7 +28,7 @@ class CoveredBin:
 
     @property
     def is_hole(self) -> bool:
-        """Whether it was hit less often than its goal asks for."""
+        """Whether it has fewer hits than its goal."""
         return self.kind is BinKind.GOAL and self.hits < self.goal
 
 
@@ -38,8 +38,8 @@ class CoveredGroup:
 
     Attributes:
         name: of the coverpoint or cross.
-        subject: which of both it is.
-        bins: all of it, in the order of the specification.
+        subject: `coverpoint` or `cross`.
+        bins: all bins or combinations, in the order of the specification.
     """
 
     name: str
@@ -49,12 +49,12 @@ class CoveredGroup:
 
 @dataclass(frozen=True, slots=True)
 class IllegalHit:
-    """A bin of a coverpoint, or a combination of a cross, that must not be hit and was.
+    """An illegal bin of a coverpoint, or an illegal combination of a cross, that was hit.
 
     Attributes:
         group: the coverpoint or cross.
         item: the bin or combination.
-        count: how often it was hit.
+        count: the number of hits.
         first: the instant of the first hit, ticks.
     """
 
@@ -64,7 +64,7 @@ class IllegalHit:
     first: int
 
     def told(self, origin: int) -> str:
-        """One sentence for people; the instant is counted from the origin of the run, ticks.
+        """One sentence; `origin` is the instant shown as 0 s, ticks.
 
         >>> print(IllegalHit("phase", "back", 2, 3 * 10**9).told(0))
         illegal: `back` of `phase` was hit at 3 s, 2 times in all

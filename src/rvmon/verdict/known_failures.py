@@ -1,4 +1,4 @@
-"""Failures that are known: a file says which, why they are accepted, and until when."""
+"""Known failures: a file lists which failures are accepted, why, and until when."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         requirement: its id.
-        reason: why that is accepted, for people.
-        until: the last day on which it is.
-        recording: pattern of the recordings in which it is, such as `monday/*.csv`, for the whole
-            name or its end; `*` stands for any characters.
+        reason: why the failure is accepted.
+        until: the last day on which it is accepted.
+        recording: pattern of the recordings, such as `monday/*.csv`, matched against the whole name
+            or its last segments; `*` stands for any characters.
     """
 
     requirement: str
@@ -34,7 +34,7 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     recording: str = "*"
 
     def is_about(self, recording: str, requirement: str) -> bool:
-        """Whether it accepts that a requirement fails in a recording, but for its last day.
+        """Whether it concerns a requirement in a recording, regardless of `until`.
 
         >>> known = KnownFailure("R1", "worn", datetime.date(2030, 1, 31), "monday/*.csv")
         >>> known.is_about("logs/monday/3.csv", "R1"), known.is_about("logs/tuesday/3.csv", "R1")
@@ -49,23 +49,23 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class KnownFailures:
-    """What is accepted on a day.
+    """The failures accepted on a day.
 
     Attributes:
         known: in the order of the file.
-        today: later than its last day, a known failure is a failure again.
+        today: the day; an entry whose `until` is earlier accepts nothing.
     """
 
     known: Sequence[KnownFailure] = ()
     today: datetime.date = field(default_factory=datetime.date.today)
 
     def accepting(self, recording: str, requirement: str) -> KnownFailure | None:
-        """What accepts that a requirement fails in a recording, if something does."""
+        """The entry that accepts a failure of a requirement in a recording; `None` if none."""
         about = (one for one in self.known if one.is_about(recording, requirement))
         return next((one for one in about if self.today <= one.until), None)
 
     def failures(self, report: Report) -> list[str]:
-        """The requirements that fail in a recording and are not accepted to."""
+        """The requirements whose failure in a recording is not accepted."""
         return [
             name
             for name, verdict in report.verdicts.items()
@@ -73,12 +73,12 @@ class KnownFailures:
         ]
 
     def expected(self, report: Report) -> dict[str, str]:
-        """The requirements that are accepted to fail in a recording, each with reason and day."""
+        """The requirements whose failure in a recording would be accepted, with reason and day."""
         found = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
         return {name: f"{one.reason} (until {one.until})" for name, one in found if one is not None}
 
     def remarks(self, reports: Sequence[Report]) -> Iterator[str]:
-        """What has to be reported of the file: what is over, and what is needed no more."""
+        """Remarks on entries that have expired but still fail, and on those that no longer fail."""
         for one in self.known:
             about = [
                 (report.trace, report.verdicts[one.requirement])
@@ -95,7 +95,7 @@ class KnownFailures:
 
 
 NONE_KNOWN = KnownFailures()
-"""Nothing is accepted to fail."""
+"""No failure is accepted."""
 
 
 class _File(msgspec.Struct, forbid_unknown_fields=True):
@@ -107,10 +107,10 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
 
     Args:
         path: of the file.
-        requirements: ids of those that there are.
+        requirements: the ids of the existing requirements.
 
     Raises:
-        RvmonError: it cannot be read, is wrong, or names no requirement; the message says where.
+        RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
     """
     try:
         found = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known

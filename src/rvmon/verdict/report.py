@@ -1,4 +1,4 @@
-"""What a monitor says of one run: attempts in order, counted and folded per requirement."""
+"""The report of one run: its attempts in order, counted and folded per requirement."""
 
 from __future__ import annotations
 
@@ -31,25 +31,24 @@ class Report:
         verdicts: by requirement, in the order of the file; those never triggered are `NT`.
         attempts: the decided ones by decision instant, then order in the file, then number; the
             undecided ones follow in the order of the file and by number.
-        counts: by requirement, how many of its attempts are `P`, `F` and `I`.
-        health: what was not known of the input, and why.
-        trace: name of the recording, or empty; reports on the same content are equal all the same.
-        origin: the instant from which people count seconds, ticks.
+        counts: by requirement, the number of its attempts by verdict: `P`, `F` and `I`.
+        health: what was unknown of the input, and why.
+        trace: name of the recording, or ""; it is ignored when reports are compared.
+        origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.
-        misses: by requirement without attempts, what its trigger lacked when it was nearest; where
-            somebody looked.
-        late: by requirement and number of the attempt, when what it had awaited came after its
-            deadline, ticks; where somebody looked.
-        values: by requirement and number of the attempt, what signals that the failed part reads
-            were at the decision, with units; of the first failures, where somebody looked.
-        goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
-            else `NT`; where somebody looked.
-        illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
-        coverage: what was hit of them and what not; where somebody looked.
-        law: version of the law that judged; a report that was kept may be of an older one.
-        dropped: by requirement, how many of its attempts were not kept, by verdict: with `keep`,
-            or failures that only time brought, thousands in one silence. Verdicts and counts speak
-            of them as well; no count is above 4,294,967,295.
+        misses: by requirement without attempts, the near miss of its trigger; if computed.
+        late: by requirement and number of the attempt, the instant of a response after the
+            deadline, ticks; if computed.
+        values: by requirement and number of the attempt, the values at the decision of the signals
+            that the blamed subformula reads, with units; of the first failures, if computed.
+        goals: by cover goal, `P` if the run shows it, `I` if it was still possible at the end, else
+            `NT`; if computed.
+        illegal: the illegal bins and combinations that were hit; if computed.
+        coverage: the hits of coverpoints and crosses; if computed.
+        law: version of the semantics; a stored report may have an older one.
+        dropped: by requirement and verdict, the number of attempts not kept: with `keep`, or
+            failures by time alone, of which one silence may bring thousands. They are included in
+            verdicts and counts; no count exceeds 4,294,967,295.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -72,7 +71,7 @@ class Report:
     )
 
     _repr_html_: ClassVar[Callable[[Report], str]]
-    """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
+    """HTML for notebooks; set by `rvmon.session`, as `report` is a layer above this one."""
 
     @property
     def absent(self) -> frozenset[str]:
@@ -94,13 +93,13 @@ class Report:
         return iter(self._kinds.get((requirement, verdict), ()))
 
     def is_silent(self, requirement: str) -> bool:
-        """Whether a requirement has no attempt: it is `NT`, or `I` if no trigger was known."""
+        """Whether a requirement has no attempt: it is `NT`, or `I` if its trigger was unknown."""
         return not any(self.counts[requirement].values())
 
     def rows(self) -> Iterator[VerdictRow]:
-        """The report as rows of a table: its attempts in their order, then requirements without.
+        """The report as rows: its attempts in order, then the requirements without attempts.
 
-        The worst verdict of a requirement's rows is its own: `F`, else `I`, else `P`, else `NT`.
+        The verdict of a requirement is the worst of its rows: `F`, else `I`, else `P`, else `NT`.
 
         >>> passed = Attempt("R1", 1, 0, 5, Verdict.PASS)
         >>> for row in report_of(["R1", "R2"], [passed], trace="a.csv").rows():
@@ -119,7 +118,7 @@ class Report:
                 yield VerdictRow(self.trace, name, verdict=verdict.value, reason=reason)
 
     def to_arrow(self) -> pyarrow.Table:
-        """The report as a table of Arrow: its rows, whose columns `rvmon.verdict.rows` describes.
+        """The report as an Arrow table of `rows`; `VerdictRow` describes the columns.
 
         Raises:
             RvmonError: pyarrow is needed (`rvmon[arrow]`).
@@ -133,7 +132,7 @@ class Report:
         return arrow_table(self.rows(), {"law": str(self.law)})
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The same as a data frame of pandas; instants are its `Int64`, whole also where null.
+        """The rows as a pandas data frame; instants are the nullable `Int64`.
 
         Raises:
             RvmonError: pyarrow or pandas is needed.
@@ -143,7 +142,7 @@ class Report:
         return pandas_frame(self.to_arrow())
 
     def to_polars(self) -> polars.DataFrame:
-        """The same as a data frame of polars.
+        """The rows as a polars data frame.
 
         Raises:
             RvmonError: pyarrow or polars is needed.
@@ -153,12 +152,12 @@ class Report:
         return polars_frame(self.to_arrow())
 
     def to_json(self, requirements: Mapping[str, Requirement] | None = None) -> str:
-        """The report as JSON text, in the shape that `rvmon run --format json` prints.
+        """The report as JSON text, as `rvmon run --format json` prints it.
 
-        JSON knows no infinities: such captured values and robustnesses become null.
+        Infinite captured values and robustnesses become null, as JSON has no infinities.
 
         Args:
-            requirements: `Spec.requirements`, of which severity and tags are to stand there.
+            requirements: `Spec.requirements`, to include severity and tags.
         """
         from rvmon.verdict.report_json import encode, encoded, labels, record
 
@@ -179,7 +178,7 @@ class Report:
         )
 
     def _rest_of(self, requirement: str) -> dict[str, object]:
-        """What JSON says of a requirement behind its attempts."""
+        """The JSON members of a requirement that follow its attempts."""
         rest: dict[str, object] = {"counts": self.counts[requirement]}
         if self.dropped.get(requirement):
             rest["dropped"] = self.dropped[requirement]
@@ -193,9 +192,9 @@ class Report:
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Report:
-        """Read back what `to_json` wrote.
+        """Read a report written by `to_json`.
 
-        Verdicts and counts are folded anew from the attempts, and from how many were dropped.
+        Verdicts and counts are recomputed from the attempts and the numbers of dropped ones.
 
         Raises:
             TraceError: the text is no report.
@@ -246,14 +245,14 @@ def report_of(
     """Sort, count and fold the attempts of one run.
 
     Args:
-        requirements: all ids that were judged, in the order of the file.
-        attempts: of these requirements, in any order.
-        dropped: by requirement, how many attempts more there were, by verdict.
+        requirements: the ids of all judged requirements, in the order of the file.
+        attempts: their attempts, in any order.
+        dropped: by requirement and verdict, the number of further attempts.
         health: findings about the input.
-        incomplete: the ids of those of which attempts may be missing, as their trigger was never
-            true or false: they are inconclusive, unless one failed.
+        incomplete: ids of the requirements whose trigger was never TRUE or FALSE, so that attempts
+            may be missing: they are `I`, unless an attempt failed.
         trace: name of the recording.
-        origin: the instant from which people count seconds, ticks.
+        origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the trace, ticks.
 
     Source: SEMANTICS, section 3.

@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 _ALWAYS = frozenset({"number", "triggered", "decided", "verdict", "decision", "reason"})
-"""Keys that every attempt has in JSON; the others are left out where they are empty."""
+"""Keys that every attempt has in JSON; others are omitted if empty."""
 
 _NAMES = tuple(one.name for one in fields(Attempt) if one.name not in ("requirement", "origin"))
 
 
 def record(attempt: Attempt) -> dict[str, object]:
-    """An attempt by the keys that it has in JSON; its requirement and origin stand elsewhere.
+    """The JSON object of an attempt, without requirement and origin.
 
-    Instants are ticks, and seconds after the origin where their keys say so.
+    Instants are in ticks, and under keys ending in `_s` in seconds since the origin.
     """
     shown: dict[str, object] = {}
     for name in _NAMES:
@@ -64,11 +64,11 @@ class RequirementJson(msgspec.Struct):
 
 
 class ReportJson(msgspec.Struct):
-    """A report as it stands in JSON; counts are not read, but made anew."""
+    """The JSON document of a report; counts are not read but recomputed."""
 
     requirements: dict[str, RequirementJson]
     health: list[Health]
-    law: int = 1  # the first law's reports did not say
+    law: int = 1  # version 1 did not write it
     trace: str = ""
     origin: int = 0
     end: int | None = None
@@ -86,15 +86,15 @@ def encode(
     """Write a report as JSON text.
 
     Args:
-        head: what stands before the requirements, never empty.
-        requirements: by id, the verdict, and what stands behind the attempts, never empty.
-        attempts: the requirement and the text of each.
-        tail: what stands behind the requirements, never empty.
+        head: the members before the requirements; not empty.
+        requirements: by id, the verdict and the members after the attempts; not empty.
+        attempts: the requirement and the JSON text of each attempt.
+        tail: the members after the requirements; not empty.
     """
     texts: dict[str, list[str]] = {name: [] for name in requirements}
     for name, text in attempts:
         texts[name].append(text)
-    # Not encoded as one document: the attempts may be many megabytes, which are copied once.
+    # Assembled from pieces: the attempts may take many megabytes, which are copied only once.
     return "".join(_document(head, requirements, texts, tail))
 
 
@@ -126,9 +126,9 @@ def labels(requirement: Requirement | None) -> dict[str, object]:
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
-    """Write as JSON text what is known of a recording that broke off.
+    """Write as JSON text the error of a recording that broke off, and the attempts before it.
 
-    It has no verdicts: what comes behind the break could still have changed them.
+    It has no verdicts: later samples could have changed them.
     """
     attempts: dict[str, list[dict[str, object]]] = {}
     for attempt in before:
@@ -137,7 +137,7 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
 
 
 def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
-    """Read what `encode` wrote: the document, and its attempts.
+    """Read the document and the attempts of a report written by `encode`.
 
     Raises:
         TraceError: the text is no report.

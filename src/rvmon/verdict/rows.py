@@ -1,4 +1,4 @@
-"""Verdicts as rows of a table: one for each attempt, and one for whatever has none; frames."""
+"""Verdicts as rows of a table, one per attempt or requirement without attempts; data frames."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ class VerdictRow(NamedTuple):
     Attributes:
         recording: its name.
         requirement: its id; `None` where the recording has no verdicts.
-        attempt: its name as people say it, such as `R1#3`; `None` where there is none.
-        number: from 1 per requirement; attempts in doubt have numbers of their own.
+        attempt: its name, such as `R1#3`; `None` where there is none.
+        number: from 1 per requirement; attempts in doubt are numbered separately.
         verdict: `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without one; `None`
             where the recording has none.
-        decision: what settled the attempt, as `rvmon.verdict.attempt.Decision` has it.
-        in_doubt: whether it is not known that there was a trigger.
-        triggered: ns.
-        decided: ns; `None` if it is not.
-        deadline: ns, where there is one.
+        decision: how the attempt was settled, a value of `rvmon.verdict.attempt.Decision`.
+        in_doubt: whether the trigger itself is uncertain.
+        triggered: instant, ns.
+        decided: instant, ns; `None` if undecided.
+        deadline: instant, ns; `None` if there is none.
         triggered_s: seconds since the recording's origin.
         decided_s: likewise.
-        robustness: SI units, where somebody measured.
-        captured: values captured by `let` and `for each`, as JSON; empty if there are none.
-        reason: one sentence for people.
-        error: what was wrong with a recording without verdicts; else empty.
+        robustness: in SI units; `None` if not measured.
+        captured: values captured by `let` and `for each`, as JSON; "" if there are none.
+        reason: one sentence.
+        error: the error of a recording without verdicts; else "".
     """
 
     recording: str
@@ -57,7 +57,7 @@ class VerdictRow(NamedTuple):
 
 
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:
-    """The rows of a recording that broke off: that it did, then what was decided before."""
+    """The rows of a recording that broke off: one with the error, then the attempts before it."""
     yield VerdictRow(recording, error=error)
     for attempt in before:
         yield attempt_row(recording, attempt)._replace(error=error)
@@ -86,13 +86,13 @@ def attempt_row(recording: str, attempt: Attempt) -> VerdictRow:
 
 
 def column_types() -> dict[str, type]:
-    """The type of each column of verdicts; all but texts and truths may be null."""
+    """The type of each column; all but `str` and `bool` are nullable."""
     hints = get_type_hints(VerdictRow)
     return {name: (get_args(hint) or (hint,))[0] for name, hint in hints.items()}
 
 
 def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow.Table:
-    """Rows as a table of Arrow.
+    """Rows as an Arrow table; `about` becomes metadata of its schema.
 
     Raises:
         RvmonError: pyarrow is needed.
@@ -114,7 +114,7 @@ def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow
 
 
 def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
-    """A table of verdicts as a data frame of pandas; instants stay whole numbers, also where null.
+    """A table of verdicts as a pandas data frame; instants are the nullable `Int64`.
 
     Raises:
         RvmonError: pandas is needed.
@@ -129,7 +129,7 @@ def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
 
 
 def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
-    """A table of verdicts as a data frame of polars.
+    """A table of verdicts as a polars data frame.
 
     Raises:
         RvmonError: polars is needed.

@@ -1,4 +1,4 @@
-"""Verdicts as a table in a file, written and read back: CSV, Parquet or SQLite; JSON is read."""
+"""Tables of verdicts in files: CSV, Parquet and SQLite are written and read, JSON is read."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.rows import VerdictRow, arrow_table, broken_rows, column_types
 
 TABLE = "verdicts"
-"""The table in a database; beside it `about` says what judged."""
+"""The name of the table in a database; the table `about` has the metadata."""
 
 _SQL_TYPES = {str: "TEXT", int: "INTEGER", float: "REAL", bool: "INTEGER"}
 
 
 def refuse_format(path: str | Path) -> None:
-    """Say, before anything is judged, that verdicts cannot be written in the form of a file.
+    """Refuse an output file early, before anything is judged.
 
     Raises:
-        RvmonError: no form is named so, or a package is missing.
+        RvmonError: its suffix is unknown, or a package for it is missing.
     """
     _, packages = _form(path)
     for package in packages:
@@ -36,15 +36,15 @@ def refuse_format(path: str | Path) -> None:
 
 
 def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[str, str]) -> None:
-    """Write verdicts to a file, whose name says in which form; one that is there is replaced.
+    """Write verdicts to a file in the format of its suffix; an existing file is replaced.
 
     Args:
         path: ends in `.csv`, `.parquet` or `.sqlite`.
         rows: the verdicts.
-        about: what judged, by key; a CSV file has no place for it.
+        about: metadata on the specification and versions; not written to CSV.
 
     Raises:
-        RvmonError: there is no such form, a package is missing, or the file cannot be written.
+        RvmonError: the suffix is unknown, a package is missing, or the file cannot be written.
 
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
@@ -58,7 +58,7 @@ def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[s
 
 
 def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) -> bytes:
-    """Verdicts as a file in CSV."""
+    """Verdicts as the bytes of a CSV file."""
     place = VerdictRow._fields.index("in_doubt")
     truths = ("false", "true")
     shown = ([*row[:place], truths[row.in_doubt], *row[place + 1 :]] for row in rows)
@@ -66,7 +66,7 @@ def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) ->
 
 
 def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
-    """Rows as a file in CSV, UTF-8, below the names of their columns."""
+    """Rows as the bytes of a CSV file in UTF-8, with a header."""
     lines = _Lines()
     writer = csv.writer(lines)
     writer.writerow(columns)
@@ -75,7 +75,7 @@ def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes
 
 
 class _Lines(list[str]):
-    """Takes lines that end in both signs: of others a writer would not quote a carriage return."""
+    """Collects lines ending in CRLF: with a plain LF, the csv module would not quote a lone CR."""
 
     def write(self, line: str) -> None:
         self.append(line)
@@ -112,7 +112,7 @@ _FORMS: dict[str, tuple[_Written, tuple[str, ...]]] = {
     ".parquet": (_parquet, ("pyarrow",)),
     ".sqlite": (_sqlite, ()),
 }
-"""By the end of a file's name: what writes it, and the packages that this needs."""
+"""By suffix of a file: its writer, and the packages that this needs."""
 
 
 def _form(path: str | Path) -> tuple[_Written, tuple[str, ...]]:
@@ -120,7 +120,7 @@ def _form(path: str | Path) -> tuple[_Written, tuple[str, ...]]:
 
 
 def refuse(path: str | Path, forms: Iterable[str]) -> NoReturn:
-    """Say that a file's name ends in none of these."""
+    """Raise the error that a file has none of these suffixes."""
     raise RvmonError(f"{path}: verdicts are kept in files that end in {', '.join(forms)}")
 
 
@@ -131,10 +131,10 @@ _KEPT = ("recording", "requirement", "attempt", "verdict", "reason", "error")
 def read_results(path: str | Path) -> list[VerdictRow]:
     """Read verdicts that `rvmon run` wrote: with `--out`, or as JSON with `--format json`.
 
-    Of each row the names, the verdict, the reason and the error are read back.
+    Only names, verdict, reason and error of each row are read.
 
     Raises:
-        RvmonError: there is no such file, it holds something else, or a package is missing.
+        RvmonError: the file is missing or has other contents, or a package is missing.
     """
     forms = {
         ".csv": _read_csv,
@@ -223,4 +223,4 @@ _FAULTS = (
     ValueError,
     TypeError,
 )
-"""What reading something else raises."""
+"""The exceptions raised by reading a file with other contents."""
