@@ -1,4 +1,4 @@
-"""The trace matrix: which requirement, of which source, is shown by what; a table and a page."""
+"""The trace matrix: by requirement and source, the recordings or tests that show it."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.table_file import csv_table
 
 LISTED = 100
-"""Recordings, or tests, of one verdict that the page names; the table names all."""
+"""The most recordings or tests per verdict named on the page; the table has all."""
 
 Row = Mapping[str, str]
 """A row of the verdicts, by column."""
 
 
 class Traced(NamedTuple):
-    """What one recording, or test, says of one requirement.
+    """The verdict on one requirement by one recording or test.
 
     Attributes:
-        robot: of a campaign.
-        requirement: its id; `illegal` for what coverpoints must not see.
-        text: of it.
-        source: the clause that it comes from.
-        by: the recording, or robot and test; empty if nothing judges it.
-        verdict: its letter; empty if there is none.
-        reason: of the first failure, or what was wrong with the recording or the test.
-        planted_fault: that the robot had; the verdict is on the fault.
+        robot: the robot of a campaign; else "".
+        requirement: its id; `illegal` for hits of illegal bins.
+        text: the text of the requirement.
+        source: the clause it comes from.
+        by: the recording, or robot and test; "" if nothing judges the requirement.
+        verdict: its letter; "" if there is none.
+        reason: the reason of the first failure, or the error of the recording or test.
+        planted_fault: the fault planted in the robot for this test; else "".
     """
 
     robot: str
@@ -49,10 +49,10 @@ class Traced(NamedTuple):
 
 
 def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
-    """The rows of verdicts as CSV, by recording; of a campaign by robot and test.
+    """The rows of a CSV file of verdicts, by recording, or by robot and test of a campaign.
 
     Raises:
-        ValueError, csv.Error: they are none.
+        ValueError, csv.Error: the bytes are no such file.
     """
     rows = csv.reader(io.StringIO(verdicts.decode("utf-8"), newline=""), strict=True)
     if tuple(next(rows, ())) != VerdictRow._fields:
@@ -106,7 +106,7 @@ def trace_matrix(
 
 
 def _folded(rows: Sequence[Row], is_broken: bool, first: Row) -> tuple[str, str]:
-    """The verdict, and why it is none or a failure."""
+    """The folded verdict of rows, and the reason of a failure or the error."""
     verdict = "" if is_broken else fold(Verdict(row["verdict"]) for row in rows).value
     failed = next((row["reason"] for row in rows if row["verdict"] == "F"), "")
     return verdict, failed or first["error"]
@@ -137,7 +137,7 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
 
 
 class _Lines(NamedTuple):
-    """What speaks of a requirement alike: how many there are, and the first of them."""
+    """The recordings or tests with one verdict: their number, and the first of them."""
 
     heading: str
     size: int
@@ -146,7 +146,7 @@ class _Lines(NamedTuple):
 
 
 class _Row(NamedTuple):
-    """A requirement, and all that speaks of it; failures are unfolded."""
+    """A requirement with all recordings or tests that judge it; failures are unfolded."""
 
     first: Traced
     counts: Sequence[tuple[Verdict, int]]

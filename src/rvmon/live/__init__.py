@@ -1,8 +1,8 @@
 """Monitors of robots that are running: clocks, timers, bounded queues, threads and tasks.
 
-`driver` puts samples of any number of robots through their monitors and lets time pass on them; it
-starts no thread and never sleeps. `runners` call it, in a thread of its own or in an event loop.
-What translates for a middleware calls `offer` and nothing else.
+`driver` passes samples of any number of robots to their monitors and advances their time; it starts
+no thread and never sleeps. `runners` call it, in a thread of its own or in an event loop. Adapters
+for middleware only call `offer`.
 """
 
 from rvmon.live.calls import as_event

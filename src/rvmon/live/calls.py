@@ -1,6 +1,6 @@
 """Calls of functions as events of a robot.
 
-A monitor stops no robot: what cannot be offered is logged, and the call goes on.
+Monitoring never makes a call fail: an event that cannot be offered is logged.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ def as_event(
 ) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
     """A decorator: each call of the function is an occurrence of an event.
 
-    That of a coroutine or a generator is when it begins to run.
+    For a coroutine or generator, the event occurs when it begins to run.
 
     Args:
-        driver: gets the events.
+        driver: receives the events.
         event: occurs when the function is called.
-        ended: occurs when it has returned, or a coroutine or generator has ended; not where it
-            raises, or is left before.
-        payload: gives the fields of both for the arguments of a call; where it raises, the event
-            is unknown at that instant.
-        robot: whose events they are.
+        ended: occurs when it has returned, or a coroutine or generator has ended; not if it raises
+            or is abandoned.
+        payload: computes the fields of both events from the arguments of a call; if it raises, the
+            event is unknown at that instant.
+        robot: the name of the robot.
 
     Raises:
-        RvmonError: what is decorated is a class or an asynchronous generator, or cannot be called.
+        RvmonError: the decorated object is a class, an asynchronous generator, or not callable.
 
     >>> from rvmon import loads
     >>> from rvmon.live import Driver, SimulatedClock, as_event

@@ -1,4 +1,4 @@
-"""What time it is for a monitor, and when it will be later."""
+"""The clocks of a driver: wall time, or the time of a simulation."""
 
 from __future__ import annotations
 
@@ -11,41 +11,40 @@ from rvmon.errors import TraceError
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
 
 FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
-"""Stamps that are so far from the clock are of another epoch."""
+"""Stamps farther than this from the clock belong to another epoch."""
 
 _AHEAD_NS = 10 * TICKS_PER_SECOND
-"""Stamps that are so far ahead of a clock that runs by itself are wrong: taken, they would make all
-others late until it has come there."""
+"""Stamps farther than this ahead of a wall clock are refused: once taken, they would make all
+samples late until the clock has caught up."""
 
 Change = Callable[[int, int], None]
-"""Called with the instants, ns, before and after somebody set a clock."""
+"""Called with the instants, ns, before and after a clock was set."""
 
 
 class Clock(Protocol):
-    """Time as a driver takes it; to be asked from any thread."""
+    """A source of time for a driver; thread-safe."""
 
     def now_ns(self) -> int:
-        """The instant, ns."""
+        """The present instant, ns."""
         ...
 
     def seconds_until(self, t_ns: int) -> float | None:
-        """How long to sleep until an instant; `None`: until somebody sets the clock."""
+        """The seconds to sleep until an instant; `None`: until the clock is set."""
         ...
 
     def on_change(self, callback: Change) -> None:
-        """Have a function called whenever somebody sets the clock."""
+        """Register a callback for changes of the clock."""
         ...
 
 
 class WallClock:
-    """Nanoseconds since it was made, or since 1970, that pass evenly.
+    """Nanoseconds since its creation, or since 1970, by the monotonic clock of the machine.
 
-    It follows the monotonic clock of the machine: where that of the wall is set, for summer or by
-    NTP, this one does not jump.
+    It does not jump when the system time is set, by hand or by NTP.
 
     Args:
-        since_1970: whether it begins with the time of day in UTC, as the stamps of messages do,
-            instead of 0, which is easier to read.
+        since_1970: whether it starts at the time in UTC, as the stamps of messages do, instead of
+            0, which is easier to read.
     """
 
     def __init__(self, *, since_1970: bool = False) -> None:
@@ -57,15 +56,15 @@ class WallClock:
         return time.monotonic_ns() + self._offset
 
     def seconds_until(self, t_ns: int) -> float:
-        """How long to sleep until an instant."""
+        """The seconds to sleep until an instant."""
         return max(0, t_ns - self.now_ns()) / TICKS_PER_SECOND
 
     def on_change(self, callback: Change) -> None:
-        """Nothing: nobody sets it."""
+        """Ignored, as it is never set."""
 
 
 class SimulatedClock:
-    """A clock that stands until it is set, as by the topic `/clock` of a simulator, or by a test.
+    """A clock that stands still until it is set, by the topic `/clock` of a simulator or by a test.
 
     >>> clock = SimulatedClock()
     >>> clock.set_ns(5)
@@ -83,10 +82,10 @@ class SimulatedClock:
         return self._now
 
     def set_ns(self, t_ns: int) -> None:
-        """Set it; back as well, as a simulation that starts again does.
+        """Set the clock; also backwards, as when a simulation restarts.
 
         Raises:
-            TraceError: that is no instant.
+            TraceError: `t_ns` is no instant.
         """
         with self._lock:
             before, self._now = self._now, whole_ticks(t_ns)
@@ -94,19 +93,19 @@ class SimulatedClock:
             callback(before, self._now)
 
     def seconds_until(self, t_ns: int) -> float | None:
-        """Nobody knows, but that an instant has come."""
+        """0 if the instant has come, else `None`."""
         return 0.0 if t_ns <= self._now else None
 
     def on_change(self, callback: Change) -> None:
-        """Have a function called whenever it is set."""
+        """Register a callback for changes of the clock."""
         self._callbacks.append(callback)
 
 
 def refuse_far(t_ns: int, now_ns: int) -> None:
-    """Refuse a stamp that is of another epoch than a clock that runs by itself, or ahead of it.
+    """Refuse a stamp of another epoch than a wall clock, or too far ahead of it.
 
     Raises:
-        TraceError: it is.
+        TraceError: it is one of these.
     """
     if not now_ns - FAR_NS < t_ns < now_ns + _AHEAD_NS:
         far = "years from" if abs(t_ns - now_ns) > FAR_NS else "ahead of"

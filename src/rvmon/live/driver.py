@@ -1,4 +1,4 @@
-"""What puts samples through monitors and lets time pass on them; it never sleeps."""
+"""The driver: passes samples to the monitors of robots and advances their time; never sleeps."""
 
 from __future__ import annotations
 
@@ -25,42 +25,42 @@ _log = logging.getLogger("rvmon.live")
 _input_log = logging.getLogger("rvmon.live.input")
 
 _BATCH = 1_000
-"""So many entries are judged before anybody else gets a turn."""
+"""The most entries judged in one call of `work`."""
 
 _PATIENCE_NS = 2_000_000
-"""Monitors are asked what is due when no sample came for so long: a sample decides it as well."""
+"""Time is advanced only after a silence of this length, as a next sample advances it anyway."""
 
 
 class Driver:
     r"""Judges samples of any number of robots, as they are offered and as time passes.
 
-    `offer` may be called from any thread. Whoever drives it calls `work` whenever `wake` was called
-    and when the seconds that `work` returned are over. Nothing that a robot sends stops it: what a
-    monitor refuses is counted, logged as `rvmon.live.input`, and unknown from there on.
+    `offer` may be called from any thread. The caller that drives it calls `work` whenever `wake`
+    was called, and after the seconds that `work` returned. No input stops it: a sample that a
+    monitor refuses is counted, logged to `rvmon.live.input`, and its names become unknown.
 
     Args:
-        spec: what each robot must do.
-        clock: what time it is; default a `WallClock`.
+        spec: the specification for each robot.
+        clock: the clock; default a `WallClock`.
         only: ids of the requirements; default all.
         sources: the names that can arrive; default all.
-        keep: so many records of each verdict are kept per requirement; `None`: all.
-        lag_ns: how long samples that bring their own stamps may take to arrive; deadlines pass so
-            much later. Default the `max delay` of the specification, or 0.
-        room: so many samples may wait. Of one that finds no room the signals are unknown until
-            their next value and the events unknown at its instant, so that no verdict rests on it.
-        most_robots: samples of more are refused.
+        keep: the most records kept per requirement and verdict; `None`: all.
+        lag_ns: how long samples with their own stamps may take to arrive; deadlines are decided
+            that much later. Default: the `max delay` of the specification, or 0.
+        room: the most samples in the queue. For a sample that finds it full, signals are unknown
+            until their next value and events at its instant, so that no verdict relies on it.
+        most_robots: the most robots; samples of further ones are refused.
         on_judged: called with each attempt that passes or fails.
-        on_failure: called with each that fails.
+        on_failure: called with each attempt that fails.
         on_report: called with the name of the robot and the report of each run that ends.
 
     Attributes:
-        wake: to be set to what has `work` called soon; it is called from any thread.
-        errors: so many callbacks raised something, which was logged.
-        most_robots, turned_away: as given, and whether one was too many: of that no verdicts are.
+        wake: to be set to a function that schedules `work`; it is called from any thread.
+        errors: the number of callbacks that raised; the exceptions were logged.
+        most_robots, turned_away: the limit, and whether a robot was refused by it.
 
     Raises:
         RvmonError: `room`, `most_robots` or `keep` is no count.
-        UnknownNameError: `only` or `sources` names what does not exist.
+        UnknownNameError: `only` or `sources` has an unknown name.
 
     >>> from rvmon import loads
     >>> from rvmon.live import Driver, SimulatedClock
@@ -100,9 +100,9 @@ class Driver:
         self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
         self.wake: Callable[[], object] = int
         self.errors, self.turned_away = 0, False
-        self._lock = Lock()  # of what waits, and of the stamps that are given
+        self._lock = Lock()  # guards the queue and the last stamp given
         self._has_room = Condition(self._lock)
-        self._working = RLock()  # of the monitors; callbacks may ask how they stand
+        self._working = RLock()  # guards the monitors; reentrant, as callbacks may call `status`
         self._is_working = self._is_closed = False
         self._stamped = -(1 << 62)
         self._robots: dict[str, Robot] = {}
@@ -113,9 +113,9 @@ class Driver:
         self._clock.on_change(self._clock_was_set)
 
     def _watching(self, spec: Spec) -> tuple[Watch, int]:
-        """How robots are watched by a specification, and the lag, ns; it raises."""
+        """The watch of a specification, and the lag, ns; raises as the constructor does."""
         lag = (spec.checked.max_delay or 0) if self._asked_lag is None else self._asked_lag
-        # Stamps that are not given here may be equal.
+        # Stamps that were not assigned here may be equal, so their samples have to be merged.
         settle = "now" if self._runs_by_itself and not lag else "next"
         watch = Watch(spec, self._only, self._sources, settle, self._keep)
         watch.monitor()
@@ -123,28 +123,28 @@ class Driver:
 
     @property
     def spec(self) -> Spec:
-        """As given, or the latest that replaced it."""
+        """The present specification."""
         return self._watch.spec
 
     def offer(
         self, values: Values, *, robot: str = "", t_ns: int | None = None, wait: bool = False
     ) -> bool:
-        """Have a sample judged soon.
+        """Queue a sample.
 
         Args:
-            values: what was updated or occurred, as for `Monitor.step`.
-            robot: whose it is.
-            t_ns: its stamp, ns; default the time now.
-            wait: where there is no room, to wait for some: for what reads a file or a pipe, in
-                another thread than that which calls `work`.
+            values: the updates and occurrences, as for `Monitor.step`.
+            robot: the name of the robot.
+            t_ns: its stamp, ns; default the present time.
+            wait: whether to block while the queue is full; for readers of files or pipes, in
+                another thread than the one that calls `work`.
 
         Returns:
-            Whether there was room for it, and for its robot; if not, the sample is lost.
+            Whether it was queued; if not, the queue is full or there are too many robots, and the
+            sample is lost.
 
         Raises:
-            TraceError: it has no values by name, or its stamp is none or of another epoch than the
-                clock.
-            RvmonError: this was closed.
+            TraceError: `values` is no mapping, or the stamp is invalid or of another epoch.
+            RvmonError: the driver was closed.
         """
         if not isinstance(values, Mapping):
             raise TraceError(f"expected values by name, found {values!r}")
@@ -178,29 +178,29 @@ class Driver:
         is_over: bool = False,
         why: str = "lost",
     ) -> None:
-        """Say that a source may have said anything of some names, and nobody heard it.
+        """Report an outage of names.
 
         Args:
             names: signals and events; `None`: all.
-            robot: whose; `None`: of every robot that was heard of.
-            since_ns: when the last of it may have been heard, ns; default now. What brings its own
-                stamp may be older by the lag.
-            is_over: whether they are found again by now; else when `found` says so.
-            why: a phrase for people, for the input health: the same for all losses of one kind.
+            robot: the robot; `None`: every known robot.
+            since_ns: the last instant at which updates were sure to arrive, ns; default now. The
+                lag is subtracted.
+            is_over: whether the outage has ended by now; else `found` ends it.
+            why: a phrase for the input health; use the same for all losses of one kind.
 
         Raises:
-            UnknownNameError: there is no such signal or event.
+            UnknownNameError: a name is not declared.
         """
         self._tell(Told.LOST, names, robot, why, since_ns, is_over=is_over)
 
     def found(self, names: Iterable[str] | None = None, *, robot: str | None = None) -> None:
-        """Say that names are lost up to now, and not behind it; otherwise as `lose`."""
+        """Report that the outage of names ends now; otherwise as `lose`."""
         self._tell(Told.FOUND, names, robot, "")
 
     def miss(
         self, names: Iterable[str] | None = None, *, robot: str | None = None, why: str = "lost"
     ) -> None:
-        """Say that something was lost between a robot's last sample and its next one."""
+        """Report that input was lost between a robot's last sample and its next one."""
         self._tell(Told.MISSED, names, robot, why)
 
     def _tell(
@@ -216,12 +216,12 @@ class Driver:
         some = sources_asked(self.spec.checked, names)
         with self._lock:
             now = max(self._clock.now_ns(), self._stamped)
-            if told is not Told.MISSED:  # what is offered from now on is stamped later
+            if told is not Told.MISSED:  # samples offered from now on get later stamps
                 self._stamped = now + self._runs_by_itself
             first = (now if since is None else min(since, now)) - (self._asked_lag or 0)
             last = now if is_over else None
             if told is Told.FOUND and not self._runs_by_itself:
-                first = now + 1  # what bears this instant may have been sent before what was lost
+                first = now + 1  # a sample stamped `now` may have been sent before the lost ones
             robots = [*self._waiting.robots] if robot is None else [robot]
             for one in robots:
                 if self._is_room_for(one):
@@ -238,10 +238,10 @@ class Driver:
         return False
 
     def replace_spec(self, spec: Spec) -> None:
-        """Judge by another specification what comes from now on: each robot begins a new run.
+        """Judge later samples by another specification; each robot begins a new run.
 
         Raises:
-            UnknownNameError: it lacks what `only` or `sources` names; the former one stays.
+            UnknownNameError: it lacks a name of `only` or `sources`; the present one stays.
         """
         with self._driving():
             watching, former = self._watching(spec), self._watch
@@ -256,10 +256,10 @@ class Driver:
                 robot.begin(self._watch)
 
     def status(self, *, most_open: int | None = None) -> dict[str, Status]:
-        """How each robot stands; nothing is judged until that is put together.
+        """The status of each robot, in one consistent state.
 
         Args:
-            most_open: of each robot so many records of what is open, the oldest of each requirement
+            most_open: the most records of open attempts per robot, the oldest of each requirement
                 first, as each takes a tenth of a millisecond; default all.
         """
         with self._working:
@@ -268,16 +268,16 @@ class Driver:
 
     @property
     def now_ns(self) -> int:
-        """What time it is, ns, by the clock of this driver."""
+        """The present instant, ns, by the clock of this driver."""
         return self._clock.now_ns()
 
     @property
     def waiting(self) -> int:
-        """So many samples wait to be judged."""
+        """The number of samples that wait to be judged."""
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        if now < before or now - before > FAR_NS:  # as where a clock is set that began with 1970
+        if now < before or now - before > FAR_NS:  # years: a clock that began at 0 was set
             with self._lock:
                 self._stamped = now
                 way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
@@ -285,18 +285,18 @@ class Driver:
         self.wake()
 
     def work(self) -> float | None:
-        """Judge what waits, and let time pass.
+        """Judge queued samples, and advance time.
 
         Returns:
-            The seconds after which to call it again if `wake` is not called before; `None`: it will
-            be.
+            The seconds after which to call it again unless `wake` is called before; `None`: only
+            after `wake`.
         """
         with self._driving():
             return self._work()
 
     @contextmanager
     def _driving(self) -> Iterator[None]:
-        """Have the monitors alone; a callback that wants it would find them in mid-step."""
+        """Exclusive use of the monitors; refused to callbacks, which run in mid-step."""
         with self._working:
             if self._is_working:
                 raise RvmonError("a callback cannot drive, close or replace what calls it")
@@ -311,7 +311,7 @@ class Driver:
             entries = self._waiting.take(_BATCH)
             more = len(self._waiting) > 0
             now = self._clock.now_ns()
-            if not more:  # what is offered from now on is stamped no earlier
+            if not more:  # samples offered from now on get no earlier stamp
                 self._stamped = max(self._stamped, now)
             self._has_room.notify_all()
         for entry in entries:
@@ -343,11 +343,11 @@ class Driver:
             self._timers.set(entry.robot, found.last + self._lag + self._patience)
 
     def _pass_to(self, now: int) -> float | None:
-        """Let time come to an instant on those whose time it is; seconds to the next."""
+        """Advance the robots that are due by `now`; returns the seconds to the next one."""
         for t, name in self._timers.take_due(now):
             robot = self._robots[name]
             quiet = (t if robot.last is None else robot.last) + self._lag + self._patience
-            if quiet > now:  # what is due is decided by samples, which keep coming
+            if quiet > now:  # samples keep arriving, and they advance time
                 self._timers.set(name, quiet)
                 continue
             robot.pass_to(now - self._lag)
@@ -357,11 +357,10 @@ class Driver:
         return None if first is None else self._clock.seconds_until(first)
 
     def close(self) -> dict[str, tuple[Report, ...]]:
-        """Judge what waits, end all runs now, and take nothing any more.
+        """Judge queued samples, end all runs now, and refuse further samples.
 
         Returns:
-            By robot the reports of its newest runs, the last one last; the same again if it was
-            closed before.
+            By robot, the reports of its latest runs, in order; a second call returns the same.
         """
         with self._driving():
             with self._has_room:
@@ -391,7 +390,7 @@ class Driver:
             return
         try:
             callback(*what)
-        except Exception:  # noqa: BLE001 - what others do wrong stops no monitor
+        except Exception:  # noqa: BLE001 - a failing callback must not stop the monitors
             self.errors += 1
             _log.exception("a callback failed")
 

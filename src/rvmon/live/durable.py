@@ -1,4 +1,4 @@
-"""A monitor whose run outlives its process, however that ends."""
+"""A monitor whose run survives the end of its process, however it ends."""
 
 from __future__ import annotations
 
@@ -21,32 +21,31 @@ Report = Callable[[int, "Attempt"], object]
 
 
 class DurableMonitor:
-    r"""A monitor that goes on where it was when its process was killed.
+    r"""A monitor that continues where it was when its process was killed.
 
-    Its file holds a snapshot and the samples that came since. A sample is in the file before it is
-    judged. So each verdict is reported at least once; what was reported shortly before the end is
-    reported again, alike and under the same number, by which a reader knows it from the next.
+    Its file has a snapshot and the samples since then (a write-ahead log): a sample is written
+    before it is judged. So each verdict is reported at least once; those reported shortly before
+    the end are reported again under the same number, by which a reader recognises repetitions.
 
-    What the process of the monitor has not been given is not in the file, and a loss of power can
-    take the latest samples: they are with the system, not on the disk.
+    Writes are not synced: a loss of power may lose the latest samples.
 
     Args:
-        spec: what is judged.
-        path: of the file; if it is there, the run in it goes on.
+        spec: the specification.
+        path: of the file; if it exists, its run is continued.
         report: called with the number, from 1, and the record of each attempt that passes or fails.
-            What it raises comes out of the call that decided; the verdict counts as reported.
-        every: so many samples are kept beside a snapshot.
-        **options: as for `Spec.monitor`, for a new run; an old one goes on as it began.
+            An exception propagates from the deciding call; the verdict counts as reported.
+        every: the number of samples after which a new snapshot is written.
+        **options: as for `Spec.monitor`, for a new run; a continued one keeps its options.
 
     Attributes:
-        monitor: judges; to be asked only.
-        taken: so many samples were kept since the run began, refused and lost ones as well: where
-            the source can be read again, it goes on behind them.
-        mark: a count and a checksum that the caller sets, and finds again as they were with the
-            last snapshot: by them it knows whether the source is the same.
+        monitor: the monitor; only to be queried.
+        taken: the number of samples since the run began, with refused and lost ones: a source that
+            can be read again is to be resumed after these.
+        mark: a count and a checksum for the caller, stored with snapshots, to recognise the
+            source.
 
     Raises:
-        SnapshotError: what is in the file is none, or of another specification or version.
+        SnapshotError: the file has no run, or one of another specification or version.
         OSError: the file cannot be read or written.
 
     >>> from tempfile import TemporaryDirectory
@@ -78,13 +77,13 @@ class DurableMonitor:
         self.monitor.on_decided(self._hear)
         for line in [] if found is None else found[1:]:
             self._again(line)
-        # What these samples decided was reported: they need not be judged once more.
+        # The verdicts of these samples are reported now: a new snapshot includes them.
         self.save()
 
     def _found(self) -> list[bytes] | None:
         try:
             return entries(self._path, all_of_them=True)
-        except ValueError as error:  # what stands behind it cannot be judged without it
+        except ValueError as error:  # the entries after a damaged one cannot be judged without it
             raise SnapshotError(
                 f"{self._path}: {error}, and not the last one: name another file, or delete this "
                 "one to start again"
@@ -129,7 +128,7 @@ class DurableMonitor:
                 raise
 
     def _refused(self, t: int, values: Mapping[str, Any], error: TraceError) -> None:
-        """Have lost what a sample spoke of that was refused."""
+        """Report the names of a refused sample as lost or late."""
         checked = self.monitor.compiled.checked
         names = [name for name in values if name in checked.signals or name in checked.events]
         if isinstance(error, TimeOrderError):
@@ -142,10 +141,10 @@ class DurableMonitor:
         self._report(self._number, attempt)
 
     def save(self) -> None:
-        """Keep the run as it is: what was reported so far is not reported again.
+        """Write a snapshot; verdicts reported so far are not reported again.
 
         Raises:
-            OSError: the file cannot be written; it stays as it was.
+            OSError: the file cannot be written; it is unchanged.
         """
         head = {
             "told": self._number,
@@ -160,17 +159,17 @@ class DurableMonitor:
         """Judge a sample, as `Monitor.step_ns` does; verdicts are reported.
 
         Raises:
-            TraceError: the monitor refuses it; what it spoke of is lost at its instant.
+            TraceError: the monitor refuses it; its names are unknown at its instant.
             OSError: the file cannot be written; nothing was judged.
         """
         self._keep(whole_ticks(t_ns), dict(values))
 
     def advance_ns(self, t_ns: int) -> None:
-        """Say that no sample before an instant, ns, will come; otherwise as `step_ns`."""
+        """State that no sample before `t_ns` will come; otherwise as `step_ns`."""
         self._keep(whole_ticks(t_ns), None)
 
     def miss(self, names: Iterable[str] | None = None) -> None:
-        """Say that something was lost between the last sample and the next; see `Monitor.miss`."""
+        """Report that input was lost between the last sample and the next; see `Monitor.miss`."""
         self._keep(None, None if names is None else dict.fromkeys(names))
 
     def _keep(self, t: int | None, values: Mapping[str, Any] | None) -> None:
@@ -188,7 +187,7 @@ class DurableMonitor:
 
 
 def _plain(value: object) -> object:
-    """A number of NumPy as one of Python."""
+    """A NumPy scalar as a plain Python value."""
     item = getattr(value, "item", None)
     if item is None:
         raise TypeError(f"`{type(value).__name__}` is no value of a signal or an event")

@@ -1,4 +1,4 @@
-"""One robot that is watched: its monitor, its runs, what of its data was lost."""
+"""One monitored robot: its monitor, its runs, and the outages of its input."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """An attempt of a robot that was decided.
+    """A decided attempt of a robot.
 
     Attributes:
-        robot: its name; empty if there is one only.
-        run: the number of its run, from 1.
+        robot: the name of the robot; "" if there is only one.
+        run: the number of the run, from 1.
         attempt: the record.
     """
 
@@ -53,20 +53,20 @@ class Judgement:
         }
 
     def to_json(self) -> str:
-        """The same as text."""
+        """`to_dict` as JSON text."""
         return msgspec.json.encode(self.to_dict()).decode()
 
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """How robots are watched.
+    """The options by which robots are monitored.
 
     Attributes:
-        spec: what they must do.
+        spec: the specification.
         only: ids of the requirements; `None`: all.
         sources: the names that can arrive; `None`: all.
         settle: as for `Spec.monitor`.
-        keep: so many records of each verdict are kept per requirement.
+        keep: the most records kept per requirement and verdict; `None`: all.
     """
 
     spec: Spec
@@ -77,11 +77,11 @@ class Watch:
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """Of the requirements that are judged, in the order of the file."""
+        """The ids of the judged requirements, in the order of the file."""
         return requirements_asked(self.spec.checked, self.only) or tuple(self.spec.requirements)
 
     def monitor(self) -> Monitor:
-        """A monitor for a run."""
+        """A new monitor for a run."""
         return self.spec.monitor(
             only=self.only, sources=self.sources, settle=self.settle, keep=self.keep
         )
@@ -89,20 +89,20 @@ class Watch:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """A robot at an instant.
+    """The status of a robot at an instant.
 
     Attributes:
-        robot: its name; empty if there is one only.
-        run: the number of the run that is under way, from 1.
+        robot: its name; "" if there is only one.
+        run: the number of the present run, from 1.
         since: the instant of its first sample, ns; `None` before it.
-        now: the instant to which time has come, ns.
-        verdicts: of each requirement so far, over all runs.
-        counts: how many attempts of a requirement had a verdict since it is watched.
-        open_counts: how many attempts of each requirement are open now; those without any may lack.
-        open: their records with their deadlines: all, or as many as were asked for.
-        samples: so many were judged, over all runs.
-        lost: so many were not.
-        refusal: why the latest that was refused was.
+        now: the present instant, ns.
+        verdicts: by requirement, the verdict so far over all runs.
+        counts: by requirement and verdict, the number of attempts so far.
+        open_counts: by requirement, the number of open attempts; those without any may be absent.
+        open: the records of open attempts: all, or as many as requested.
+        samples: the number of samples judged, over all runs.
+        lost: the number of samples lost or refused.
+        refusal: the reason of the latest refusal; "" if there was none.
     """
 
     robot: str
@@ -119,19 +119,19 @@ class Status:
 
 
 class Robot:
-    """One robot: runs, one after the other, each with a monitor of its own.
+    """One robot: consecutive runs, each with a monitor of its own.
 
     Args:
-        name: of the robot.
-        watch: how it is watched.
-        judged: called with what is decided; it raises nothing.
-        ended: called with the name and the report of each run that ended; it raises nothing.
+        name: the name of the robot.
+        watch: the options of its monitors.
+        judged: called with each decided attempt; must not raise.
+        ended: called with the name and the report of each run that ended; must not raise.
 
     Attributes:
-        run: the number of the run that is under way, from 1.
+        run: the number of the present run, from 1.
         last: the instant of the latest sample, ns; `None` before the first.
-        floor: no sample before this instant, ns, is taken any more; `None` before the first.
-        reports: of the newest runs that have ended.
+        floor: samples before this instant (ns) are too late; `None` before the first sample.
+        reports: the reports of the latest runs that have ended.
     """
 
     KEPT_REPORTS = 10
@@ -150,11 +150,11 @@ class Robot:
         self._ended = ended
         self._samples = self._lost = 0
         self._refusal = ""
-        self._down: dict[str | None, str] = {}  # what is lost until it is found, `None`: all; why
+        self._down: dict[str | None, str] = {}  # open outages: name (`None`: all) to reason
         self.begin(watch)
 
     def begin(self, watch: Watch) -> None:
-        """Begin to watch it: what earlier runs showed counts no more."""
+        """Begin anew: verdicts and counts of earlier runs are discarded."""
         self._before: dict[str, set[Verdict]] = {name: set() for name in watch.ids}
         self._counts: Counter[tuple[str, Verdict]] = Counter()
         self._begin(watch)
@@ -176,13 +176,13 @@ class Robot:
         self._judged(Judgement(self.name, self.run, attempt))
 
     def restart(self, kind: HealthKind, why: str) -> None:
-        """End the run that is under way where it has come to, and begin another."""
+        """End the present run where it is, with a health entry, and begin another."""
         self._why = Health(kind, "samples", 1, self.floor, self._watch.ids, why)
         self.end()
         self._begin(self._watch)
 
     def end(self) -> Report:
-        """End the run that is under way where it has come to."""
+        """End the present run where it is; returns its report."""
         report = self._monitor.finish_ns()
         if self._why is not None:
             report = replace(report, health=(*report.health, self._why))
@@ -200,7 +200,7 @@ class Robot:
             values: as for `Monitor.step_ns`.
 
         Returns:
-            Why it was refused; what it spoke of is unknown then. Empty: it was taken.
+            Why it was refused, so that its names are unknown at its instant; "" if it was taken.
         """
         self._lose_again(t)
         try:
@@ -220,7 +220,7 @@ class Robot:
         return ""
 
     def drop(self, dropped: Dropped) -> None:
-        """Have lost what found no room."""
+        """Report an outage for samples that found the queue full."""
         self._lost += dropped.count
         self._lose_again(dropped.first)
         why = "came faster than they were evaluated"
@@ -229,8 +229,8 @@ class Robot:
         self._come_to(dropped.last)
 
     def hear(self, gap: Gap) -> None:
-        """Take what was lost, or found again, on the way here."""
-        # A door may speak of names that a specification had before it was replaced.
+        """Take a report on an outage."""
+        # It may have names of a specification that was replaced since.
         names = None if gap.names is None else self._declared(gap.names)
         if gap.told is Told.FOUND:
             self._down = (
@@ -250,7 +250,7 @@ class Robot:
         self._come_to(gap.since if gap.until is None else gap.until)
 
     def _lose_again(self, t: int) -> None:
-        """What was down when a run ended is down still as the next one begins, at `t`."""
+        """Repeat the outages that were open when the previous run ended, at `t`."""
         if self._is_to_lose_again:
             self._is_to_lose_again = False
             for name, why in self._down.items():
@@ -261,7 +261,7 @@ class Robot:
         return [name for name in names if name in checked.signals or name in checked.events]
 
     def _come_to(self, t: int) -> None:
-        """Time has come to an instant of what this robot sent or would have."""
+        """Advance the bookkeeping to the instant of a sample, or of a lost one."""
         self.last = t if self.last is None else max(self.last, t)
         self._since = t if self._since is None else self._since
         self._is_held_back = self._watch.settle == "next"
@@ -269,7 +269,7 @@ class Robot:
         self.floor = floor if self.floor is None else max(self.floor, floor)
 
     def pass_to(self, t: int) -> None:
-        """Learn that no sample before an instant will come."""
+        """Note that no sample before `t` (ns) will come."""
         if self.floor is not None and t > self.floor:
             self._monitor.advance_ns(t)
             self.floor = t
@@ -279,11 +279,11 @@ class Robot:
     def due(self) -> int | None:
         """The next instant, ns, at which time alone may decide something."""
         if self._is_held_back and self.floor is not None:
-            return self.floor + 1  # the sample is judged then
+            return self.floor + 1  # a sample held back is judged then
         return self._monitor.next_due
 
     def status(self, t: int, most: int | None) -> Status:
-        """How it stands at an instant, with so many records of what is open."""
+        """Its status at `t` (ns), with at most `most` records of open attempts."""
         now = self._monitor.verdicts
         counts, records = self._monitor.open_counts(most)
         return Status(

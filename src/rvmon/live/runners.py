@@ -1,4 +1,4 @@
-"""Live monitors that are driven: in a thread of their own, or in an event loop."""
+"""Runners of a driver: a thread of its own, or an event loop."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Live(Driver):
-    r"""A driver with a thread that drives it, from `with` or `start` to `close`.
+    r"""A driver with its own thread, from `with` or `start` to `close`.
 
     Args:
         spec: as for `Driver`.
@@ -38,7 +38,7 @@ class Live(Driver):
         self.wake = self._wake
 
     def start(self) -> Live:
-        """Begin to judge; once."""
+        """Start the thread; idempotent."""
         if self._thread is None:
             self._thread = Thread(target=self._drive, name="rvmon.live", daemon=True)
             self._thread.start()
@@ -60,7 +60,7 @@ class Live(Driver):
                     return
 
     def close(self) -> dict[str, tuple[Report, ...]]:
-        """As `Driver.close`; the thread has ended then."""
+        """As `Driver.close`; it also joins the thread."""
         if current_thread() is not self._thread:  # a callback is refused below
             with self._changed:
                 self._stops = True
@@ -77,9 +77,9 @@ class Live(Driver):
 
 
 class LiveTasks(Driver):
-    r"""A driver that the running event loop drives, within `async with`.
+    r"""A driver run by the running event loop, within `async with`.
 
-    Callbacks are called in the loop. `offer` may be called from any thread.
+    Callbacks are called in the loop; `offer` may be called from any thread.
 
     Args:
         spec: as for `Driver`.

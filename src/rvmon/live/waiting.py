@@ -1,4 +1,4 @@
-"""What waits: samples to be judged, with what was lost before they came, and robots for a time."""
+"""The bounded queue of samples and losses, and the timers of robots."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Offered:
     """A sample as it was offered.
 
     Attributes:
-        robot: whose it is.
+        robot: the name of its robot.
         t: its instant, ns.
         values: as for `Monitor.step_ns`.
     """
@@ -29,14 +29,14 @@ class Offered:
 
 @dataclass(slots=True)
 class Dropped:
-    """Samples of a robot, one after the other, for which there was no room.
+    """Consecutive samples of a robot that found the queue full.
 
     Attributes:
-        robot: whose they were.
-        first: the least instant of one, ns.
+        robot: the name of the robot.
+        first: the least of their instants, ns.
         last: the greatest.
-        count: how many they were.
-        names: what they spoke of.
+        count: their number.
+        names: the names that they update.
     """
 
     robot: str
@@ -46,14 +46,14 @@ class Dropped:
     names: set[str] = field(default_factory=set)
 
     def add(self, sample: Offered) -> None:
-        """One more sample is lost."""
+        """Add a lost sample."""
         self.count += 1
         self.names.update(sample.values)
         self.first, self.last = min(self.first, sample.t), max(self.last, sample.t)
 
 
 class Told(Enum):
-    """What is told of names that a source may have spoken of."""
+    """The kinds of reports on outages."""
 
     LOST = "lost"
     FOUND = "found"
@@ -62,15 +62,15 @@ class Told(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """What a door lost of a robot; see `Monitor.lose_ns`, `found_ns` and `miss`.
+    """A report on an outage of a robot; see `Monitor.lose_ns`, `found_ns` and `miss`.
 
     Attributes:
-        robot: whose it was.
-        told: what.
-        names: of signals and events; `None`: all.
-        since: the first instant at which they are lost, ns, or the last of those that are found.
-        until: the last instant; `None`: they stay lost.
-        why: a phrase for people.
+        robot: the name of the robot.
+        told: the kind of report.
+        names: signals and events; `None`: all.
+        since: the first instant of the outage, ns; for `FOUND` its last instant.
+        until: the last instant, ns; `None`: not yet known.
+        why: a phrase for the input health.
     """
 
     robot: str
@@ -83,7 +83,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class NewRun:
-    """From here on each robot begins a new run."""
+    """A mark in the queue at which each robot begins a new run."""
 
     why: str
 
@@ -92,11 +92,10 @@ Entry = Offered | Dropped | Gap | NewRun
 
 
 class Waiting:
-    """A queue with room for so many samples; what finds it full is lost, and counted.
+    """A bounded queue of samples; a sample that finds it full is counted as dropped.
 
-    What was lost stands in the queue where it would have stood: one `Dropped` for all samples of a
-    robot between two that were taken, so that at most twice as many entries wait as there is room
-    for. It is not locked.
+    Drops keep their place in the queue: there is one `Dropped` for all samples of a robot between
+    two that were queued, so that there are at most twice `room` entries. Not thread-safe.
     """
 
     def __init__(self, room: int) -> None:
@@ -114,7 +113,7 @@ class Waiting:
         return len(self._entries) >= self.room
 
     def put(self, sample: Offered) -> bool:
-        """Have a sample wait; return whether there was room."""
+        """Queue a sample; returns whether there was room."""
         self.robots.add(sample.robot)
         if not self.is_full:
             self._losing.pop(sample.robot, None)
@@ -128,18 +127,18 @@ class Waiting:
         return False
 
     def put_gap(self, gap: Gap) -> None:
-        """Have it be told behind all that waits."""
+        """Queue a report on an outage, regardless of `room`."""
         self.robots.add(gap.robot)
         self._losing.pop(gap.robot, None)
         self._entries.append(gap)
 
     def put_new_run(self, why: str) -> None:
-        """Have new runs begin behind all that wait."""
+        """Queue the begin of new runs, regardless of `room`."""
         self._losing.clear()
         self._entries.append(NewRun(why))
 
     def take(self, most: int) -> list[Entry]:
-        """Take what has waited longest, at most so many entries."""
+        """Remove the oldest entries, at most `most`."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for one in taken:
             if isinstance(one, Dropped) and self._losing.get(one.robot) is one:
@@ -148,7 +147,7 @@ class Waiting:
 
 
 class Timers:
-    """The instant, ns, at which each robot is to be looked at, if it is not looked at before."""
+    """The next due instant (ns) of each robot: a heap with lazy deletion."""
 
     def __init__(self) -> None:
         self._queue: list[tuple[int, str]] = []
@@ -156,24 +155,24 @@ class Timers:
 
     @property
     def first(self) -> int | None:
-        """The next instant at which one is to be looked at; it may have been, meanwhile."""
+        """A lower bound of the next due instant; `None` if no timer is set."""
         return self._queue[0][0] if self._queue else None
 
     def set(self, robot: str, t: int) -> None:
-        """Have one looked at when an instant has come; the earliest one counts."""
+        """Set the timer of a robot, unless it is set to an earlier instant."""
         known = self._next.get(robot)
         if known is None or t < known:
             self._next[robot] = t
             heapq.heappush(self._queue, (t, robot))
 
     def forget(self, robot: str) -> None:
-        """Have it looked at no more."""
+        """Cancel the timer of a robot."""
         self._next.pop(robot, None)
 
     def take_due(self, now: int) -> Iterator[tuple[int, str]]:
-        """The robots whose time has come, each with that instant; what is set meanwhile counts."""
+        """The robots due by `now`, each with its instant; timers may be set during iteration."""
         while self._queue and self._queue[0][0] <= now:
             t, robot = heapq.heappop(self._queue)
-            if self._next.get(robot) == t:  # else it was looked at before
+            if self._next.get(robot) == t:  # else the entry is outdated
                 del self._next[robot]
                 yield t, robot
