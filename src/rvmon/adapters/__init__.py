@@ -1,4 +1,4 @@
-"""What brings the data of running robots to live monitors, one file for each kind of source.
+"""Adapters from middleware to live monitors, one file for each kind of source.
 
-An adapter translates what arrives and calls `Driver.offer`; it decides nothing.
+An adapter translates messages to samples and calls `Driver.offer`; it judges nothing.
 """

@@ -16,33 +16,33 @@ if TYPE_CHECKING:
     from rvmon.readers.messages.topic import Topic
 
 _DEPTH = 10_000
-"""Messages of a topic that wait at most within DDS; one more is rejected, and reported as lost."""
+"""The most messages of a topic queued in DDS; further ones are rejected, and reported as lost."""
 
 _AT_ONCE = 1_000
-"""Messages of a topic that are taken before another topic has its turn."""
+"""The most messages of a topic taken before the next topic has its turn."""
 
 _LONG_NS = 3_600_000_000_000
 
 _PREFIX = "rt/"
-"""Before the names of topics of ROS 2 on the wire."""
+"""The prefix of the names of ROS 2 topics in DDS."""
 
 
 _MAKING = Lock()
-"""A type is completed as its first topic is made: sources that do so at once break each other's."""
+"""Guards the creation of topics, which completes a shared type and is not thread-safe."""
 
 
 class DdsSource:
-    """A participant that offers what the topics of a feed say, from `with` on.
+    """A DDS participant that passes the messages of a feed's topics to it, within `with`.
 
-    Topics are found as somebody publishes them. Their types are those of ROS itself, and those of
-    the definitions.
+    Topics are discovered when they are published. Types are those of ROS itself and of
+    `definitions`.
 
     Args:
-        feed: gets the messages.
-        domain: of DDS, as `ROS_DOMAIN_ID` names it.
-        definitions: of messages by type, as a binding has them.
+        feed: receives the messages.
+        domain: the DDS domain, as in `ROS_DOMAIN_ID`.
+        definitions: by type, texts of message definitions, as in a binding.
         verdicts: the topic on which verdicts are published, as JSON in `std_msgs/msg/String`;
-            `None`: none are.
+            `None`: they are not published.
 
     Raises:
         RvmonError: cyclonedds is not installed.
@@ -64,19 +64,19 @@ class DdsSource:
         self._verdicts = verdicts
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
-        self._types: dict[str, str] = {}  # on the wire, by topic, as it was published first
-        self._found: set[str] = set()  # of these, those that are to be read
+        self._types: dict[str, str] = {}  # by topic, its type in DDS as first published
+        self._found: set[str] = set()  # discovered topics without a reader yet
         self._given_up: set[str] = set()
-        self._losses: dict[str, int] = {}  # by topic, until what waited then is taken
+        self._losses: dict[str, int] = {}  # by topic, losses since its queue was last emptied
         self._lock = Lock()
         self._stops = False
-        self._listeners: list[Any] = []  # nobody else holds them
+        self._listeners: list[Any] = []  # keeps them alive: DDS does not
 
     def __enter__(self) -> DdsSource:
         """Join the domain.
 
         Raises:
-            RvmonError: that cannot be.
+            RvmonError: the domain cannot be joined.
         """
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
         from cyclonedds.core import DDSException, GuardCondition, WaitSet
@@ -114,23 +114,23 @@ class DdsSource:
             for content in taken:
                 if content.sample_info.valid_data:
                     self._feed.take(topic, content)
-        except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
+        except Exception as error:  # noqa: BLE001 - a sender's data may not fit its type
             self._feed.lose(topic.name, f"cannot be unpacked ({error})", before=True)
         if losses is not None and len(taken) < _AT_ONCE:
-            with self._lock:  # all that waited then is taken, if no more was lost since
+            with self._lock:  # the queue is empty: the outage ends, unless more was lost since
                 if self._losses[topic.name] == losses and name not in self._given_up:
                     del self._losses[topic.name]
                     self._feed.find(topic.name)
 
     def _wait_for(self, reader: Any) -> None:
-        """Have the thread wake when there is something to be taken."""
+        """Wake the thread when the reader has data."""
         from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState
 
         anything = SampleState.Any | ViewState.Any | InstanceState.Any
         self._waiting.attach(ReadCondition(reader, anything))
 
     def _lose(self, topic: Topic) -> None:
-        """Have a topic lost: what waits now was sent before, and ends no loss."""
+        """Begin an outage of a topic; messages queued now were sent before it and do not end it."""
         with self._lock:
             self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
             self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
@@ -149,9 +149,9 @@ class DdsSource:
             return DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, definitions))
 
     def _find(self) -> None:
-        """Read the topics that are wanted and published."""
+        """Create readers for the wanted topics that are published."""
         for one in self._finder.take(N=1_000):
-            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # none: it left
+            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # no name: left
             if name not in self._wanted:
                 continue
             if (known := self._types.setdefault(name, one.type_name)) != one.type_name:
@@ -163,11 +163,11 @@ class DdsSource:
         for name in ready:
             try:
                 self._begin(name, self._types[name])
-            except Exception as error:  # noqa: BLE001 - as above: the others go on
+            except Exception as error:  # noqa: BLE001 - one bad topic must not stop the others
                 self._give_up(name, str(error))
 
     def _give_up(self, name: str, why: str) -> None:
-        """Have lost for good, once, what a topic feeds: of somebody nothing can be heard."""
+        """Declare the names of a topic lost for good, as a publisher cannot be received; once."""
         with self._lock:
             if name not in self._given_up:
                 self._given_up.add(name)
@@ -182,12 +182,12 @@ class DdsSource:
         if topic.fault:
             self._give_up(name, f"{kind}: {topic.fault}")
             return
-        # A history that keeps the last messages would replace others and report nothing.
+        # KeepAll: a history that keeps the last messages would silently replace others.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = self._wire_topic(name, kind, self._definitions)
-        # To be called for each message would hold up the thread of DDS that receives them, until
-        # the socket drops some and nobody learns of it; a loss is rare.
+        # Listeners only for rare events: one for each message would slow down the receiving thread
+        # of DDS until the socket drops messages unnoticed.
         listener = Listener(
             on_sample_lost=lambda *_: self._lose(topic),
             on_sample_rejected=lambda *_: self._lose(topic),
@@ -201,7 +201,7 @@ class DdsSource:
         self._wait_for(reader)
 
     def publish(self, judgement: Judgement) -> None:
-        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        """Publish a verdict; to be used as `on_judged` of a driver."""
         if self._writer is not None:
             kind = _idl_type("std_msgs/msg/String", ())
             self._writer.write(kind(data=judgement.to_json()))
@@ -211,7 +211,7 @@ class DdsSource:
         self._wake.set(True)
         self._thread.join()
         for reader, _topic in self._readers.values():
-            reader.set_listener(None)  # one that is freed would be called: readers live on longer
+            reader.set_listener(None)  # readers outlive their listeners, and would call freed ones
 
 
 @cache
@@ -220,7 +220,7 @@ def _idl_type(name: str, definitions: tuple[tuple[str, str], ...]) -> Any:
 
     Args:
         name: of the type, `package/msg/Name`.
-        definitions: by type, those that are not of ROS itself.
+        definitions: (type, text) pairs of types that are not of ROS itself.
     """
     from cyclonedds.idl import make_idl_struct, types
     from rosbags.interfaces import Nodetype
@@ -243,4 +243,4 @@ def _idl_type(name: str, definitions: tuple[tuple[str, str], ...]) -> Any:
 
 
 _PLAIN = {"bool": bool, "string": str}
-"""Types of ROS that cyclonedds calls otherwise."""
+"""ROS types with another name in cyclonedds."""

@@ -1,4 +1,4 @@
-"""Requirements over any environment of Gymnasium; needs gymnasium, the extra `gym`."""
+"""A Gymnasium wrapper that judges requirements; needs gymnasium, the extra `gym`."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _Action = TypeVar("_Action")
 
 Values = Mapping[str, Any]
 Observe = Callable[[Any, Any, Values], Values | Iterable[tuple[int, Values]]]
-"""Gives the values of signals and events for an observation, the action before it, and its info;
-or samples since the step before, each with its instant, ns since the episode began."""
+"""From an observation, the action before it and its info, the values of signals and events; or
+several samples since the previous step, each with its instant, ns since the episode began."""
 
 
 class Judged(
@@ -30,22 +30,21 @@ class Judged(
 ):
     """Judges the episodes of an environment: each is a run, its steps are samples.
 
-    After each step `info["rv"]` holds `verdicts` so far by requirement, `decided` (the attempts
-    that this step decided) and, where it is asked for, `margins` (the figures of robustness that
-    nothing can change any more). With the last step of an episode the run ends, and `verdicts` are
-    those of its report.
+    After each step `info["rv"]` has `verdicts` (so far, by requirement), `decided` (the attempts
+    decided by this step) and, with `shaping`, `margins` (the robustness figures that became final).
+    The last step of an episode ends the run; `verdicts` are then those of its report.
 
     Args:
         env: any environment.
-        spec: what an agent must do.
-        observe: gives the values of a step; the action is `None` behind `reset`.
-        step_s: seconds from one step to the next.
-        ends_on_failure: whether an episode is terminated where a requirement has failed.
-        shaping: gives what is added to the reward for the figures of robustness of a step; `None`:
-            nothing is measured.
+        spec: the specification.
+        observe: computes the values of a step; after `reset` the action is `None`.
+        step_s: seconds per step.
+        ends_on_failure: whether a failed requirement terminates the episode.
+        shaping: from the robustness figures of a step, the term added to the reward; `None`:
+            robustness is not measured.
 
     Raises:
-        RvmonError: `step_s` is no time.
+        RvmonError: `step_s` is not positive.
 
     Source: reward by robustness: Li, Vasile and Belta 2017 (Reinforcement Learning with Temporal
     Logic Rewards).
@@ -113,7 +112,7 @@ class Judged(
     def _judge(
         self, observed: Values | Iterable[tuple[int, Values]], *, over: bool
     ) -> tuple[dict[str, Any], float]:
-        """What `info["rv"]` holds, and what is added to the reward."""
+        """The value of `info["rv"]`, and the term added to the reward."""
         samples = [(self._t, observed)] if isinstance(observed, Mapping) else [*observed]
         self._decided.clear()
         for t, values in samples:

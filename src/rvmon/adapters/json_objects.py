@@ -1,4 +1,4 @@
-"""Live data as JSON objects, one for each sample; also as lines, from a pipe or another stream."""
+"""Live data as JSON objects, one per sample; also as lines from a pipe or another stream."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ _log = logging.getLogger("rvmon.live.input")
 _UNREADABLE = "it cannot be read"
 
 _JUMP_NS = 10 * TICKS_PER_SECOND
-"""Stamps that go back by more than this are not late, but of another run."""
+"""A stamp farther back than this is not late, but begins another run."""
 
 
 class JsonObjects:
-    """Offers what objects say, as recordings in JSON lines have them.
+    """Offers objects as samples, by the same rules as for recordings in JSON lines.
 
-    Objects without a time are stamped as they arrive. Those with a time are judged at it. One that
-    cannot be read may have reported anything: all names are lost there, between its neighbours.
+    Objects without a time are stamped on arrival. One that cannot be read may have updated any
+    name: all names are lost between its neighbours.
 
     Args:
-        driver: gets the samples; its specification says what objects call the declared names.
-        clock: follows the stamps of the objects; `None`: the clock of the driver runs by itself.
+        driver: receives the samples; its specification maps names.
+        clock: set to the stamps of the objects; `None`: the driver has a wall clock.
 
     Attributes:
-        driver: gets the samples.
-        ignored: the names that the specification does not declare, with how often they came.
-        unread: so many objects could not be read.
+        driver: receives the samples.
+        ignored: names that are not declared, with their numbers of occurrences.
+        unread: the number of objects that could not be read.
     """
 
     def __init__(self, driver: Driver, *, clock: SimulatedClock | None = None) -> None:
@@ -53,18 +53,18 @@ class JsonObjects:
         self._clock = clock
         self._last: dict[str, int | None] = {}
         self._told = 0
-        self._is_any_lost = False  # may have been the first of a robot that was not heard of yet
+        self._is_any_lost = False  # a lost object may have been of a robot not known yet
 
     def take(
         self, fields: Any, robot: str = "", *, wait: bool = False, is_old: bool = False
     ) -> None:
-        """Offer what an object says.
+        """Offer an object as a sample.
 
         Args:
-            fields: a decoded object.
-            robot: whose it is.
+            fields: the decoded object.
+            robot: the name of the robot.
             wait: whether to wait for room; see `Driver.offer`.
-            is_old: whether it was sent some time ago: its events are not of now.
+            is_old: whether it is a retained message, whose events are not of now.
 
         Raises:
             TraceError: it cannot be read; nothing was offered.
@@ -82,14 +82,14 @@ class JsonObjects:
         if self._is_any_lost and robot not in self._last:
             self.driver.miss(robot=robot, why=_UNREADABLE)
         took = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
-        if self.driver.spec is not spec:  # it was replaced meanwhile, by one with other names
+        if self.driver.spec is not spec:  # replaced meanwhile, perhaps by one with other names
             self.driver.miss(robot=robot, why=_UNREADABLE)
-        # Of robots that are one too many nothing is kept.
+        # Robots beyond the limit are not remembered, lest the table grow without bound.
         if took or robot in self._last or len(self._last) < self.driver.most_robots:
             self._last[robot] = t_ns
 
     def _tell_of_ignored(self) -> None:
-        """Say of a name that comes first, and feeds nothing, what it was probably meant for."""
+        """Log, for a new undeclared name, the declared one that was probably meant."""
         fresh = list(islice(self.ignored, self._told, None))
         self._told += len(fresh)
         signals = self.driver.spec.schema.signals
@@ -103,25 +103,25 @@ class JsonObjects:
                 )
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
-        """Have everything lost that an unreadable object may have reported.
+        """Report an outage of all names for an unreadable object.
 
         Args:
-            where: what it was, for the log.
-            why: it cannot be read.
-            robot: whose it was; `None`: of any.
+            where: the object's origin, for the log.
+            why: why it cannot be read.
+            robot: its robot; `None`: unknown.
         """
         self.unread += 1
         self._is_any_lost = self._is_any_lost or robot is None
         _log.warning("%s is not taken: %s", where, why)
         for one in self._last if robot is None else [robot]:
-            if self._last.get(one) is None:  # what has no time is stamped as it comes
+            if self._last.get(one) is None:  # its objects have no time and are stamped on arrival
                 self.driver.lose(robot=one, is_over=True, why=_UNREADABLE)
             else:
                 self.driver.miss(robot=one, why=_UNREADABLE)
 
 
 def decoded_object(text: bytes) -> Any:
-    """What a text says.
+    """Decode a text.
 
     Raises:
         TraceError: it is no JSON.
@@ -135,7 +135,7 @@ def decoded_object(text: bytes) -> Any:
 
 
 def stamp_of(text: bytes, schema: Schema) -> int | None:
-    """The instant, ns, that an object says; `None` if it says none, or cannot be read."""
+    """The stamp of an object, ns; `None` if it has none, or cannot be read."""
     try:
         return _read(decoded_object(text), schema, Counter())[0]
     except TraceError:
@@ -145,7 +145,7 @@ def stamp_of(text: bytes, schema: Schema) -> int | None:
 def _read(
     fields: Any, schema: Schema, ignored: Counter[str]
 ) -> tuple[int | None, dict[str, Value]]:
-    """What an object says: its instant, if it has one, and values."""
+    """The stamp of an object, if it has one, and its values."""
     stamps = DEFAULT_COLUMNS if schema.stamps is None else (schema.stamps.column,)
     try:
         if not isinstance(fields, dict) or any(name in fields for name in stamps):
@@ -156,23 +156,21 @@ def _read(
 
 
 _PIECE = 1 << 16
-"""Bytes that are asked for at once; what is there is given at once."""
+"""The most bytes read at once."""
 
 
 def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None = None) -> None:
-    """Offer what lines say, until there are no more, or the driver is closed.
+    """Offer lines as samples, until they end or the driver is closed; call it in its own thread.
 
-    It is to be called in a thread of its own.
-
-    Where lines have a time they wait while others are judged: a pipe that is faster than the
-    monitors is read more slowly, and nothing is lost.
+    Lines with a time wait for room in the queue, so that a pipe faster than the monitors is slowed
+    down and nothing is lost.
 
     Args:
-        objects: get them.
-        lines: each an object.
-        robot: the field that names the robot of a line; `None`: there is one robot.
+        objects: receives the objects.
+        lines: an object each.
+        robot: the field with the name of the robot; `None`: there is only one robot.
     """
-    with suppress(RvmonError):  # it was closed, as when somebody ends it
+    with suppress(RvmonError):  # the driver was closed
         for number, line in enumerate(lines, 1):
             if not line.strip():
                 continue
@@ -194,7 +192,7 @@ def _name_of_robot(fields: object, robot: str) -> str:
 
 
 def read_lines(file: int) -> Iterator[bytes]:
-    """The lines of a file, each as soon as it is there.
+    """The lines of a file, each as soon as it is complete.
 
     Args:
         file: the descriptor of a pipe, a file or a terminal.

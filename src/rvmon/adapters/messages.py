@@ -1,4 +1,4 @@
-"""Live data as messages of topics, as recordings have them."""
+"""Translates live messages of topics to samples, by the same rules as for recordings."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from rvmon.trace.schema import Clock, Schema
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 CLOCK = "/clock"
-"""The topic that says what time it is where robots `use_sim_time`."""
+"""The topic with the simulated time, where robots `use_sim_time`."""
 
 _log = logging.getLogger("rvmon.live.input")
 
 _NOW = 1 - TIME_LIMIT
-"""Stands for the instant at which a message comes."""
+"""Stands for the instant at which a message arrives."""
 
 
 class MessageFeed:
-    """Offers what messages say of the declared names, by the binding of the schema or by name.
+    """Offers the values of declared names in messages, by the binding of the schema or by name.
 
-    Where a message cannot be read, what its topic feeds is lost.
+    If a message cannot be read, the names that its topic feeds are lost.
 
     Args:
-        driver: gets the samples.
-        schema: the declared names, and which topics and fields feed them.
-        robot: whose they are.
-        clock: of the driver, where it follows `/clock`; `None`: the driver's runs by itself.
+        driver: receives the samples.
+        schema: the declared names and their binding.
+        robot: the name of the robot.
+        clock: the driver's clock, if it is to follow `/clock`; `None` for a wall clock.
 
     Attributes:
-        has_time: whether it is known what time it is. Other topics than `/clock` are to be
-            subscribed to then: what came before could not be stamped.
+        has_time: whether the time is known. Only then are topics other than `/clock` to be
+            subscribed to: earlier messages could not be stamped.
     """
 
     def __init__(
@@ -60,9 +60,9 @@ class MessageFeed:
         self._heard: dict[str, int] = {}
 
     def topics(self) -> Iterator[str]:
-        """The topics that may feed something: those of the binding, and those that names name.
+        """The topics that may feed a name: those of the binding, and those that names suggest.
 
-        Before them comes `/clock`, where the driver's clock follows it.
+        `/clock` comes first, if the driver's clock follows it.
         """
         if self._clock is not None:
             yield CLOCK
@@ -77,10 +77,10 @@ class MessageFeed:
         yield from found
 
     def take(self, topic: Topic, content: Any) -> None:
-        """Offer what a message says.
+        """Offer the sample of a message.
 
         Args:
-            topic: of the message.
+            topic: the topic of the message.
             content: an object with attributes, or a mapping.
         """
         if topic.name == CLOCK and self._clock is not None:
@@ -92,12 +92,12 @@ class MessageFeed:
                 t_ns = None if t == _NOW else t
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
                 self._heard[topic.name] = self._driver.now_ns if t_ns is None else t_ns
-        except Exception as error:  # noqa: BLE001 - what called this would swallow it, or end by it
+        except Exception as error:  # noqa: BLE001 - middleware swallows errors, or ends by them
             self.lose(topic.name, str(error))
 
     @contextmanager
     def heard(self) -> Iterator[None]:
-        """Have everything lost for good if what hears messages ends by an error."""
+        """Declare everything lost if the receiving loop within `with` ends by an error."""
         try:
             yield
         except Exception as error:  # noqa: BLE001 - nobody else would be told
@@ -106,7 +106,7 @@ class MessageFeed:
             self._driver.lose(robot=self._robot, why=why)
 
     def set_time(self, seconds: int, nanoseconds: int) -> None:
-        """Have the clock follow what `/clock` says."""
+        """Set the clock to a time from `/clock`."""
         if self._clock is not None:
             self._clock.set_ns(seconds * TICKS_PER_SECOND + nanoseconds)
             self.has_time = True
@@ -122,15 +122,13 @@ class MessageFeed:
         return made
 
     def lose(self, topic: str, why: str, *, before: bool = False, for_good: bool = False) -> None:
-        """Have lost what a message of a topic said.
+        """Report an outage of the names that a topic feeds.
 
         Args:
             topic: its name.
-            why: it cannot be read, or did not come.
-            before: whether it was sent before now, so that it may have said something at any
-                instant since the last one that was read.
-            for_good: whether no message of the topic can be read from now on, unless `find` says
-                otherwise.
+            why: why a message could not be read, or did not arrive.
+            before: whether the outage reaches back to the last message that was read.
+            for_good: whether it lasts until `find`.
         """
         _log.warning("a message of %s is not taken: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1

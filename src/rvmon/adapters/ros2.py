@@ -1,7 +1,7 @@
-"""Live data of ROS 2 by a node of rclpy, and verdicts back.
+"""Live data of ROS 2 through a node of rclpy, and verdicts back.
 
-No rclpy can be installed where this is tested: it has run with a stub of rclpy alone, made after
-the sources of rclpy 8. What reads ROS 2 without an installation of it is `rvmon.adapters.dds`.
+It has been tested only with a stub of rclpy, written after the sources of rclpy 8. To read ROS 2
+without an installation of it, see `rvmon.adapters.dds`.
 """
 
 from __future__ import annotations
@@ -18,28 +18,28 @@ from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
 
 _DEPTH = 1_000
-"""Messages of a topic that wait at most within the middleware."""
+"""The most messages of a topic queued in the middleware."""
 
 _TURN_S = 0.2
-"""Seconds between two looks for topics that nobody has published yet."""
+"""Seconds between two searches for newly published topics."""
 
 _ARRAY = re.compile(r"sequence<(?P<of>.+?)(, \d+)?>|(?P<of_fixed>.+)\[\d+\]")
 """`sequence<double>`, `sequence<double, 3>`, `double[9]`."""
 
 
 class Ros2Source:
-    """A node of ROS 2 that offers what the topics of a feed say, from `with` on.
+    """A ROS 2 node that passes the messages of a feed's topics to it, within `with`.
 
-    Topics are found as somebody publishes them, with their types, whose packages have to be
-    installed. Of what is published reliably, or latched, nothing is missed.
+    Topics are discovered, with their types, when they are published; the packages of the types must
+    be installed. Subscriptions are reliable, or latched, if all publishers are.
 
     Args:
-        feed: gets the messages; where it follows `/clock`, the node has `use_sim_time`.
+        feed: receives the messages; if it follows `/clock`, the node has `use_sim_time`.
         verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
-            none are.
+            they are not published.
 
     Raises:
-        RvmonError: rclpy is not there.
+        RvmonError: rclpy is not available.
     """
 
     def __init__(self, feed: MessageFeed, *, verdicts: str | None = None) -> None:
@@ -54,10 +54,10 @@ class Ros2Source:
         self._feed = feed
         self._verdicts = verdicts
         self._publisher: Any = None
-        self._found: dict[str, set[str]] = {}  # the types of topics that were published
+        self._found: dict[str, set[str]] = {}  # by discovered topic, its types
 
     def __enter__(self) -> Ros2Source:
-        """Begin the node, in a thread and a context of its own: that of a program goes on."""
+        """Start the node in its own thread and rclpy context, apart from the program's."""
         from rclpy.clock import Clock, ClockType
         from rclpy.executors import SingleThreadedExecutor
 
@@ -72,7 +72,7 @@ class Ros2Source:
             from std_msgs.msg import String
 
             self._publisher = self._node.create_publisher(String, self._verdicts, 100)
-        # By a clock that runs where nobody publishes the simulated one, too.
+        # A steady clock runs even if the simulated time is not published.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._node.create_timer(_TURN_S, self._find, clock=steady)
         self._find()
@@ -87,7 +87,7 @@ class Ros2Source:
             self._executor.spin()
 
     def _find(self) -> None:
-        """Subscribe to the topics that are wanted and published."""
+        """Subscribe to the wanted topics that are published."""
         wanted = {*self._feed.topics()} if self._feed.has_time else {CLOCK}
         for name, types in self._node.get_topic_names_and_types():
             if name not in wanted or (known := self._found.get(name, set())) >= {*types}:
@@ -114,7 +114,7 @@ class Ros2Source:
             why = f"{error}: is the package of {type_name} installed?"
             self._feed.lose(name, why, for_good=True)
             return
-        # Who asks for more than is promised gets nothing at all.
+        # A subscription that requests more than a publisher offers receives nothing.
         reliable, latched = ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL
         is_reliable = all(one.reliability == reliable for one in published)
         is_latched = all(one.durability == latched for one in published)
@@ -145,7 +145,7 @@ class Ros2Source:
             self._find()
 
     def publish(self, judgement: Judgement) -> None:
-        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        """Publish a verdict; to be used as `on_judged` of a driver."""
         if self._publisher is not None:
             from std_msgs.msg import String
 
@@ -162,7 +162,7 @@ _KINDS = {"boolean": Kind.BOOL, "float": Kind.REAL, "double": Kind.REAL}
 
 
 def _leaves(kind: Any, prefix: str = "") -> Iterator[tuple[str, Kind]]:
-    """The fields of a class of messages that are no messages themselves, as in `Topic`."""
+    """The leaf fields of a message class with their kinds, as in `Topic.leaves`."""
     from rosidl_runtime_py.utilities import get_message
 
     for name, type_name in kind.get_fields_and_field_types().items():

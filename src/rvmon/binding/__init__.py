@@ -1,7 +1,4 @@
-"""Bindings: TOML files that say which topics and fields of recorded messages feed which names.
-
-A binding gives the schema that a specification has under it.
-"""
+"""Bindings: TOML files that map topics and fields of recorded messages to declared names."""
 
 from __future__ import annotations
 
@@ -31,7 +28,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 
 
 class On(StrEnum):
-    """Which messages say something."""
+    """The messages that count as updates: all, or those with a changed value."""
 
     MESSAGE = "message"
     CHANGE = "change"
@@ -86,7 +83,7 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
 
 
 def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """The table of each name; `[bind.robot.state]` is of `robot.state`, as with quotes."""
+    """The table of each name; `[bind.robot.state]` means `robot.state`, as if quoted."""
     for key, value in content.items():
         name = prefix + key
         if not isinstance(value, dict):
@@ -147,7 +144,7 @@ def _value(text: Any, key: str) -> Term:
         return Constant(text)
     if not isinstance(text, str):
         raise RvmonError(f'`{key}` is an expression in quotes: {key} = "pose.position.x"')
-    # With the grammar, which most runs do without: what is declared may have no binding.
+    # Imported on use: it builds a grammar, which runs without bindings do not need.
     from rvmon.binding.expression import term_of
 
     try:
@@ -169,7 +166,7 @@ def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
 
 
 def _scaled(value: Term, factor: Fraction) -> Term:
-    """The value times a factor, rounded once if that, or its inverse, is a whole number."""
+    """The value times a factor; rounded once if the factor or its inverse is an integer."""
     if factor == 1:
         return value
     if factor.numerator == 1:
@@ -179,9 +176,9 @@ def _scaled(value: Term, factor: Fraction) -> Term:
 
 
 def _definition(path: Path) -> tuple[str, str]:
-    """Type and text of a definition; the last folders say the package: `shop_msgs/msg/Pick.msg`.
+    """Type and text of a definition; its path ends in the package: `shop_msgs/msg/Pick.msg`.
 
-    A database of CAN is called by its file.
+    A CAN database is named by its file.
     """
     is_database = path.suffix.lower() in DATABASES
     is_message = path.suffix == ".msg" and len(path.parts) >= 3 and path.parts[-2] == "msg"
@@ -227,12 +224,12 @@ def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: st
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
-    """A schema for recordings that name things otherwise.
+    """A schema with the reading options of a caller.
 
     Args:
         spec: the specification.
-        schema: of it; what no option gives stays as it says.
-        **options: see `rvmon.session.Spec.reading`; so are the errors.
+        schema: its schema, which gives the defaults.
+        **options: see `rvmon.session.Spec.reading`, also for the errors.
     """
     path, time, clock = options.get("binding"), options.get("time"), options.get("clock")
     bound = schema.binding if path is None else load_binding(path, spec)

@@ -1,4 +1,4 @@
-"""How well what is in a recording fits a name: never against a unit, a kind or a word."""
+"""Ranks fields of a recording as sources of a name; units, kinds and words must not conflict."""
 
 from __future__ import annotations
 
@@ -37,26 +37,26 @@ _FITTING = {
 _REQUESTS = frozenset(
     {"request", "requested", "event", "pressed", "command", "hit", "touched", "triggered"}
 )
-"""Words that say of an event no more than that it is one."""
+"""Words of events that carry no further meaning."""
 
 _EXTREMES = ("minimum", "maximum")
-"""Limits; comments speak of them where they say what a value cannot be."""
+"""Limits; in comments they describe the range of a value, not the value itself."""
 
 _A_WORD = 0.05
-"""Scores differ by less where the same words are found."""
+"""Scores of candidates with the same words found differ by less than this."""
 
 _MOVING = "nav_msgs/msg/Odometry"
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A name for which something is looked for.
+    """A declared name for which a source is sought.
 
     Attributes:
-        words: of it.
-        type: declared; `None` of an event.
-        guess: what a word of it was taken for; empty if all are taken as they are.
-        name: as it is written.
+        words: the words of the name.
+        type: its declared type; `None` for an event.
+        guess: a note on how a word was interpreted; "" if none was.
+        name: the name itself.
     """
 
     words: tuple[str, ...]
@@ -66,12 +66,12 @@ class Wanted:
 
     @property
     def axis(self) -> str:
-        """Along which axis, if the name says it."""
+        """The axis in the name; "" if it has none."""
         return next((word for word in self.words if word in AXES), "")
 
 
 def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
-    """What a name asks for; a leader is the first of topics that are numbered."""
+    """The wanted words of a name; with numbered topics, `leader` means 1 and `follower` 2."""
     listed = [*topics]
     there = {word for topic in listed for word in words_of(topic.name)}
     fields = {word for topic in listed for leaf in topic.leaves for word in words_of(leaf)}
@@ -82,13 +82,13 @@ def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
             words[place] = ORDINALS[word]
             guess = f"`{word}` is taken for number {ORDINALS[word]}"
     if type_ is not None and type_.unit and "A" not in type_.unit:
-        # The current speed is the speed.
+        # Unless a unit of electric current is declared, `current` means "present".
         words = [word for word in words if word != "current" or len(words) == 1]
     return Wanted(tuple(words), type_, guess, name)
 
 
 def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:
-    """Those that fit, the best first, each with how well it does."""
+    """The candidates that fit with their scores, the best first."""
     type_ = wanted.type
     fit = [
         one
@@ -105,10 +105,7 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
 
 
 def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Candidate]:
-    """What messages say to be measured in the declared unit, however it is called.
-
-    What shares more words with the name comes first.
-    """
+    """Candidates measured in the declared unit, whatever their names; most common words first."""
     type_ = wanted.type
     if type_ is None or not type_.unit:
         return []
@@ -125,9 +122,10 @@ def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Cand
 
 
 def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
-    """Whether one is better than all others; of two topics that say the same, none is.
+    """Whether the best candidate is clearly better than all others.
 
-    Nor is of two codes that say much the same, unless one is called as the name, and of its topic.
+    Not so between equal fields of two topics, nor between similar codes, unless the best is named
+    exactly like the name and both are of one topic.
     """
     if not found:
         return False
@@ -140,7 +138,7 @@ def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
 
 
 def _is_alike(first: Candidate, second: Candidate, *, is_exact: bool) -> bool:
-    """Whether one has to be better by a word: of twins, and of codes that may be another's."""
+    """Whether the first must be better by a whole word: of twins, and of ambiguous codes."""
     is_own = is_exact and first.topic.name == second.topic.name
     return _is_twin(first, second) or (first.is_code and not is_own)
 
@@ -151,7 +149,7 @@ def _is_twin(first: Candidate, second: Candidate) -> bool:
 
 
 def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
-    """Whether kind, unit, role, modifiers and axis are those that the name asks for."""
+    """Whether kind, unit, role, modifiers and axis agree with the name."""
     if candidate.kind not in _FITTING[type_.kind] or candidate.topic.fault:
         return False
     if candidate.meaning.sort is Sort.QUATERNION:
@@ -169,7 +167,7 @@ def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
 
 
 def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
-    """Whether it speaks of a part or of something else that the name does not speak of."""
+    """Whether a candidate is about a part or another subject that the name does not mention."""
     element = re.search(r"\[([^\[\]]*\D[^\[\]]*)\]$", candidate.value)
     if element is not None:
         return not any(is_found(word, wanted.words) for word in words_of(element[1]))
@@ -182,7 +180,7 @@ def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
 
 
 def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
-    """Whether the last words of a topic, or a field, are those of an event and no others."""
+    """Whether the last words of a topic are those of an event and no others; fields always fit."""
     if candidate.value not in ("", "data"):
         return True
     last = words_of(candidate.topic.name.rpartition("/")[2])
@@ -190,7 +188,7 @@ def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
 
 
 def _is_along(wanted: Wanted, candidate: Candidate) -> bool:
-    """Whether it is along the axis that is asked for, or that goes without saying."""
+    """Whether a candidate has the axis of the name, or the usual one."""
     if wanted.axis or not candidate.axis:
         return wanted.axis == candidate.axis
     if candidate.value.endswith("linear.x") and "speed" in wanted.words:
@@ -207,13 +205,13 @@ def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
             return False
         is_magnetic = dimension == parse_unit("T").dimension
         if candidate.meaning.is_scaled or (is_magnetic and candidate.unit is None):
-            return False  # a magnet makes thousandths of it
+            return False  # magnetic fields are often scaled by 1000: a unit must be stated
         return dimension in there if there else candidate.meaning.sort is Sort.OPEN
     return not (said and there) or not said.isdisjoint(there)
 
 
 def _score(wanted: Wanted, candidate: Candidate) -> float:
-    """How well the words are found, 0 if one is not; a little less for words that are not asked."""
+    """The score: how well the words are found, 0 if one is not, minus a bit per foreign word."""
     total = 0.0
     ignorable = EMPTY | (_REQUESTS if wanted.type is None else frozenset())
     asked = [word for word in wanted.words if word not in ignorable] or list(wanted.words)
@@ -233,21 +231,21 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
         + 0.02 * candidate.value.startswith("hypot(")
     )
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
-        better += 0.2  # a text says which label it is, a number does not
+        better += 0.2  # a text names its label, a number does not
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
     worse += 0.06 * _is_beside_another(candidate, foreign)
     return total / len(asked) + better - worse
 
 
 def _is_beside_another(candidate: Candidate, foreign: Iterable[str]) -> bool:
-    """Whether its topic is called by another quantity: an acceleration among positions."""
+    """Whether its topic is named after another quantity, as an acceleration among positions."""
     named = {*words_of(candidate.topic.name)} & {*foreign}
     others = [own for word in named if (own := dimensions_of([word]))]
     return any(own.isdisjoint(candidate.dimensions) for own in others if candidate.dimensions)
 
 
 def _is_short_for(value: str, name: str) -> bool:
-    """Whether a field is called by a name, or shorter: `hdg` is `heading`, `yaw` another word."""
+    """Whether a field is a subsequence of a name: `hdg` of `heading`, but not `yaw`."""
     letters = iter(name.casefold())
     return all(letter in letters for letter in value.casefold())
 

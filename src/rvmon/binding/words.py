@@ -1,4 +1,4 @@
-"""The words of names, topics and fields, and what they say of a quantity."""
+"""The vocabulary of names, topics and fields: synonyms, modifiers, quantities and units."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _SAME = {
     "integral": "integ",
     "variance": "var variances",
 }
-"""Words that people use for the same, by the one that stands for them."""
+"""Synonyms by canonical word."""
 
 _CANONICAL = {word: one for one, words in _SAME.items() for word in words.split()}
 
@@ -73,22 +73,22 @@ _JOINED = {
     "vservo": ("servo", "voltage"),
     "vcc": ("board", "voltage"),
 }
-"""Words that are written as one."""
+"""Compounds and abbreviations, split into words."""
 
 _OF_PLACES = _set("altitude latitude longitude timestamp x y z")
-"""What `ref_…` is the origin of: of other quantities a reference is what is commanded."""
+"""Quantities whose reference is an origin; for others, `ref` means a command."""
 
 EMPTY = _set(
     "a actual at base body data has in is it joint measured msg my of on own robot self",
     "sensor signal the value vehicle values ego reading link frame fmu out travel driving",
 )
-"""Words that say nothing of what is meant."""
+"""Words without meaning for the match."""
 
 PLACES = _set("base body frame link joint fmu")
-"""Of them those that say something where a field has no other word."""
+"""Those of `EMPTY` that count if a field has no other word."""
 
 WEAK = frozenset({"imu", "ground", "horizontal"})
-"""Words that need not be found where nothing else is said of the same."""
+"""Words that need not be found if there is no foreign word."""
 
 MODIFIERS = _set(
     "command error tolerance limit minimum maximum offset bias variance accuracy delta",
@@ -97,29 +97,29 @@ MODIFIERS = _set(
     "full nominal rated input output",
     "fault failsafe failure innovation drift index id device",
 )
-"""Words that make another quantity of what they stand beside."""
+"""Words that turn a quantity into another one."""
 
 OF_TOPICS = _set("innovation variance bias error drift home origin")
-"""Of these words those that make another quantity of all that a topic says."""
+"""Those of `MODIFIERS` that apply to all fields if they are in the name of a topic."""
 
 OF_COMMENTS = OF_TOPICS | _set("accuracy covariance limit tolerance")
-"""Of them those that do so where a comment says them."""
+"""Those that apply if they are in a comment."""
 
 SUBJECTS = _set(
     "wind water air person pedestrian human people obstacle object ball door target lead other",
     "engine motor fan pump thruster propeller gimbal load fuel cpu gpu ambient external internal",
     "gripper hand finger trailer fork lift manual stick",
 )
-"""Words for what is not the robot as a whole: what is said of them is not said of it."""
+"""Subjects other than the robot as a whole; their quantities are not the robot's."""
 
 OF_SURROUNDINGS = frozenset({"humidity", "illuminance"})
-"""Quantities of what is around a robot, and of no part of it."""
+"""Quantities of the surroundings, never of a part of the robot."""
 
 ORDINALS = {
     **dict.fromkeys(("leader", "lead", "first", "master", "primary"), "1"),
     **dict.fromkeys(("follower", "second", "slave", "secondary"), "2"),
 }
-"""Words that people use for the first and the second of several."""
+"""Words for the first and the second of several."""
 
 _QUANTITIES = {
     "speed": "m/s rad/s",
@@ -180,12 +180,12 @@ _QUANTITIES = {
     "flow": "m^3/s",
     "magnetometer": "T",
 }
-"""Units of the quantities that words stand for."""
+"""Units by quantity word."""
 
 AXES = ("x", "y", "z")
 
 _TELLING = frozenset({"degC K", "V", "A", "W", "J", "Pa", "N"})
-"""Units of which each is of one quantity."""
+"""Units that identify a single quantity."""
 
 _TURNING = frozenset({"angular", "yaw", "turn", "turning", "roll", "pitch", "gyro", "steering"})
 
