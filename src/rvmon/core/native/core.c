@@ -383,7 +383,7 @@ int rv_finish(rv_monitor *m, int64_t t)
     if ((t != RV_NO_TIME) && !is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
-    if ((m->dense_until != RV_NO_TIME) && !m->finished && !m->spoilt) {
+    if ((m->dense_until != RV_NO_TIME) && !m->spoilt) {
         m->dense_until = least(m->dense_until, end);
         end_dense(m);
     }

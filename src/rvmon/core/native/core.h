@@ -94,7 +94,6 @@ typedef struct {
     uint8_t of_position;       /* 1: measures a position, not an attempt */
 } rv_margin;
 
-typedef struct rv_plan rv_plan;
 typedef struct rv_monitor rv_monitor;
 
 /* Where a monitor gets its memory. Either three functions that behave as malloc, realloc and free,
@@ -111,13 +110,12 @@ typedef struct {
 /* Return codes. */
 enum {
     RV_OK = 0,
-    RV_BAD_PLAN = 1,
-    RV_NO_MEMORY = 2,
-    RV_TOO_EARLY = 3,          /* not later than what was already judged */
-    RV_OUT_OF_RANGE = 4,       /* an instant outside (-2^62, 2^62) */
-    RV_FINISHED = 5,           /* rv_finish was called; only rv_reset starts over */
-    RV_BAD_SNAPSHOT = 6,       /* made for another plan, or damaged */
-    RV_NOT_FRESH = 7           /* rv_load needs a monitor without samples */
+    RV_NO_MEMORY = 1,
+    RV_TOO_EARLY = 2,          /* not later than what was already judged */
+    RV_OUT_OF_RANGE = 3,       /* an instant outside (-2^62, 2^62) */
+    RV_FINISHED = 4,           /* rv_finish was called; only rv_reset starts over */
+    RV_BAD_SNAPSHOT = 5,       /* made for another plan, or damaged */
+    RV_NOT_FRESH = 6           /* rv_load needs a monitor without samples */
 };
 
 /* Validate a plan. Returns -1 if it is valid, else the number of the first section found wrong

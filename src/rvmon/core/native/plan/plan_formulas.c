@@ -234,7 +234,7 @@ static bool check_window(const plan *p, const part_plan *x, const node_plan *n)
     const int32_t *operands = &p->lists[n->operands.first];
     int32_t i;
     if (!is_within(fold, 0, FOLDS) || !is_within(n->b, 0, 2 * WINDOW_NUMBER) || (n->most < 0)
-        || (n->most > MOST) || (alone ? !check_program(p, x, n->low) : !is_within(n->low, 0, x->amounts))
+        || (alone ? !check_program(p, x, n->low) : !is_within(n->low, 0, x->amounts))
         || (alone && (fold > FOLD_DISTINCT))
         || ((fold == FOLD_AGO) && ((n->high >= LIMIT) || (n->most > 0)))
         || !is_within(n->chosen, 1, n->operands.count + 1)

@@ -173,7 +173,7 @@ static PyObject *advance_of(monitor *c, PyObject *until)
         return NULL;
     }
     code = rv_advance(c->m, (int64_t)t);
-    return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
+    return is_done(code) ? Py_NewRef(Py_None) : NULL;
 }
 
 /* finish(t or None): the last instant of the trace, or None. */
