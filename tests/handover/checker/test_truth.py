@@ -348,15 +348,16 @@ def test_each_requirement_on_the_world_can_fail():
     assert own == {name for name in told | set(BY_SAMPLES) if name.startswith("T")}
 
 
-@pytest.mark.parametrize(
-    "test",
-    [
-        *pseudorandom(2, seed=4),
-        *constrained(2, seed=4),
-        *model_based(4, seed=2),
-        *disturbed(6, seed=1),
-    ],
-)
-def test_the_correct_robot_owes_nothing(test):
+GENERATED = {
+    "pseudorandom": lambda: pseudorandom(2, seed=4),
+    "constrained": lambda: constrained(2, seed=4),
+    "model-based": lambda: model_based(4, seed=2),
+    "disturbed": lambda: disturbed(6, seed=1),
+}
+
+
+@pytest.mark.parametrize("strategy", GENERATED)
+def test_the_correct_robot_owes_nothing(strategy):
     """In generated tests it fails none of its requirements, whatever sensors and person do."""
-    assert failed(test) == set()
+    for test in GENERATED[strategy]():
+        assert failed(test) == set(), test.name

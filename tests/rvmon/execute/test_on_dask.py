@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,8 @@ from rvmon.cli import main
 from rvmon.errors import RvmonError, WorkerLostError
 from rvmon.execute.parallel import execute
 
-pytest.importorskip("distributed", reason="needs rvmon[dask]")
 pytestmark = [
+    pytest.mark.skipif(find_spec("distributed") is None, reason="needs rvmon[dask]"),
     pytest.mark.process,
     pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),

@@ -4,9 +4,6 @@ import pytest
 
 import rvmon
 
-pytest.importorskip("can")
-pytest.importorskip("cantools")
-
 DATABASE = """VERSION ""
 BS_:
 BU_: ECU
@@ -18,6 +15,8 @@ FRAMES = "(1.0) can0 064#0500\n(1.5) can0 0C8#1E00\n(2.0) can0 064#0700\n(2.5) c
 
 def test_messages_of_one_name_are_told_apart_by_their_identifiers(tmp_path):
     """No frame is read as another message: each database speaks of its own."""
+    for package in ("can", "cantools"):
+        pytest.importorskip(package)
     (tmp_path / "a.dbc").write_text(DATABASE.format(number=100, signal="speed", scale=1))
     (tmp_path / "b.dbc").write_text(DATABASE.format(number=200, signal="temp", scale=2))
     (tmp_path / "a.log").write_text(FRAMES)
