@@ -57,7 +57,7 @@ class Exported:
 
     def compile(self, command: Sequence[str]) -> None:
         """Compile the program, by a compiler with its options."""
-        sources = [str(DRIVER), str(Path(_core(tuple(command)).name) / "rvmon_core.o")]
+        sources = [str(DRIVER), str(core_object(*command))]
         line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
         subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
@@ -118,6 +118,11 @@ class Exported:
         rows = np.frombuffer(records, RECORD)
         values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]
+
+
+def core_object(*command: str) -> Path:
+    """The core as a compiler with its options makes it, once for all that ask."""
+    return Path(_core(command).name) / "rvmon_core.o"
 
 
 @cache
