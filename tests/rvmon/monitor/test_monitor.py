@@ -5,7 +5,7 @@ import math
 import pytest
 
 import rvmon
-from rvmon.errors import TraceError, UnknownNameError
+from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
 from rvmon.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -92,6 +92,19 @@ def test_an_impossible_time_is_an_error(monitor, t):
     ):
         with pytest.raises(TraceError):
             call()
+
+
+def test_time_never_goes_back(monitor):
+    """Equal and earlier samples, and those before an advance, raise and change nothing."""
+    monitor.step(1, {"ready": True})
+    for t in (1, 0.5):
+        with pytest.raises(TimeOrderError):
+            monitor.step(t, {"sensed": True})
+    monitor.advance(3)
+    with pytest.raises(TimeOrderError):
+        monitor.step(2, {"sensed": True})
+    monitor.step(3, {"sensed": True})
+    assert brief(monitor.finish().attempts) == [("R1", 1, "I", None)]
 
 
 def test_a_name_without_source_is_unknown_and_must_not_arrive():
