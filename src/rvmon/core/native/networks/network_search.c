@@ -294,8 +294,8 @@ static int64_t next_new(const judging *g, int64_t position)
     return found;
 }
 
-/* Decide the attempts at positions that the last step made known, at `t`. They are in the order of their
- * positions; those before the next position with news are passed over. */
+/* Decide the attempts at positions that the last step made known, at `t`. They are in the order of
+ * their positions; those before the next position with news are passed over. */
 void judge_news(judging *g, int64_t t)
 {
     int64_t asked = -NEVER;

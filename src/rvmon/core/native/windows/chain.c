@@ -1,25 +1,27 @@
-/* Windows within windows over what a letter decides: what is known of them is known in order, so all
- * that has to be kept is where values change.
+/* The values of a chain of windows, kept as lists of changes (windows.h).
  *
- * A value of the base changes at some positions; so does the value of each window over it. A stretch
- * on which one position decides begins as far before that of the operand as the window reaches, and
- * ends as its last position leaves the window; shorter gaps vanish. So one change of the base is one
- * of each window: it comes to stand behind the others, or takes the last one away. The lists hold what
- * will be if the letter stays: a change that lies ahead is taken back if it does not.
+ * The base, and each window over it, has a list of the positions at which its value toggles. Say that
+ * an operand has the value that decides its window alone (TRUE of F, FALSE of G) on [s, e]: then the
+ * window [low, high] has it on [s - high, e - low]. So these stretches begin earlier, gaps between
+ * them shrink, and a gap that is too short vanishes. Hence one change of the base makes one change of
+ * each level: it is appended to the list, or it takes the last one away. A letter costs O(depth),
+ * however long windows are.
  *
- * When something is known is told by stamps: 2 t as time comes to t, 2 t + 1 as the letter there is
- * known. From the first unknown letter on there are two readings, the unknown taken for the worse and
- * for the better.
+ * The lists hold what will be if the letter stays; a change that lies ahead is taken back if it does
+ * not. What is *known* of a position is a matter of stamps: value_of_chain() finds the positions that
+ * decide it, level by level, and the stamp at which the last of them is known.
  *
- * Source: AUTOMATA 4. */
+ * From the first unknown letter on there are two readings, the unknown taken for the worse and for the
+ * better. Source: docs/explanation/automata.md, section 4. */
 #include "windows/windows.h"
 
 #include <string.h>
 
-/* Letters after which what is known is dropped. */
+/* Letters between two clean-ups, whose cost they share. */
 #define FORGETS_EVERY 8
 
-/* The stamp of time `over` ticks behind a position, or of the letter there. */
+/* The stamp of the instant `over` ticks behind a position, as time comes there, or as its letter is
+ * known. */
 static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
 {
     int64_t t;
@@ -30,12 +32,13 @@ static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool 
     return (t >= LIMIT) ? NEVER_KNOWN : 2 * t + (letter ? 1 : 0);
 }
 
+/* The window of a level, from 1. */
 static const operator_plan *window_at(const chaining *g, int32_t level)
 {
     return &g->f.nodes[g->windows[level - 1]];
 }
 
-/* The first position from which a window reaches one. */
+/* The first position whose window reaches `position`; of samples, the first one that is near enough. */
 static int64_t reached_from(const chaining *g, int64_t position, int64_t distance)
 {
     changes *stamps = &g->c->stamps;
@@ -47,7 +50,9 @@ static int64_t reached_from(const chaining *g, int64_t position, int64_t distanc
     return change_at(stamps, (i < stamps->count) ? i : stamps->count - 1);
 }
 
-/* Take a change of the base at a position into all levels. */
+/* Carry a change of the base at a position through all levels; `value`: its value from there on. All
+ * levels change in the same direction. On each level either a change is appended at `position`
+ * (`added`), or the last one is removed, and was at `position`. */
 static void note_change(const chaining *g, chain_reading *w, int64_t at, bool value)
 {
     rv_monitor *m = g->f.monitor;
@@ -61,11 +66,11 @@ static void note_change(const chaining *g, chain_reading *w, int64_t at, bool va
         changes *own = &w->levels[level];
         const bool decides = (n->turned != 0) ? !value : value;
         int64_t start;
-        if (decides == added) { /* what decides begins here, or does not any more */
+        if (decides == added) { /* a stretch of the deciding value begins here, or is taken back */
             start = reached_from(g, position, n->high);
             if (added) {
                 added = !((own->count > 0) && (last_change(own) >= start));
-            } else { /* the stretch before, if that was joined to it, ends again */
+            } else { /* it may have been merged with the one before, which now ends again on its own */
                 position = (given->count > 0) ? moved(last_change(given), -n->low) : start - 1;
                 added = position >= start;
                 start = position;
@@ -83,12 +88,13 @@ static void note_change(const chaining *g, chain_reading *w, int64_t at, bool va
             position = last_change(own);
             own->count--;
         } else {
-            m->spoilt = true; /* no plan of ours comes here */
+            m->spoilt = true; /* only a forged plan or snapshot gets here */
             return;
         }
     }
 }
 
+/* Start a reading at a position, as if the letter there had been so all along. */
 void begin_reading(const chaining *g, chain_reading *w, int64_t position, int32_t bit)
 {
     int32_t level;
@@ -100,7 +106,7 @@ void begin_reading(const chaining *g, chain_reading *w, int64_t position, int32_
     w->start = position;
 }
 
-/* Ticks after which a position is known at the latest, or only leads on to later ones. */
+/* Ticks after which a position of the whole chain is known at the latest. */
 static int64_t reach_of(const chaining *g)
 {
     int64_t reach = 0;
@@ -111,14 +117,16 @@ static int64_t reach_of(const chaining *g)
     return reach;
 }
 
-/* Drop now and then what lies before all that is not known at a position. */
+/* Drop changes and samples that no position still to be known can depend on: those further back than
+ * the chain reaches. `position`: of the letter at hand. */
 void forget_before(const chaining *g, int64_t position)
 {
     int64_t start;
     int32_t i;
     int32_t level;
     g->c->kept++;
-    if ((g->c->kept < FORGETS_EVERY) && !g->c->parted) { /* readings that agree have dropped as much */
+    if ((g->c->kept < FORGETS_EVERY) && !g->c->parted) { /* two readings: always, so that equal ones
+                                                          * have equal lists */
         return;
     }
     g->c->kept = 0;
@@ -156,6 +164,7 @@ static bool readings_agree(const chaining *g)
            && (a->start == b->start);
 }
 
+/* The first unknown letter: the better reading begins as a copy of the worse one. */
 static void split_readings(const chaining *g)
 {
     const chain_reading *w = &g->c->readings[0];
@@ -170,6 +179,7 @@ static void split_readings(const chaining *g)
     g->c->parted = true;
 }
 
+/* Whether nothing in a letter is unknown. */
 bool is_known(const uint8_t *letter)
 {
     int32_t i;
@@ -181,7 +191,7 @@ bool is_known(const uint8_t *letter)
     return true;
 }
 
-/* Take the letter at a position; it stays until the next one. */
+/* Take another letter, from a position on. */
 void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
 {
     chain *c = g->c;
@@ -209,7 +219,11 @@ void note_letter(const chaining *g, int64_t position, const uint8_t *letter)
     }
 }
 
-/* The value of the chain at a position, and the stamp as of which it is known. */
+/* The value of the chain at a position if the letter stays, and the stamp at which it is known.
+ *
+ * From the outermost window in: if a position of the window has the deciding value, the first such one
+ * is what has to be known; else all have to be, so the last one of the window, and the window has to
+ * be over (`over`). `position` ends at the one of the base that is known last. */
 static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     changes *stamps = &g->c->stamps;
@@ -247,7 +261,8 @@ static bool value_of_chain(const chaining *g, chain_reading *w, int64_t at, int6
     return value;
 }
 
-/* The first position from one on at which a value is so; NEVER_KNOWN: none if the letter stays. */
+/* The first position at or behind another at which a value is `wanted`; NEVER_KNOWN: none if the letter
+ * stays. */
 static int64_t first_from(changes *c, int64_t position, bool wanted)
 {
     const int32_t i = changes_until(c, position);
@@ -257,7 +272,7 @@ static int64_t first_from(changes *c, int64_t position, bool wanted)
     return (i < c->count) ? change_at(c, i) : NEVER_KNOWN;
 }
 
-/* The first position from one on at which what is kept up is false. */
+/* The first position at or behind another at which the chain is false and not excused. */
 int64_t first_failure(const chaining *g, chain_reading *w, int64_t position)
 {
     int64_t at = position;
@@ -272,7 +287,7 @@ int64_t first_failure(const chaining *g, chain_reading *w, int64_t position)
     }
 }
 
-/* The last position before one at which the windows matter. */
+/* The last position before another at which the chain is not excused; INT64_MIN: none is known. */
 static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behind)
 {
     const int32_t i = changes_until(&w->excused, behind - 1);
@@ -290,7 +305,8 @@ static int64_t last_mattering(const chaining *g, chain_reading *w, int64_t behin
     return end - 1;
 }
 
-/* The stamp as of which all is known of what is kept up from one position to before another. */
+/* The stamp at which it is known that the chain held, or was excused, on [first, behind). As it is
+ * known in order, that of the last position that matters. */
 int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
                              int64_t behind)
 {
@@ -302,8 +318,8 @@ int64_t known_between(const chaining *g, chain_reading *w, int64_t first,
     return stamp;
 }
 
-/* The value of the whole formula, which may keep the chain up until something ends that, and the stamp
- * as of which it is known. */
+/* The value of the whole formula for an attempt at a position, and the stamp at which it is known: the
+ * chain there, or the chain at every position until `ends` holds (there, too). */
 bool outcome_of(const chaining *g, chain_reading *w, int64_t at, int64_t *stamp)
 {
     int64_t position = at;

@@ -1,4 +1,8 @@
-/* Attempts that a chain of windows judges; see chain.c. */
+/* Attempts that a chain of windows judges (windows.h), and rings of changes.
+ *
+ * A letter that changes updates the chain; then attempts are judged, the oldest first, until one is
+ * still open: with one reading the younger ones are, too. So a letter costs the attempts that it
+ * decides, and O(depth * log changes) for the first open one, at whose stamp the judge is due next. */
 #include "windows/windows.h"
 
 #include <string.h>
@@ -23,7 +27,7 @@ chaining chaining_of(run *r, int32_t index)
     return g;
 }
 
-/* The chain of a judge, made when it is used first; NULL: memory is short. */
+/* A new chain; NULL: memory is short. A judge has it made at its first letter. */
 chain *made_chain(const chaining *g)
 {
     arena *a = &g->f.monitor->memory;
@@ -44,12 +48,13 @@ chain *made_chain(const chaining *g)
     return made;
 }
 
+/* A leaf by the truth of its node: 1 if true for the worse, plus 2 if true for the better. */
 static uint8_t leaf_bits(const chaining *g, const operator_plan *n)
 {
     return (uint8_t)n->values[(n->right < 0) ? 0 : (int32_t)g->r->truth[n->right]];
 }
 
-/* The base as the letter makes it: 1 if it is true for the worse, and 2 for the better. */
+/* The base at this position, in the same form. */
 static uint8_t base_bits(const chaining *g)
 {
     const int32_t base = g->f.form->base;
@@ -68,7 +73,7 @@ static uint8_t base_bits(const chaining *g)
                 bits = (uint8_t)((n->turned != 0) ? (bits & one) : (bits | one));
             }
         } else {
-            /* Nothing of the base. */
+            /* A window: not part of the base. */
         }
         g->c->values[i] = bits;
     }
@@ -80,14 +85,14 @@ static int64_t position_of_attempt(const attempt *x)
     return x->clocks[0];
 }
 
-/* The instant of a stamp, before 0 too. */
+/* The instant of a stamp; rounds down for negative ones, too. */
 static int64_t instant_of_stamp(int64_t stamp)
 {
     return (stamp - (stamp & 1)) / 2;
 }
 
-/* Judge one attempt by a stamp; false if it was decided. `due` is the stamp at which it will be if the
- * letter stays. */
+/* Judge one attempt by what is known as of the stamp `limit`; false: it is decided. `due`: the stamp at
+ * which it will be if the letter stays. */
 static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
 {
     attempt *x = attempt_at(g->r->home, at);
@@ -97,7 +102,7 @@ static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     int64_t stamp;
     bool worse = false;
     bool better = true;
-    /* What is known of a reading may be forgotten since. */
+    /* A reading that has failed, or passed, is not asked again: its changes may be dropped. */
     if (x->location != FAILED) {
         worse = outcome_of(g, &g->c->readings[0], position, &worse_stamp);
     }
@@ -107,7 +112,7 @@ static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     } else if (x->better != PASSED) {
         better = outcome_of(g, &g->c->readings[g->c->parted ? 1 : 0], position, &better_stamp);
     } else {
-        /* It is known to be true for the better. */
+        /* The better reading has passed. */
     }
     stamp = least(worse ? worse_stamp : NEVER_KNOWN, better ? NEVER_KNOWN : better_stamp);
     if (stamp <= limit) {
@@ -126,7 +131,7 @@ static bool judge_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     return true;
 }
 
-/* Judge the attempts by all that is known as of a stamp. */
+/* Judge the attempts by what is known as of a stamp, and set when the judge is due. */
 static void judge_chain_attempts(chaining *g, int64_t limit)
 {
     int64_t next_due = NEVER_KNOWN;
@@ -146,7 +151,7 @@ static void judge_chain_attempts(chaining *g, int64_t limit)
             next_due = least(next_due, due);
             before = at;
             if (!g->c->parted && !attempt_at(g->r->home, at)->parted) {
-                break; /* what is known is known in order */
+                break; /* values are known in the order of positions: younger attempts are open, too */
             }
         }
         at = next;
@@ -154,6 +159,7 @@ static void judge_chain_attempts(chaining *g, int64_t limit)
     set_rule_due(g->r, g->index, (next_due == NEVER_KNOWN) ? NEVER : instant_of_stamp(next_due));
 }
 
+/* The letter at this position. */
 static void read_letter(const chaining *g, uint8_t *letter)
 {
     const form_plan *own = g->f.form;
@@ -162,7 +168,7 @@ static void read_letter(const chaining *g, uint8_t *letter)
     letter[EXCUSED] = (own->excused < 0) ? 0 : leaf_bits(g, &g->f.nodes[own->excused]);
 }
 
-/* Begin at a position: no attempt asks for what was before. */
+/* Begin at a position: windows reach ahead only, so what was before does not matter. */
 static void begin_chain(const chaining *g, int64_t position, const uint8_t *letter)
 {
     chain *c = g->c;
@@ -177,7 +183,8 @@ static void begin_chain(const chaining *g, int64_t position, const uint8_t *lett
     }
 }
 
-/* Come to the position at `t`, at which the truths are. */
+/* Visit the position at `t`, whose truths the nodes have. Without open attempts letters are not
+ * followed: the chain begins anew. */
 void chain_visit(run *r, int32_t index, int64_t t)
 {
     chaining g = chaining_of(r, index);
@@ -197,7 +204,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
         return;
     } else {
         if (g.c->parted) {
-            judge_chain_attempts(&g, 2 * t); /* see who stays open for good, before that is forgotten */
+            judge_chain_attempts(&g, 2 * t); /* readings that ended, before their changes are dropped */
         }
         if (g.sparse) {
             add_change(g.f.monitor, &g.c->stamps, position);
@@ -208,9 +215,9 @@ void chain_visit(run *r, int32_t index, int64_t t)
             forget_before(&g, position);
         } else if (t < r->rules.due[index]) {
             g.j->position = t;
-            return; /* another letter like the last one decides nothing sooner */
+            return; /* the letter stays, as the due instant assumes */
         } else {
-            /* Something is due. */
+            /* An attempt is due. */
         }
     }
     g.j->position = t;
@@ -221,7 +228,7 @@ void chain_visit(run *r, int32_t index, int64_t t)
     judge_chain_attempts(&g, 2 * t + 1);
 }
 
-/* Let time come to `t`; if `is_position`, the letter stays up to there. */
+/* Let time come to `t`; `is_position`: the letter stays up to there, else it is not known at `t`. */
 void chain_pass(run *r, int32_t index, int64_t t, bool is_position)
 {
     chaining g = chaining_of(r, index);
@@ -230,14 +237,14 @@ void chain_pass(run *r, int32_t index, int64_t t, bool is_position)
     }
 }
 
-/* Let an attempt begin at the position at `t`, to which its chain has come. */
+/* Start an attempt at `t`, whose letter was read; false: it is decided. */
 bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     chaining g = chaining_of(r, index);
     attempt *x = attempt_at(r->home, at);
     int64_t due = NEVER_KNOWN;
     if ((g.c == NULL) || g.f.monitor->spoilt) {
-        return true; /* the run is spoilt */
+        return true; /* memory was short */
     }
     x->clocks[0] = (g.f.gap > 0) ? floored(t, g.f.step) : t;
     if (!judge_in_chain(&g, at, 2 * t + 1, &due)) {
@@ -247,7 +254,8 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
     return true;
 }
 
-/* Whether an attempt was kept up to the end of the trace, so far as that is known. */
+/* Whether an open attempt counts as TRUE at the end of the trace: what is required until something ends
+ * it has not failed at any position up to there, and all of that is known. */
 bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
     chaining g = chaining_of(r, index);
@@ -264,7 +272,8 @@ bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_
            && (known_between(&g, w, position, last + 1) <= later(2 * reached, 2 * end + 1));
 }
 
-/* Positions at which a value changes, as a ring. */
+/* ---- changes: the positions at which a Boolean value toggles, in order, as a ring; `begun` is the
+ * value before all of them */
 
 int64_t change_at(const changes *c, int32_t i)
 {
@@ -276,6 +285,7 @@ int64_t last_change(const changes *c)
     return change_at(c, c->count - 1);
 }
 
+/* Append a change; the ring doubles as needed. Memory short: the run is spoilt. */
 void add_change(rv_monitor *m, changes *c, int64_t position)
 {
     if (c->count == c->room) {
@@ -331,11 +341,11 @@ void clear_changes(changes *c, bool value)
     c->begun = value;
 }
 
-/* So many changes are looked at one by one from where it was asked last; beyond, halves are. */
+/* Changes that are tried one by one from the last query on; beyond, halving is faster. */
 #define NEAR 4
 
-/* How many changes there are up to a position: mostly all, or hardly more than when it was asked last.
- * Which half is next nobody can foretell: so these steps are chosen without a branch. */
+/* How many changes there are up to a position. Queries mostly ask for the end of the list, or a little
+ * behind the one before (`asked`); only then halving, without a branch that would be mispredicted. */
 int32_t changes_until(changes *c, int64_t position)
 {
     int32_t low = (c->asked < c->count) ? c->asked : 0;
@@ -349,7 +359,7 @@ int32_t changes_until(changes *c, int64_t position)
         low = 0;
     } else {
         for (i = 0; i < NEAR; i++) {
-            if (change_at(c, low) > position) { /* the last one is */
+            if (change_at(c, low) > position) { /* at the last one if not before */
                 c->asked = low;
                 return low;
             }
@@ -367,12 +377,13 @@ int32_t changes_until(changes *c, int64_t position)
     return low;
 }
 
+/* The value behind the first `count` changes. */
 bool value_behind(const changes *c, int32_t count)
 {
     return c->begun != ((count & 1) == 1);
 }
 
-/* Drop the changes before a position. */
+/* Drop the changes before a position; the value before the rest follows from how many they were. */
 void drop_changes(changes *c, int64_t position)
 {
     while ((c->count > 0) && (change_at(c, 0) < position)) {
