@@ -80,10 +80,10 @@ def test_what_waits_long_does_not_hang(campaign, changed, monkeypatch):
 
     class Waits(System):
         def play(self, test, observer):
-            time.sleep(0.7)
+            time.sleep(2.0)
             return super().play(test, observer)
 
-    monkeypatch.setattr(play, "PATIENCE_S", 0.0)
+    monkeypatch.setattr(play, "PATIENCE_S", 1.0)
     path = Path(next(iter(campaign.code.constants)))
     robot = cdv.Robot(lambda: Waits(path), campaign.robots["lift"].spec)
     suite = record_suite(replace(campaign, robots={"lift": robot}), "lift", rides(1, 1), jobs=1)
