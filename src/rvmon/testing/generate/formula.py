@@ -56,7 +56,7 @@ def atom(rng: Rng, shape: Shape) -> Formula:
             (22 if shape.events else 0, "event"),
             ((60 if shape.wide else 18) if shape.numbers else 0, "compare"),
             (6 if shape.numbers else 0, "probe"),
-            (2, "constant"),
+            (shape.constants, "constant"),
             (2, "start"),
         ),
     )

@@ -51,6 +51,7 @@ class Shape:
         events: whether events may be read.
         captured: names of captured numbers that may be read.
         wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
+        constants: how often a proposition is a constant, beside about 100 others.
         longest: the greatest bound of an interval, ticks.
         amounts: how often what is measured in windows comes, beside about 120 of all others.
         instants: names of captured instants.
@@ -65,6 +66,7 @@ class Shape:
     events: bool = True
     captured: tuple[str, ...] = ()
     wide: bool = False
+    constants: int = 2
     longest: int = 6
     amounts: int = 0
     instants: tuple[str, ...] = ()

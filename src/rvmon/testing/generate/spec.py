@@ -73,6 +73,7 @@ class Profile:
         wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
             computed with.
         numbers: whether comparisons and probes may occur.
+        constants: how often a proposition is true or false for ever, beside about 100 others.
         amounts: how often what is measured in windows comes, beside about 120 of all others.
         form: the only one of these, at least one in each specification: a name (`mean`), or
             `expression` of several, which may
@@ -94,6 +95,7 @@ class Profile:
     many: int = 0
     crowded: int = 0
     wide: int = 0
+    constants: int = 2
     amounts: int = 0
     form: str = ""
     numbers: bool = True
@@ -175,6 +177,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         events=profile.events,
         captured=(*instance, *(one.name for one in captures if one.name not in instants)),
         wide=profile.wide > 0,
+        constants=profile.constants,
         amounts=profile.amounts,
         instants=instants,
         form=profile.form,
@@ -187,6 +190,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         events=profile.events,
         captured=instance,
         wide=profile.wide > 0,
+        constants=profile.constants,
         amounts=0 if since else profile.amounts,
         form=profile.form,
     )
