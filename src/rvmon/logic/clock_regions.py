@@ -26,7 +26,7 @@ Cuts = Sequence[Sequence[int]]
 def point_zone(ages: Sequence[int]) -> Ages:
     """The zone in which every clock has a known age.
 
-    >>> exactly([5, 2])
+    >>> point_zone([5, 2])
     ((0, -5, -2), (5, 0, 3), (2, -3, 0))
     """
     known = (0, *ages)
@@ -52,7 +52,7 @@ def regions_between(cuts: Sequence[int], low: int, high: int) -> range:
 def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
     """A zone intersected with an interval for each age; `None` if that is empty.
 
-    >>> within(exactly([5, 2]), [(0, 9), (3, 9)]) is None
+    >>> within(point_zone([5, 2]), [(0, 9), (3, 9)]) is None
     True
     """
     found = [[*row] for row in ages]
@@ -80,7 +80,7 @@ def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
 def after(ages: Ages, longest: int) -> Ages:
     """The zone after 1 to `longest` ticks have passed; `longest` is 1 or `NEVER`.
 
-    >>> after(exactly([5, 2]), 1) == exactly([6, 3])
+    >>> after(point_zone([5, 2]), 1) == point_zone([6, 3])
     True
     """
     none, *rest = ages
