@@ -368,6 +368,8 @@ def test_a_figure_is_a_value():
     assert position == type(position)("R1", None, 0, type(position.robustness)(0.01, 0.01, 0.01))
     assert hash(position) == hash(copy.deepcopy(position))
     assert pickle.loads(pickle.dumps(position)) == position != attempt  # noqa: S301 - ours
+    with pytest.raises(AttributeError, match="robustness"):
+        object.__delattr__(position, "robustness")
     with pytest.raises(FrozenInstanceError):
         position.t = 1
     with pytest.raises(TypeError):

@@ -61,7 +61,11 @@ static int set_robustness(PyObject *self, PyObject *value, void *unused)
     figure_object *own = (figure_object *)self;
     PyObject *was = own->kind;
     (void)unused;
-    if ((value == NULL) || !derives(Py_TYPE(value), bounds_dealloc)) {
+    if (value == NULL) {
+        PyErr_SetString(PyExc_AttributeError, "robustness");
+        return -1;
+    }
+    if (!derives(Py_TYPE(value), bounds_dealloc)) {
         return -1;
     }
     own->low = ((bounds_object *)value)->low;
