@@ -61,7 +61,7 @@ def nesting(part: Formula) -> int:
 def measure(options: argparse.Namespace) -> int:
     """Draw, build, measure, print."""
     seconds: list[tuple[float, str]] = []
-    sizes: list[tuple[Size, Size, Size]] = []
+    sizes: list[tuple[Size, Size]] = []
     refused: Counter[str] = Counter()
     forecasts: list[tuple[float, str]] = []
     drawn = 0
@@ -99,22 +99,20 @@ def _forecast(automaton: Automaton, rng: random.Random) -> Iterator[float]:
         yield time.process_time() - began
 
 
-def _built(
-    required: Formula, mode: dict[str, Formula]
-) -> tuple[Automaton, tuple[Size, Size, Size]]:
-    """The automaton, and its size as made, as people are told of it, and as verdicts want it."""
+def _built(required: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Size, Size]]:
+    """The automaton, and its size as made, and as people are told of it."""
     factory = Factory()
     obligation = lower(
         requirement(required, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
     )
     whole = construct(factory.next(obligation.required), alphabet_of(obligation.required), Budget())
     told = reduce(whole, Words(obligation.origins).label)
-    return told, (Size.of(whole), Size.of(told), Size.of(reduce(told)))
+    return told, (Size.of(whole), Size.of(told))
 
 
 def _print(
     options: argparse.Namespace,
-    sizes: Sequence[tuple[Size, Size, Size]],
+    sizes: Sequence[tuple[Size, Size]],
     refused: Counter[str],
     seconds: Sequence[tuple[float, str]],
 ) -> None:
@@ -123,7 +121,7 @@ def _print(
     print(f"  automata {len(sizes)} ({100 * len(sizes) / count:.0f} %), the rest by the network:")
     for reason, number in refused.most_common():
         print(f"    {number} {reason}")
-    for place, name in enumerate(("constructed", "reduced", "for verdicts alone")):
+    for place, name in enumerate(("constructed", "reduced")):
         own = [size[place] for size in sizes]
         for what in ("locations", "clocks", "rows"):
             values = [getattr(size, what) for size in own]

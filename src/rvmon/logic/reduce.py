@@ -1,7 +1,6 @@
-"""Minimises automata: fewer locations, age regions, clocks and classes of letters.
+"""Minimises automata: fewer locations, age regions and classes of letters.
 
-Source: partition refinement after Moore 1956; elimination of dead clocks after Daws and Yovine
-1996, Reducing the number of clock variables of timed automata.
+Source: partition refinement after Moore 1956.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from itertools import product
 
 from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
 from rvmon.logic.letters import LetterClasses, LetterDiagram
-from rvmon.logic.residual import NO_CLOCK, Residual
+from rvmon.logic.residual import Residual
 
 Label = Callable[[Residual], Hashable]
 """The reported part of a residual: locations that differ in it are not merged."""
@@ -34,16 +33,15 @@ class _DraftLocation:
     rows: dict[Regions, Row]
 
 
-def reduce(automaton: Automaton, label: Label | None = None) -> Automaton:
+def reduce(automaton: Automaton, label: Label) -> Automaton:
     """Minimise an automaton; it decides the same attempts at the same instants.
 
     Args:
         automaton: as constructed.
-        label: key that merged locations must share, so that explanations stay right; clocks are
-            then kept too. `None`: only verdicts are preserved.
+        label: key that merged locations must share, so that explanations stay right.
     """
     draft = _Draft(automaton)
-    while draft.merge(label) or draft.drop_cuts() or (label is None and draft.drop_clocks()):
+    while draft.merge(label) or draft.drop_cuts():
         pass
     return draft.tables()
 
@@ -70,7 +68,7 @@ class _Draft:
 
     # Locations.
 
-    def merge(self, label: Label | None) -> bool:
+    def merge(self, label: Label) -> bool:
         """Merge equivalent locations; returns whether there were any."""
         blocks = self._numbered([self._key(index, label) for index in range(len(self.drafts))])
         while True:
@@ -80,38 +78,28 @@ class _Draft:
             if max(finer) == max(blocks):
                 break
             blocks = finer
-        if label is None:
-            blocks = self._with_initial(blocks)
-        chosen: dict[int, int] = {}
-        for index, block in enumerate(blocks):
-            # The residual of the initial location is never reported: keep that of the other one.
-            if block not in chosen or chosen[block] == self.initial:
-                chosen[block] = index
-        if len(chosen) == len(self.drafts):
+        kept = [index for index, block in enumerate(blocks) if blocks.index(block) == index]
+        if len(kept) == len(self.drafts):
             return False
-        kept = sorted(chosen.values())
         renamed = {blocks[index]: new for new, index in enumerate(kept)}
         self.initial = renamed[blocks[self.initial]]
-        known: dict[Edge, Edge] = {}
-
-        def moved(edge: Edge | None) -> Edge | None:
-            if edge is None:
-                return None
-            new = (renamed[blocks[edge[0]]], edge[1])
-            return known.setdefault(new, new)
-
+        known: dict[Edge | None, Edge | None] = {None: None}
         self.drafts = [self.drafts[index] for index in kept]
-        self._rewrite(lambda _, edge: moved(edge))
+        for draft in self.drafts:
+            for regions, (edges, time_value, end_value) in draft.rows.items():
+                for edge in {*edges} - known.keys():
+                    known[edge] = edge and (renamed[blocks[edge[0]]], edge[1])
+                moved = tuple(map(known.__getitem__, edges))
+                draft.rows[regions] = (moved, time_value, end_value)
         return True
 
-    def _key(self, index: int, label: Label | None) -> Hashable:
+    def _key(self, index: int, label: Label) -> Hashable:
         """The initial key of partition refinement."""
         if index <= PASSED or index == self.initial:
             return index
         draft = self.drafts[index]
         values = tuple(row[1:] for row in draft.rows.values())
-        labelled = None if label is None else label(draft.residual)
-        return draft.cuts, values, end_clauses(draft.residual), labelled
+        return draft.cuts, values, end_clauses(draft.residual), label(draft.residual)
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
         """The successors of a location, up to the current partition."""
@@ -124,27 +112,6 @@ class _Draft:
             return seen[key]
 
         return tuple(tuple(map(move, edges)) for edges, _, _ in self.drafts[index].rows.values())
-
-    def _with_initial(self, blocks: list[int]) -> list[int]:
-        """Merge the initial location into one with equal successors, if no edge returns to it."""
-        initial = self.initial
-        if initial <= PASSED or self.drafts[initial].cuts or self._is_entered(initial):
-            return blocks
-        moves = self._moves(initial, blocks)
-        for index in range(PASSED + 1, len(self.drafts)):
-            same = not self.drafts[index].cuts and self._moves(index, blocks) == moves
-            if index != initial and same:
-                return [blocks[index] if old == blocks[initial] else old for old in blocks]
-        return blocks
-
-    def _is_entered(self, index: int) -> bool:
-        """Whether an edge leads to a location."""
-        return any(
-            edge is not None and edge[0] == index
-            for draft in self.drafts
-            for edges, _, _ in draft.rows.values()
-            for edge in edges
-        )
 
     @staticmethod
     def _numbered(keys: list[Hashable]) -> list[int]:
@@ -168,73 +135,6 @@ class _Draft:
                         draft.rows = joined
                         found = True
         return found
-
-    # Clocks.
-
-    def drop_clocks(self) -> bool:
-        """Drop the clocks that are not read again; returns whether there were any."""
-        live = self._live_clocks()
-        kept = [
-            [clock for clock in range(len(draft.cuts)) if (index, clock) in live]
-            for index, draft in enumerate(self.drafts)
-        ]
-        if all(len(own) == len(draft.cuts) for own, draft in zip(kept, self.drafts, strict=True)):
-            return False
-
-        def moved(index: int, edge: Edge | None) -> Edge | None:
-            if edge is None:
-                return None
-            target, sources = edge
-            chosen = (sources[clock] for clock in kept[target])
-            return target, tuple(s if s < 0 else kept[index].index(s) for s in chosen)
-
-        self._rewrite(moved)
-        for draft, own in zip(self.drafts, kept, strict=True):
-            number = {old: new for new, old in enumerate(own)}
-            draft.residual = frozenset(
-                frozenset((node, number.get(clock, NO_CLOCK)) for node, clock in clause)
-                for clause in draft.residual
-            )
-            draft.rows = {
-                tuple(regions[clock] for clock in own): row for regions, row in draft.rows.items()
-            }
-            draft.cuts = tuple(draft.cuts[clock] for clock in own)
-        return True
-
-    def _live_clocks(self) -> set[tuple[int, int]]:
-        """The live clocks, as (location, clock): their age is read there or later."""
-        live = {
-            (index, clock)
-            for index, draft in enumerate(self.drafts)
-            for clock in range(len(draft.cuts))
-            if draft.cuts[clock]
-            or any(clock == test[0] for c in end_clauses(draft.residual) for test in c)
-        }
-        passed_on = {
-            (index, edge)
-            for index, draft in enumerate(self.drafts)
-            for edges, _, _ in draft.rows.values()
-            for edge in edges
-            if edge is not None
-        }
-        size = -1
-        while size < len(live):
-            size = len(live)
-            for index, (target, sources) in passed_on:
-                for clock, source in enumerate(sources):
-                    if source >= 0 and (target, clock) in live:
-                        live.add((index, source))
-        return live
-
-    def _rewrite(self, moved: Callable[[int, Edge | None], Edge | None]) -> None:
-        for index, draft in enumerate(self.drafts):
-            for regions, (edges, time_value, end_value) in draft.rows.items():
-                made = {edge: moved(index, edge) for edge in set(edges)}
-                draft.rows[regions] = (
-                    tuple([made[edge] for edge in edges]),
-                    time_value,
-                    end_value,
-                )
 
     # Tables.
 

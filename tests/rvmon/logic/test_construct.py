@@ -86,7 +86,7 @@ def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
     for number, name in enumerate(names[1:], 2):
         formula = two(formula, "or", eventually(name, 0, number))
     required, alphabet = core(formula)
-    automaton = reduce(construct(required, alphabet, Budget()))
+    automaton = reduce(construct(required, alphabet, Budget()), lambda residual: residual)
     assert alphabet.size == 2**18
     assert isinstance(automaton.class_of, LetterDiagram)
     assert automaton.classes == 19
