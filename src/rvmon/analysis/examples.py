@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
+from operator import itemgetter
 
 from rvmon.analysis.choices import SILENT, Choices, Silence, Valuation, choices_of
 from rvmon.analysis.example import Budget, Example, Found, small_step
@@ -113,7 +114,7 @@ class _Node:
     Attributes:
         samples: the samples so far.
         end: the end of the run, ticks.
-        held: the current values.
+        held: which of `_Search.held` the current values are.
         stir: the number of occurrences and of values other than false; quieter runs go first.
         at_cut: whether it waits at its end, after the last sample.
         waits: the number of waits since the last sample.
@@ -121,7 +122,7 @@ class _Node:
 
     samples: tuple[Sample, ...]
     end: int
-    held: Valuation
+    held: int
     stir: int
     at_cut: bool = False
     waits: int = 0
@@ -162,17 +163,21 @@ def shortest_examples(
     missing = set(wanted)
     examples: dict[str, Example] = {}
     seen: set[tuple[bytes, bool]] = set()
-    heap: list[tuple[int, int, int, int, _Node]] = []
+    heap: list[tuple[int, int, int, int, _Node, Iterator[_Node]]] = []
     number = count()
     runs = 0
 
-    def add(node: _Node) -> None:
-        heappush(heap, (node.effort, node.end, node.stir, next(number), node))
+    def add(nodes: Iterator[_Node], order: int) -> None:
+        """Queue the next of runs that follow each other by effort, end and stir."""
+        for node in nodes:
+            heappush(heap, (node.effort, node.end, node.stir, order, node, nodes))
+            return
 
-    for node in search.first():
-        add(node)
+    for first in search.first():
+        add(iter((first,)), next(number))
     while heap and missing and runs < budget.runs:
-        node = heappop(heap)[-1]
+        *_, order, node, nodes = heappop(heap)
+        add(nodes, order)
         played = player.play(node.samples, node.end)
         runs += 1
         kind = goal(played.example)
@@ -185,7 +190,7 @@ def shortest_examples(
         if all(verdict is Verdict.FAIL for verdict in played.example.verdicts.values()):
             continue
         for further in search.after(node, played.cut):
-            add(further)
+            add(further, next(number))
     return Found(examples, runs, not heap and search.choices.complete)
 
 
@@ -203,6 +208,9 @@ class _Search:
         self.gap = spec.period if spec.time is TimeModel.CLOCKED and spec.period else 1
         self.step = budget.step or small_step(spec, [one.requirement for one in requirements])
         self.most = budget.samples
+        self.held: list[Valuation] = []
+        self._numbers: dict[str, int] = {}
+        self._further: dict[int, list[tuple[int, dict[str, Value], Valuation]]] = {}
 
     def first(self) -> Iterator[_Node]:
         """The runs of one sample; signals have a value from the start."""
@@ -211,32 +219,48 @@ class _Search:
             for name, value in valuation.items():
                 if not isinstance(value, Silence):
                     some.setdefault(name, value)
-        tried: dict[str, Valuation] = {}
+        tried: set[int] = set()
         for valuation in self.choices.valuations:
             # At the first sample silent names get a default, lest few valuations remain.
             whole = {n: some[n] if v is SILENT else v for n, v in valuation.items() if n in some}
-            tried.setdefault(repr(whole), whole)
-        for valuation in tried.values():
-            if len(valuation) == len(some):
-                changes = self._changes(valuation, {})
-                yield _Node((Sample(0, changes),), 0, valuation, _stir(changes))
+            number = self._number(whole)
+            if len(whole) == len(some) and number not in tried:
+                tried.add(number)
+                changes = self._changes(whole, {})
+                yield _Node((Sample(0, changes),), 0, number, _stir(changes))
 
-    def after(self, node: _Node, cut: int) -> Iterator[_Node]:
-        """The runs that go on from one: by waiting, or by a sample."""
+    def after(self, node: _Node, cut: int) -> Iterator[Iterator[_Node]]:
+        """The runs that go on from one, by a sample and by waiting, each kind in order."""
         end = node.end
         if len(node.samples) < self.most:
-            t = end + (self.gap if node.at_cut else self.step)
-            for valuation in self.choices.valuations:
-                changes = self._changes(valuation, node.held)
-                if changes:
-                    held = {**node.held, **{n: v for n, v in valuation.items() if v is not SILENT}}
-                    stir = node.stir + _stir(changes)
-                    yield _Node((*node.samples, Sample(t, changes)), t, held, stir)
+            yield self._sampled(node, end + (self.gap if node.at_cut else self.step))
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
                 waits = node.waits + 1
-                yield _Node(node.samples, t, node.held, node.stir, at_cut=True, waits=waits)
+                wait = _Node(node.samples, t, node.held, node.stir, at_cut=True, waits=waits)
+                yield iter((wait,))
+
+    def _sampled(self, node: _Node, t: int) -> Iterator[_Node]:
+        held = self.held[node.held]
+        if node.held not in self._further:
+            self._further[node.held] = self._sorted(held)
+        for stir, changes, valuation in self._further[node.held]:
+            said = {name: value for name, value in valuation.items() if value is not SILENT}
+            number = self._number({**held, **said})
+            yield _Node((*node.samples, Sample(t, changes)), t, number, node.stir + stir)
+
+    def _sorted(self, held: Valuation) -> list[tuple[int, dict[str, Value], Valuation]]:
+        """What a sample may bring where these values are held, by its stir."""
+        brought = ((self._changes(one, held), one) for one in self.choices.valuations)
+        found = [(_stir(changes), changes, one) for changes, one in brought if changes]
+        return sorted(found, key=itemgetter(0))
+
+    def _number(self, held: Valuation) -> int:
+        number = self._numbers.setdefault(repr(sorted(held.items())), len(self.held))
+        if number == len(self.held):
+            self.held.append(held)
+        return number
 
     def _changes(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
         """The contents of a sample: new values, relevant updates, occurrences."""
