@@ -135,6 +135,14 @@ class Lowering:
             case Binary(op=BinaryOp.SINCE, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._since(*ends, interval, not positive)
+            case Unary(op=UnaryOp.HELD, operand=operand, interval=Interval() as window) if (
+                self._measured
+            ):  # the trace may have begun before an outage, beyond which nothing else is measured
+                whole = Unary(UnaryOp.HISTORICALLY, operand, window)
+                self._made_up[id(whole)] = whole
+                begun = self.factory.leaf(Elapsed(window.high or 0))
+                beside = begun if positive else self.factory.negation(begun)
+                return self.join_signed([(whole, positive)], positive, [beside])
             case Unary() | Binary():
                 return self._core_future(self._rewritten(formula), positive)
             case _:

@@ -294,8 +294,16 @@ class Reader(Reading[Four]):
 
         is_false = factory.negation(right.read(TRUE))
         known = factory.state_any([factory.sure(right.read(FALSE)), factory.sure(is_false)])
-        lost = [factory.negation(once(known)), once(factory.negation(right.unborn))]
-        return factory.state_any([value, factory.state_all([*lost, factory.unknown])])
+        never = factory.negation(once(known))
+        lost = factory.state_all([never, once(factory.negation(right.unborn))])
+        return factory.state_any([value, self._at_most_unknown(lost)])
+
+    def _at_most_unknown(self, state: State) -> State:
+        """UNKNOWN where `state` is not FALSE. It is not measured: its truth spans outages."""
+        factory = self.factory
+        if self.measured:
+            state = factory.negation(factory.sure(factory.negation(state)))
+        return factory.state_all([state, factory.unknown])
 
     def _unborn_where(self, value: State, unborn: State) -> Four:
         """The formula that is unborn where `unborn` is TRUE; `value` must be FALSE there."""

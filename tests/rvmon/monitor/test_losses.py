@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from tests.tools.drive import Found, Lost, told
+from tests.tools.judgement import Judgement
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
@@ -12,6 +13,7 @@ from rvmon.monitor import build_monitor, compile_spec
 from rvmon.monitor.monitor import restore
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
+from rvmon.testing.law.margins import margins
 from rvmon.testing.law.word import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import HealthKind, Sample
@@ -309,3 +311,36 @@ def test_an_event_that_is_lost_between_samples_may_have_occurred():
     figures.found_ns(["h"], -2)
     [figure] = figures.finish_ns(-2)
     assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), float("inf"))
+
+
+@pytest.mark.parametrize(
+    ("required", "figures"),
+    [
+        ("false since[1 ns, inf) g.k != 1", (float("-inf"), float("-inf"))),
+        ("held(x >= 2 or eventually[1 ns, 1 ns] x >= 9, 1 ns)", (3.0, 3.0)),
+    ],
+)
+def test_an_outage_does_not_hide_what_was_true_before_it(required, figures):
+    """There was something false already, or the trace had begun: neither is measured anew."""
+    text = "spec s\ntime sampled\nsignal x : real\nevent e\nevent g(k: int)\n"
+    spec = rvmon.loads(f"{text}requirement R\n  upon e\n  then {required}\n")
+    monitor = spec.robustness_monitor()
+    monitor.step_ns(0, {})
+    monitor.lose_ns([], 2, 3)
+    found = [*monitor.step_ns(5, {"x": 5.0, "e": True}), *monitor.advance_ns(9)]
+    assert [(one.robustness.low, one.robustness.high) for one in found] == [figures]
+
+
+def test_a_trace_that_may_begin_in_an_outage_has_held_nothing_for_sure():
+    """By the oracle as well: it may have begun behind the outage."""
+    text = "spec s\ntime sampled\nevent g(k: int)\nrequirement R\n  upon start\n"
+    spec = rvmon.loads(f"{text}  then held(true, 1 ns)\n  for each one in g.k\n")
+    sample = Sample(6, {"g": {"k": 2}})
+    case = Case(spec.checked, (sample,), outages=(Outage(frozenset(), 4, 4),))
+    judgement = Judgement(case)
+    of_oracle = margins(judgement.followings, judgement.outcomes, case.spec.time)
+    monitor = spec.robustness_monitor()
+    figures = [*monitor.lose_ns([], 4, 4), *monitor.step_ns(6, sample.values), *monitor.finish_ns()]
+    of_core = {one.number: one.robustness.kept for one in figures}
+    assert of_core == {number: kept for (*_, number), (*_, kept) in of_oracle.items()}
+    assert set(of_core.values()) == {float("-inf")}

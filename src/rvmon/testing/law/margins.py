@@ -14,8 +14,8 @@ from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unar
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.law.attempts import Start, counts_in_favour
 from rvmon.testing.law.decisions import Followings
-from rvmon.testing.law.past import is_within
-from rvmon.testing.law.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
+from rvmon.testing.law.past import is_within, lasted
+from rvmon.testing.law.ranges import ANY, BOTTOM, OF_TRUTH, TOP, Past, Range, least, most, negated
 from rvmon.testing.law.syntax import is_proposition, is_upon_end
 from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.word import Truth, Word, truth_of
@@ -147,9 +147,9 @@ class _Ranges:
             case UnaryOp.HISTORICALLY:
                 return negated(self._since(_always(TOP), _not(operand), i, window))
             case UnaryOp.HELD:
-                begun = self.letters[i].instant - self.letters[0].instant >= (window.high or 0)
+                begun = OF_TRUTH[lasted(self.letters, i, window.high or 0)]
                 whole = negated(self._since(_always(TOP), _not(operand), i, window))
-                return least([TOP if begun else BOTTOM, whole])
+                return least([begun, whole])
             case UnaryOp.RISE:
                 return least([operand(i), self._before(opposite, i, TOP)])
             case UnaryOp.FALL:

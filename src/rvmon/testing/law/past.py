@@ -98,11 +98,11 @@ def held(
     values = [operand(k) for k in window]
     if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
         return disjunction(values)
-    long_enough = _lasted(letters, i, interval.high or 0)
+    long_enough = lasted(letters, i, interval.high or 0)
     return conjunction([long_enough, *(born_or_false(value) for value in values)])
 
 
-def _lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:
+def lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:
     """Whether the trace began so long before a position; it may have at any that may be there."""
     starts = [k for k in range(i + 1) if letters[i].instant - letters[k].instant >= duration]
     if any(letters[k].sure for k in starts):

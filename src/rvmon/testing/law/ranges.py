@@ -20,7 +20,7 @@ from rvmon.spec.checked.formula import (
     windows_in,
 )
 from rvmon.testing.law.numbers import events_of, number
-from rvmon.testing.law.past import is_within
+from rvmon.testing.law.past import is_within, lasted
 from rvmon.testing.law.truths import EVER, Truths
 from rvmon.testing.law.word import Letter, Truth, Word, conjunction, negation
 from rvmon.trace.sample import Payload, Scalar
@@ -202,10 +202,10 @@ class Past:
         return Seen(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
 
     def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
-        start, now = self._letters[0].instant, self._letters[i].instant
+        now = self._letters[i].instant
         own = range(self._first, i + 1)
         inside = [k for k in own if is_within(now - self._letters[k].instant, window)]
-        begun = TOP if now - start >= (window.high or 0) else BOTTOM
+        begun = OF_TRUTH[lasted(self._letters, i, window.high or 0)]
         rest = ANY if self.reaches_out(i, window) else TOP
         value = least([begun, rest, *(self.range(operand, k, Truth.FALSE) for k in inside)])
         return self._unless_unborn(value, operand, i, window, unborn)
