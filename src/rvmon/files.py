@@ -18,7 +18,6 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 PREFIX, SUFFIX = ".rvmon-", ".part"
 """Of names that stand for what is not finished."""
@@ -121,12 +120,15 @@ def beside(path: str | Path) -> Iterator[Path]:
     Raises:
         OSError: it cannot be put there; what was there stays.
 
+    >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
     ...     with beside(f"{folder}/a.txt") as place:
     ...         _ = place.write_text("a")
     ...     os.listdir(folder)
     ['a.txt']
     """
+    from tempfile import TemporaryDirectory  # which loads much
+
     final = Path(os.path.realpath(path))
     with TemporaryDirectory(prefix=PREFIX, dir=final.parent) as folder:
         place = Path(folder, final.name)

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from rvmon.analysis.spans import hold
+from rvmon.analysis.spans import distinct, hold
 from rvmon.analysis.truths import Question, Seen, Truth, look_through
 from rvmon.spec.checked.formula import (
     Binary,
@@ -105,7 +105,7 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
 
 def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
     """The instant with the most true operands; ties go to more events, then to the first."""
-    instants = np.unique(np.concatenate([seen[part].sure[:, 0] for part in parts]))
+    instants = distinct([seen[part].sure[:, 0] for part in parts])
     if not len(instants):
         return _Miss(parts, (), None)
     true = np.array([hold(seen[part].sure, instants) for part in parts])

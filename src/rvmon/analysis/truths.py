@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rvmon.analysis.spans import FOREVER, joined, outside, within
+from rvmon.analysis.spans import FOREVER, distinct, joined, outside, within
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
@@ -251,7 +251,7 @@ def _positions(
         case TimeModel.HELD:
             return None
         case TimeModel.SAMPLED:
-            return np.unique(np.concatenate(instants))
+            return distinct(instants)
         case TimeModel.CLOCKED:
             period = spec.period or 1
             return range(-(-begin // period) * period, end + 1, period)

@@ -18,7 +18,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.plan import Job, Outcome, Plan, Played
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
-from rvmon.execute.journal import Shard, shards_beside
+from rvmon.execute.shards import Shard, shards_beside
 from rvmon.files import contents
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain

@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.reading import opened
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
-from rvmon.report.run_text import SHOWN_PER_REQUIREMENT
-from rvmon.report.tracks import blamed_names, concerned_names
-from rvmon.report.wording import value_text
+from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.formula import Amount, Compare, windows_in
@@ -24,7 +22,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.analysis.truths import Question
+    from rvmon.analysis.truths import Question, Seen
     from rvmon.analysis.window_values import Asked
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
@@ -100,7 +98,6 @@ def post_analysis(
     if not late and not silent and not values.names and not windows.names:
         return report
     from rvmon.analysis.near_miss import miss_in, parts_asked
-    from rvmon.analysis.subformulas import late_in
     from rvmon.analysis.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]
@@ -115,12 +112,11 @@ def post_analysis(
     seen = look_through(
         spec.checked, questions, noted, end, names, spec.plans_of_truths, recording.outages
     )
-    arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
         report,
         values=_joined(values.told(), windows.told()),
-        late={name: found for name, found in arrived.items() if found},
+        late=_arrived(late, seen) if late else {},
         misses={name: miss for name, miss in misses.items() if miss},
     )
 
@@ -169,6 +165,8 @@ class _Values:
 
     def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
+        from rvmon.report.tracks import concerned_names
+
         told: dict[str, dict[int, Mapping[str, str]]] = {}
         for attempt, names in self._reads:
             values = self._told[attempt.decided or 0]
@@ -246,6 +244,8 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
 
     Not what is itself true or false, nor what was measured over a window.
     """
+    from rvmon.report.tracks import blamed_names
+
     assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]
     measured: set[str] = set()
@@ -303,6 +303,16 @@ def _missed(
         if waits:
             found[name] = attempts, waits
     return found
+
+
+def _arrived(
+    late: Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]], seen: Seen
+) -> Mapping[str, Mapping[int, int]]:
+    """By requirement and number of the attempt, when what it awaited came after all."""
+    from rvmon.analysis.subformulas import late_in
+
+    arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
+    return {name: found for name, found in arrived.items() if found}
 
 
 def _silent(report: Report) -> list[str]:

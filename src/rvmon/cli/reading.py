@@ -187,7 +187,8 @@ def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
 
 def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
     """The specification for recordings read as the command line says."""
-    return spec.reading(**reading_arguments(arguments))
+    given = reading_arguments(arguments)
+    return spec if all(one in (None, {}) for one in given.values()) else spec.reading(**given)
 
 
 def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:

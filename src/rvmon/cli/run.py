@@ -183,7 +183,6 @@ def _judged(
 ) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     from rvmon.cli.judging import judge_all
-    from rvmon.cli.resume import unfinished
 
     jobs = arguments.dask or arguments.jobs
     shards = _shards(arguments)
@@ -193,6 +192,8 @@ def _judged(
         if case is not None:
             found = [as_known(one, case) for one in found]
     else:
+        from rvmon.cli.resume import unfinished
+
         reading = reading_words(arguments)
         if arguments.binding is not None:
             reading.append(Path(arguments.binding).read_text("utf-8"))
@@ -234,7 +235,7 @@ def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
 def _shards(arguments: argparse.Namespace) -> list[Path]:
     """The files that keep what shards have judged, where they are to be joined."""
     from rvmon.cli.resume import path_of
-    from rvmon.execute.journal import shards_beside
+    from rvmon.execute.shards import shards_beside
 
     if not arguments.resume or arguments.shard is not None:
         return []

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, assert_never
+from typing import NamedTuple, assert_never
 
 from rvmon.logic.formula import (
     And,
@@ -160,12 +160,12 @@ class Place:
     base: Base
     plus: int = 0
 
-    def ticks(self, decided: Any, start: Any) -> Any:
-        """The value of the placeholder.
+    def ticks(self, decided: int, start: int) -> int:
+        """The value of the placeholder, ticks.
 
         Args:
-            decided: the instant of the decision, ticks, or an array of instants.
-            start: the instant at which the deciding obligation was instantiated, or an array.
+            decided: the instant of the decision.
+            start: the instant at which the deciding obligation was instantiated.
         """
         match self.base:
             case Base.DECISION:
@@ -218,8 +218,7 @@ class LastWith:
     lasting: bool
 
 
-@dataclass(frozen=True, slots=True)
-class TruthValues:
+class TruthValues(NamedTuple):
     """The truth values of a requirement's propositions at a position, with their history.
 
     Attributes:
@@ -275,39 +274,43 @@ def rendered(
         triggered: the instant of the trigger of the attempt, ticks.
         flow: truth values at the decision.
     """
+    return "".join(
+        [
+            one if type(one) is str else _filled(one, decided, start, triggered, flow)
+            for one in sentence
+        ]
+    )
 
-    def instant_text(t: int) -> str:
-        return format_instant(t, flow.origin)
 
-    def part(one: Part) -> str:
-        match one:
-            case str():
-                return one
-            case Place(base=base):
-                ticks = one.ticks(decided, start)
-                return format_ticks(ticks) if base is Base.AGE else instant_text(ticks)
-            case Turned(proposition=proposition, seen=seen):
-                since = flow.since(proposition)
-                was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
-                verb = "became" if start < since == decided and not was_so else "was"
-                long = f" (since {instant_text(since)})" if since < decided else ""
-                return f"{verb} {seen} at {instant_text(decided)}{long}"
-            case AfterTrigger():
-                if start != triggered or start == decided:
-                    return ""
-                return f", {format_ticks(decided - start)} after the trigger"
-            case LastWith(proposition=proposition, value=value, verb=verb):
-                last = flow.last_with(proposition, value, decided)
-                if last is None and flow.begun is not None:
-                    return f"it had not {verb} since {instant_text(flow.begun)}"
-                if last is None:
-                    return f"it had never {verb} before"
-                if last == decided:
-                    return f"it came at {instant_text(last)}, too late"
-                if flow.gap == 1 and one.lasting:
-                    return f"it had {verb} until {instant_text(last + 1)}"
-                return f"it had last {verb} at {instant_text(last)}"
-            case _:
-                assert_never(one)
-
-    return "".join(map(part, sentence))
+def _filled(one: Part, decided: int, start: int, triggered: int, flow: TruthValues) -> str:
+    """A part of a sentence, for one decision; arguments as of `rendered`."""
+    origin = flow.origin
+    match one:
+        case str():
+            return one
+        case Place(base=base):
+            ticks = one.ticks(decided, start)
+            return format_ticks(ticks if base is Base.AGE else ticks - origin)
+        case Turned(proposition=proposition, seen=seen):
+            since = flow.since(proposition)
+            was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
+            verb = "became" if start < since == decided and not was_so else "was"
+            long = f" (since {format_instant(since, origin)})" if since < decided else ""
+            return f"{verb} {seen} at {format_instant(decided, origin)}{long}"
+        case AfterTrigger():
+            if start != triggered or start == decided:
+                return ""
+            return f", {format_ticks(decided - start)} after the trigger"
+        case LastWith(proposition=proposition, value=value, verb=verb):
+            last = flow.last_with(proposition, value, decided)
+            if last is None and flow.begun is not None:
+                return f"it had not {verb} since {format_instant(flow.begun, origin)}"
+            if last is None:
+                return f"it had never {verb} before"
+            if last == decided:
+                return f"it came at {format_instant(last, origin)}, too late"
+            if flow.gap == 1 and one.lasting:
+                return f"it had {verb} until {format_instant(last + 1, origin)}"
+            return f"it had last {verb} at {format_instant(last, origin)}"
+        case _:
+            assert_never(one)

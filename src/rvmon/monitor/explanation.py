@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from functools import lru_cache
+from typing import NamedTuple, Protocol
 
 from rvmon.logic.automaton import FAILED, Token
 from rvmon.logic.formula import Core, horizon
@@ -91,8 +92,7 @@ def outage_in_words(outage: Outage, origin: int) -> str:
     return f"{name} was not known from {since} {end}: {why}"
 
 
-@dataclass(frozen=True, slots=True)
-class Explanation:
+class Explanation(NamedTuple):
     """The explanatory fields of a record; see `rvmon.verdict.attempt.Attempt`."""
 
     reason: str = ""
@@ -152,8 +152,12 @@ def longer(required: Core, triggered: int, end: int | None) -> str:
     return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"
 
 
-def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
-    """Truth values by the text of the proposition; of equal texts the last; `None` is unknown."""
+@lru_cache(maxsize=1024)
+def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, Scalar]:
+    """Truth values by the text of the proposition; of equal texts the last; `None` is unknown.
+
+    Cached, as few differ in a recording.
+    """
     pairs = zip(texts, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
@@ -210,12 +214,12 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
         why = judged.why_open(attempt, now, end)
         # Obligations on unborn signals do not fail, and time alone gives these no value.
         is_unborn = attempt.cannot_pass and not attempt.cut
-        return replace(why, deadline=None) if is_unborn else why
+        return why._replace(deadline=None) if is_unborn else why
     if attempt.worse[0] == FAILED:
         cause = f"; {attempt.doubt}" if attempt.doubt else ""
         return Explanation(f"it is not known whether there was a trigger{cause}")
     alone = replace(attempt, better=attempt.worse, cannot_pass=False)
-    return replace(judged.why_open(alone, now, end), deadline=None)
+    return judged.why_open(alone, now, end)._replace(deadline=None)
 
 
 def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
-from struct import Struct, unpack_from
-from typing import Any
+from operator import getitem
+from struct import Struct
+from typing import Any, NamedTuple
 
 from rvmon.logic.automaton import Token
 from rvmon.logic.state_formula import UNKNOWN
@@ -48,8 +48,7 @@ _WHY = (
 """Reasons for unknown input, by their numbers in `core.h` and `state.h`."""
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(NamedTuple):
     """A note of the core about an attempt; the layout of its words is described in `told.c`.
 
     Attributes:
@@ -86,8 +85,8 @@ class Note:
 def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -> Note:
     """A note from the pieces that the core gives with a single attempt."""
     return Note(
-        _words(data),
-        () if state is None else _words(state),
+        _words(len(data) // 8)(data),
+        () if state is None else _words(len(state) // 8)(state),
         None if last is None else Letters((*pieces, last)),
     )
 
@@ -100,12 +99,12 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
         place: the index of the note's first word.
         spans: the letters that notes refer to by number.
     """
-    (head,) = unpack_from("=q", notes, 8 * place)
-    words = unpack_from(f"={head >> 40}q", notes, 8 * place)
+    (head,) = _words(1)(notes, 8 * place)
+    words = _words(head >> 40)(notes, 8 * place)
     state: tuple[int, ...] = ()
     if words[1] >= 0:
-        (count,) = unpack_from("=q", notes, 8 * words[1])
-        state = unpack_from(f"={count}q", notes, 8 * words[1])
+        (count,) = _words(1)(notes, 8 * words[1])
+        state = _words(count)(notes, 8 * words[1])
     letters = None
     if head >> 8 & _NETWORK and words[3] >= 0:
         pieces, last = spans[words[3] & _SPAN]
@@ -113,14 +112,22 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
     return Note(words, state, letters)
 
 
-def _words(data: bytes) -> tuple[int, ...]:
-    return Struct(f"={len(data) // 8}q").unpack(data)
+@lru_cache(maxsize=1024)
+def _words(count: int) -> Callable[..., tuple[int, ...]]:
+    """Unpacks so many words from bytes, at a place."""
+    return Struct(f"={count}q").unpack_from
 
 
 @lru_cache(maxsize=1024)
 def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
     """Unpack truth values, two bits each; cached, as few words differ in a recording."""
     return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
+
+
+@lru_cache(maxsize=1024)
+def _by_text(texts: tuple[str, ...], then: tuple[int, ...]) -> Mapping[str, int]:
+    """By text the truth at the trigger; most attempts have it in common."""
+    return dict(zip(texts, then, strict=True))
 
 
 def words_for(count: int) -> int:
@@ -146,7 +153,6 @@ class NoteExplainer:
         self._places = {
             state: (place, self._first + 3 * place) for place, state in enumerate(propositions)
         }
-        self._thens: dict[tuple[int, ...], Mapping[str, int]] = {}
 
     @cached_property
     def _reasons(self) -> Reasons:
@@ -163,7 +169,7 @@ class NoteExplainer:
         at = 2 + self._leaf_words
         leaves = truths(words[2:at], len(texts))
         values = truths(words[at : self._first], len(self._places))
-        then = self._at_trigger(self._then(note))
+        then = _by_text(texts, self._then(note))
         begun = _instant(words[1])
         places = self._places
         return (
@@ -172,18 +178,11 @@ class NoteExplainer:
             TruthValues(origin, self._gap, begun, values, words, places, then),
         )
 
-    def _at_trigger(self, then: tuple[int, ...]) -> Mapping[str, int]:
-        """By text the truth at the trigger; most attempts have it in common."""
-        found = self._thens.get(then)
-        if found is None:
-            found = self._thens[then] = dict(zip(self._texts, then, strict=True))
-        return found
-
     def _letter(self, values: Sequence[int], *, passed: bool) -> int:
         """The letter of the reading that decided."""
         alphabet = self.compiled.alphabet
         weights = alphabet.pessimistic if passed else alphabet.optimistic
-        return sum(own[value] for own, value in zip(weights, values, strict=True))
+        return sum(map(getitem, weights, values))
 
     def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
         """The explanatory fields of an attempt, by name; see `Attempt`."""
@@ -238,7 +237,7 @@ class NoteExplainer:
         why = why_open(judged, one, now, _instant(note.words[5]))
         if attempt.decision is not Decision.OPEN:
             policy = self.compiled.requirement.at_end
-            return _replaced(why, why_settled(attempt.decision, policy)), None
+            return why._replace(reason=why_settled(attempt.decision, policy)), None
         return why, forecast_of(judged, one, now)
 
     def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
@@ -332,10 +331,6 @@ class NoteExplainer:
             frozenset() if state.leaf is None else names_of(state.leaf)
             for state, _ in self.compiled.leaves
         ]
-
-
-def _replaced(why: Explanation, reason: str) -> Explanation:
-    return Explanation(reason, why.required, why.deadline, why.blame)
 
 
 def _instant(word: int) -> int | None:

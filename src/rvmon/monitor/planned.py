@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rvmon import native
 from rvmon.core.sections import packed
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rvmon.logic.plan import Plan
     from rvmon.monitor.compile import CompiledRequirement
     from rvmon.monitor.compiled_spec import CompiledSpec
-    from rvmon.monitor.notes import Note
+    from rvmon.monitor.notes import Note, NotesReader
 
 
 class CapturedValues:
@@ -215,21 +215,25 @@ class PlannedCore:
             captured: its captured values; `None` if its requirement captures none.
             note: the note of the core about it.
         """
-        # Imported on use: most attempts are never explained.
-        from rvmon.monitor.notes import NotesReader
-
-        compiled = self._specification
-        key = "told", self.packed.data  # bytes cache their hash, a tuple of ids does not
-        reader = compiled.forms.get(key)
-        if not isinstance(reader, NotesReader):
-            reader = NotesReader(compiled, self.packed.ids)
-            compiled.forms[key] = reader
-        values = () if captured is None else captured
+        number = self.packed.numbers[attempt.requirement]
         return {
-            **reader.details(attempt, note),
-            "captured": self.captured.of(self.packed.numbers[attempt.requirement], values),
+            **self._reader.details(attempt, note),
+            "captured": {} if captured is None else self.captured.of(number, captured),
             "robustness": None,
         }
+
+    @property
+    def _reader(self) -> NotesReader:
+        """Explains attempts by their notes."""
+        compiled = self._specification
+        key = "told", self.packed.data  # bytes cache their hash, a tuple of ids does not
+        found = compiled.forms.get(key)
+        if found is None:
+            # Imported on use: most attempts are never explained.
+            from rvmon.monitor.notes import NotesReader
+
+            found = compiled.forms[key] = NotesReader(compiled, self.packed.ids)
+        return cast("NotesReader", found)
 
 
 def planned_core(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import (
     SHOWN,
+    SHOWN_PER_REQUIREMENT,
     first_of,
     forecast_sentence,
     full_reason,
@@ -71,10 +72,6 @@ def _name(one: CoveredBin) -> str:
 
 def _missing(one: CoveredBin) -> str:
     return one.name if one.goal == 1 else f"{one.name} ({one.hits:,} of {one.goal:,})"
-
-
-SHOWN_PER_REQUIREMENT = 3
-"""The most failed or undecided attempts shown in full; the rest is counted."""
 
 
 def print_reports(

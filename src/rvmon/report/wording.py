@@ -109,6 +109,9 @@ def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, st
         yield first_of(names, SHOWN), f"ignored{f': {remark}' if remark else ''}"
 
 
+SHOWN_PER_REQUIREMENT = 3
+"""The most failed or undecided attempts shown in full; the rest is counted."""
+
 SHOWN = 12
 """The most names listed for one fact; the rest is counted."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -19,10 +18,10 @@ if TYPE_CHECKING:
     from rvmon.spec.checked.specification import Requirement
 
 
-_ALWAYS = frozenset({"number", "triggered", "decided", "verdict", "decision", "reason"})
+_ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
 """Keys that every attempt has in JSON; others are omitted if empty."""
 
-_NAMES = tuple(one.name for one in fields(Attempt) if one.name not in ("requirement", "origin"))
+_UNLESS_EMPTY = ("at_trigger", "at_decision", "required", "captured", "blame", "forecast")
 
 
 def record(attempt: Attempt) -> dict[str, object]:
@@ -30,20 +29,25 @@ def record(attempt: Attempt) -> dict[str, object]:
 
     Instants are in ticks, and under keys ending in `_s` in seconds since the origin.
     """
-    shown: dict[str, object] = {}
-    for name in _NAMES:
-        value = getattr(attempt, name)
-        if name in _ALWAYS or (value not in (None, "", {}) and value is not False):
+    shown: dict[str, object] = {name: getattr(attempt, name) for name in _ALWAYS}
+    if attempt.deadline is not None:
+        shown["deadline"] = attempt.deadline
+    for name in _UNLESS_EMPTY:
+        if value := getattr(attempt, name):
             shown[name] = value
+    if attempt.robustness is not None:
+        shown["robustness"] = attempt.robustness
+    if attempt.in_doubt:
+        shown["in_doubt"] = True
     return shown | seconds(attempt)
 
 
 def seconds(attempt: Attempt) -> dict[str, float | None]:
     """The trigger and the decision of an attempt in seconds since the origin of its run."""
-    found = {"triggered_s": attempt.triggered, "decided_s": attempt.decided}
+    origin, decided = attempt.origin, attempt.decided
     return {
-        name: None if t is None else (t - attempt.origin) / TICKS_PER_SECOND
-        for name, t in found.items()
+        "triggered_s": (attempt.triggered - origin) / TICKS_PER_SECOND,
+        "decided_s": None if decided is None else (decided - origin) / TICKS_PER_SECOND,
     }
 
 
