@@ -35,6 +35,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.formula import Literal as NumericLiteral
 from rvmon.spec.checked.operators import Tense
+from rvmon.spec.checked.rewrite import chain
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.spec.print import format_duration, format_numeric
 from rvmon.texts import counted, listed
@@ -132,7 +133,7 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return f"{name} {verb} {length}"
         case Binary(op=BinaryOp.AND | BinaryOp.OR as op):
             word = "and" if (op is BinaryOp.AND) is positive else "or"
-            return listed([_clause(part, positive) for part in _chain(formula, op)], word)
+            return listed([_clause(part, positive) for part in chain(formula, op)], word)
         case Unary() | Binary():
             return _by_entry(formula, positive)
         case Amount():
@@ -147,7 +148,7 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 
 def _amount(formula: Amount, positive: bool) -> str:
     of = formula.of
-    parts = _chain(of.counted or of.operand, BinaryOp.AND)
+    parts = chain(of.counted or of.operand)
     chosen = [one for one in parts if not (isinstance(one, Passed) and one.since == TRIGGERED)]
     back = "so far" if len(chosen) == len(parts) else "since the trigger"
     back = back if of.window is None else f"in the last {format_duration(of.window)}"
@@ -250,12 +251,6 @@ def _ago(interval: Interval) -> str:
     if interval == Interval():
         return "once "
     return f"({_back(interval, some=True)}) "
-
-
-def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
-    if isinstance(formula, Binary) and formula.op is op:
-        return [*_chain(formula.left, op), *_chain(formula.right, op)]
-    return [formula]
 
 
 def _clause(formula: Formula, positive: bool) -> str:

@@ -9,14 +9,14 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar, assert_never
+from itertools import combinations
+from typing import TypeVar
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.names_read import names_of_spec
 from rvmon.spec.checked.specification import CheckedSpec, Event, Role, Signal
 from rvmon.spec.rules import Findings
-from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import requirements as trigger_rules
 from rvmon.spec.syntax import items
@@ -78,14 +78,14 @@ class ResolvedSpec:
     doubtful: frozenset[str]
 
 
-_K = TypeVar(
-    "_K",
-    items.RequirementItem,
-    items.PropertyItem,
-    items.CoverItem,
-    items.CoverpointItem,
-    items.CrossItem,
+_Stated = (
+    items.RequirementItem
+    | items.PropertyItem
+    | items.CoverItem
+    | items.CoverpointItem
+    | items.CrossItem
 )
+_S = TypeVar("_S", bound=_Stated)
 
 
 def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedSpec:
@@ -104,11 +104,11 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
         tuple(file.source for file in parsed),
         *(once.get(items.Header), once.get(items.TimeItem), once.get(items.DelayItem)),  # type: ignore[arg-type]  # each is of its own class
         resolver.declared,
-        resolver.requirements,
-        resolver.properties,
-        resolver.covers,
-        resolver.coverpoints,
-        resolver.crosses,
+        resolver.of(items.RequirementItem),
+        resolver.of(items.PropertyItem),
+        resolver.of(items.CoverItem),
+        resolver.of(items.CoverpointItem),
+        resolver.of(items.CrossItem),
         frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
     )
 
@@ -119,12 +119,11 @@ class _Resolver:
         self._findings = findings
         self.once: dict[type, items.Header | items.TimeItem | items.DelayItem] = {}
         self.declared: dict[str, Declared] = {}
-        self.requirements: dict[str, items.RequirementItem] = {}
-        self.properties: dict[str, items.PropertyItem] = {}
-        self.covers: dict[str, items.CoverItem] = {}
-        self.coverpoints: dict[str, items.CoverpointItem] = {}
-        self.crosses: dict[str, items.CrossItem] = {}
+        self._stated: list[_Stated] = []
         self._first: dict[tuple[str, str], Ident] = {}
+
+    def of(self, kind: type[_S]) -> dict[str, _S]:
+        return {one.name.text: one for one in self._stated if isinstance(one, kind)}
 
     def add(self, item: items.Item) -> None:
         match item:
@@ -142,29 +141,17 @@ class _Resolver:
                 for event in events:
                     self._declare(DeclaredEvent(event.name, event, item.role))
             case items.DefineItem(parameters=parameters):
-                for number, parameter in enumerate(parameters or ()):
-                    self._once_among(parameter, (parameters or ())[:number], "parameter")
+                for parameter, other in combinations(parameters or (), 2):
+                    if parameter.text == other.text:
+                        places = other.span, parameter.span
+                        self._findings.add(rules.double(other.text, "parameter", *places))
                 self._declare(item)
             case items.ConstItem():
                 self._declare(item)
-            case items.RequirementItem():
-                self._keep(self.requirements, item)
-            case items.PropertyItem():
-                self._keep(self.properties, item)
-            case items.CoverItem():
-                self._keep(self.covers, item)
-            case items.CoverpointItem():
-                self._keep(self.coverpoints, item)
-            case items.CrossItem():
-                self._keep(self.crosses, item)
             case items.ImportItem():
                 pass  # its file is among those given
-            case _:
-                assert_never(item)
-
-    def _keep(self, kept: dict[str, _K], item: _K) -> None:
-        if self._is_new("requirement", item.name):
-            kept[item.name.text] = item
+            case _ if self._is_new("requirement", item.name):
+                self._stated.append(item)
 
     def _declare(self, declared: Declared) -> None:
         name = declared.name
@@ -174,11 +161,6 @@ class _Resolver:
             self.declared[name.text] = declared
         else:
             self.doubled.add(name.text)
-
-    def _once_among(self, name: Ident, others: Sequence[Ident], kind: str) -> None:
-        for other in others:
-            if other.text == name.text:
-                self._findings.add(rules.double(name.text, kind, name.span, other.span))
 
     def _is_new(self, kind: str, name: Ident) -> bool:
         first = self._first.setdefault((kind, name.text), name)
@@ -242,7 +224,8 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
                 circle = path[path.index(following) :]
                 caught.update(circle)
                 place = declared[circle[0]].name.span
-                findings.add(rules.recursive([*circle, circle[0]], place))
+                shown = " → ".join(f"`{one}`" for one in [*circle, circle[0]])
+                findings.add(rules.recursive(place, circle[0], shown))
             else:
                 waiting.append((following, iter(uses[following])))
     return frozenset(caught)
@@ -286,7 +269,7 @@ def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
         for name, declared in names.items():
             span = declared.span
             if name not in read and span is not None and span.source is spec.source:
-                yield trigger_rules.never_read(span, kind)
+                yield trigger_rules.never_read(span, kind, span.text.strip("`"))
 
 
 def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
@@ -297,14 +280,13 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
         if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:
             kind = "define" if isinstance(item, items.DefineItem) else "const"
             if uses[item.name.text] < 2:
-                yield name_rules.unused(item.name.span, kind)
+                yield rules.unused(item.name.span, kind, item.name.text)
     for requirement in spec.requirements.values():
         lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
         if lets and requirement.span.source is main:
             own = Counter(_names(requirement.span.text))
-            yield from (
-                name_rules.unused(let.name.span, "let") for let in lets if own[let.name.text] < 2
-            )
+            for let in (one.name for one in lets if own[one.name.text] < 2):
+                yield rules.unused(let.span, "let", let.text)
 
 
 def _names(text: str) -> Iterator[str]:

@@ -22,7 +22,6 @@ from rvmon.spec.checked.specification import (
 from rvmon.spec.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
 from rvmon.spec.rules import Findings
 from rvmon.spec.rules import names as name_rules
-from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.syntax.expressions import Expression, Name, expressions_in
@@ -45,7 +44,9 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
             name = declared.name.text
             if name in signals:
-                signals[name] = _with_staleness(checker, signals[name], declared.stale_after)
+                what = "the age at which a signal is stale"
+                ticks = _positive(checker, declared.stale_after, what)
+                signals[name] = replace(signals[name], stale_after=ticks)
     period = delay = None
     if spec.time is not None and spec.time.period is not None:
         period = _positive(checker, spec.time.period, "the period")
@@ -105,11 +106,10 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     signals: dict[str, Signal] = {}
     events: dict[str, Event] = {}
     units: dict[str, Unit] = {}
-    types = _Types(findings)
     for name, declared in spec.declared.items():
         match declared:
             case DeclaredSignal():
-                found = types.read(declared.type)
+                found = _type(declared.type, findings)
                 if found is not None:
                     type_, units[name] = found
                     if declared.ignored is not None and type_.kind is not Kind.REAL:
@@ -129,7 +129,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                     if first is not None:
                         places = field.name.span, first.name.span
                         findings.add(name_rules.double(field.name.text, "field", *places))
-                    found = types.read(field.type)
+                    found = _type(field.type, findings)
                     if found is not None:
                         fields[field.name.text], units[f"{name}.{field.name.text}"] = found
                 events[name] = Event(name, fields, declared.role, declared.name.span)
@@ -137,37 +137,20 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
 
 
-class _Types:
-    """Reads types, each syntax once, so that `signal a, b : real [kgg]` is one finding."""
-
-    def __init__(self, findings: Findings) -> None:
-        self._findings = findings
-        self._read: dict[int, tuple[Type, Unit] | None] = {}
-
-    def read(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
-        if id(syntax) not in self._read:
-            self._read[id(syntax)] = self._fresh(syntax)
-        return self._read[id(syntax)]
-
-    def _fresh(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
-        labels = tuple(label.text for label in syntax.labels)
-        firsts: dict[str, Span] = {}
-        for label in syntax.labels:
-            first = firsts.setdefault(label.text, label.span)
-            if first is not label.span:
-                self._findings.add(name_rules.double(label.text, "label", label.span, first))
-        try:
-            unit = parse_unit(syntax.unit)
-        except UnknownUnitError as error:
-            part = str(error)
-            self._findings.add(type_rules.unknown_unit(syntax.span, part, close_unit(part)))
-            return None
-        return Type(Kind(syntax.name), syntax.unit, labels), unit
-
-
-def _with_staleness(checker: Checker, signal: Signal, limit: Expression) -> Signal:
-    ticks = _positive(checker, limit, "the age at which a signal is stale")
-    return replace(signal, stale_after=ticks)
+def _type(syntax: TypeSyntax, findings: Findings) -> tuple[Type, Unit] | None:
+    """A type with its unit; `None` if there is no such unit, and then that is recorded."""
+    labels = tuple(label.text for label in syntax.labels)
+    firsts: dict[str, Span] = {}
+    for label in syntax.labels:
+        first = firsts.setdefault(label.text, label.span)
+        if first is not label.span:
+            findings.add(name_rules.double(label.text, "label", label.span, first))
+    try:
+        unit = parse_unit(syntax.unit)
+    except UnknownUnitError as error:
+        findings.add(type_rules.unknown_unit(syntax.span, str(error), close_unit(str(error))))
+        return None
+    return Type(Kind(syntax.name), syntax.unit, labels), unit
 
 
 def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
@@ -196,4 +179,4 @@ def _look_up(checker: Checker, item: DefineItem) -> None:
         labels = {label for signal in table.signals.values() for label in signal.type.labels}
         if part.text not in labels and not checker.known(part.text, EVERYWHERE):
             close = close_name(table, part.text, tuple(own))
-            checker.report(rules.unknown(part.span, part.text, close))
+            checker.report(name_rules.unknown(part.span, part.text, close))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
@@ -21,6 +22,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     passed,
 )
+from rvmon.spec.checked.rewrite import Formulas
 from rvmon.spec.syntax.expressions import Window
 
 _BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL)
@@ -37,8 +39,7 @@ class Bounded:
     def late(self, word: str, span: Span) -> Passed:
         """That the window is over."""
         trigger = self.scope.trigger
-        if trigger is None:
-            raise AssertionError("what is required at the trigger has one")
+        assert trigger is not None, "what is required at the trigger has one"
         trigger.begun(span)
         return passed(TRIGGERED, Captured(trigger.number(word, self.seconds)), True, span)
 
@@ -65,27 +66,20 @@ def bound_of(
     return Bounded(seconds, scope)
 
 
-def bounded_prefix(op: UnaryOp, operand: Formula, bound: Bounded, span: Span) -> Formula:
-    """`within (x) φ`, `for (x) φ`: φ before it is too late, or until it is."""
-    if op is UnaryOp.ALWAYS:
-        late = bound.late("for", span)
-        excused = Binary(BinaryOp.OR, operand, late, None, span)
-        return Binary(BinaryOp.RELEASE, late, excused, Interval(), span)
-    early = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
-    reached = Binary(BinaryOp.AND, operand, early, None, span)
-    return Binary(BinaryOp.UNTIL, early, reached, Interval(), span)
-
-
-def bounded_infix(
-    op: BinaryOp, left: Formula, right: Formula, bound: Bounded, span: Span
+def bounded(
+    op: UnaryOp | BinaryOp, operands: Sequence[Formula], bound: Bounded, span: Span
 ) -> Formula:
-    """`φ until[0, x] ψ`, `φ unless[0, x] ψ`."""
-    if op is BinaryOp.WEAK_UNTIL:
-        late = bound.late("for", span)
-        ended = Binary(BinaryOp.OR, right, late, None, span)
-        excused = Binary(BinaryOp.OR, left, ended, None, span)
-        return Binary(BinaryOp.RELEASE, ended, excused, Interval(), span)
-    early = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
-    lasting = Binary(BinaryOp.AND, left, early, None, span)
-    reached = Binary(BinaryOp.AND, right, early, None, span)
-    return Binary(BinaryOp.UNTIL, lasting, reached, Interval(), span)
+    """`within (x) φ`, `for (x) φ`, `φ until[0, x] ψ`, `φ unless[0, x] ψ`.
+
+    What must come has to come before it is too late; what must hold has to hold until it is.
+    """
+    make = Formulas(span)
+    if op in (UnaryOp.ALWAYS, BinaryOp.WEAK_UNTIL):
+        lasting, *end = operands
+        ended: Formula = bound.late("for", span)
+        ended = make.either(end[0], ended) if end else ended
+        return Binary(BinaryOp.RELEASE, ended, make.either(lasting, ended), Interval(), span)
+    *before, reached = operands
+    early: Formula = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
+    until_then = make.both(before[0], early) if before else early
+    return make.until(until_then, make.both(reached, early), Interval())

@@ -11,6 +11,7 @@ from rvmon.spec.check.moving import above, brought_alone, by_limits
 from rvmon.spec.check.quantities import (
     Placed,
     arithmetic,
+    brought_to,
     compare,
     decided,
     either,
@@ -31,7 +32,6 @@ from rvmon.spec.check.scope import (
     Value,
 )
 from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.classify import reads_field
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
@@ -53,6 +53,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
     WindowValue,
+    fields_in,
     passed,
     windows_in,
 )
@@ -105,7 +106,7 @@ def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> F
     found = _quantities(op, first, limit, node.span)
     if not any(windows) or not isinstance(found, Compare):
         return found
-    if reads_field(found.left) or reads_field(found.right):
+    if any(fields_in(found.left, found.right)):
         raise Refusal(rules.limit_of_event(node.span))
     if time is TimeModel.HELD and any(one.moves for one in (*windows[0], *windows[1])):
         return brought_alone(found, node.span)
@@ -166,18 +167,13 @@ def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
 def _bound(lone: Lone, unit: Unit, limit: Placed, span: Span) -> Numeric:
     """A limit that does not move between samples, in the unit of what is measured."""
     value, place = limit
-    if value.node is not None and reads_field(value.node):
+    if value.node is not None and any(fields_in(value.node)):
         raise Refusal(rules.limit_of_event(place))
-    whole = Quantity(SignalValue(""), unit=unit)
     if lone.share:
-        seconds = Fraction(lone.of.window or 0, TICKS_PER_SECOND)
-        whole = Quantity(constant=seconds, unit=parse_unit("s"))
+        unit = parse_unit("s")
+        whole = Quantity(constant=Fraction(lone.of.window or 0, TICKS_PER_SECOND), unit=unit)
         limit = arithmetic(NumericOp.MUL, (limit, (whole, place)), span), place
-        whole = Quantity(SignalValue(""), unit=whole.unit)
-    beside = compare(CompareOp.GE, (whole, span), limit, span)
-    if not isinstance(beside, Compare):
-        raise AssertionError("one side varies")
-    return beside.right
+    return brought_to(unit, limit, span)
 
 
 def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | None:
@@ -195,7 +191,7 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
         return Unary(UnaryOp.ONCE, then, Interval(of.window or 0, of.window), span)
     greatest = of.measured is Measured.MAX
     every = (CompareOp.LT, CompareOp.LE) if greatest else (CompareOp.GT, CompareOp.GE)
-    occurs = added.node is not None and reads_field(added.node)
+    occurs = added.node is not None and any(fields_in(added.node))
 
     def over(how: CompareOp) -> Formula:
         if how in every and (lone.begun or of.most or occurs):
@@ -301,7 +297,7 @@ def _now(now: Now, op: CompareOp, limit: Value, place: Span, span: Span) -> Form
         later = Quantity(constant=Fraction(0)) if limit.later is None else limit.later
         now, limit = Now(limit.name), later
     value, _ = _comparable(limit, place)
-    if value.node is not None and reads_field(value.node):
+    if value.node is not None and any(fields_in(value.node)):
         raise Refusal(rules.limit_of_event(place))
     if _windows_of((value, place)):
         raise Refusal(rules.now_alone(span))

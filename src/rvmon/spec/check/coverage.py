@@ -246,8 +246,7 @@ def _stepped(
             latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
             came = Binary(BinaryOp.AND, came, latest, None, span)
         made, entered = came, rise
-    if made is None:
-        raise AssertionError("there are two values at least")
+    assert made is not None, "there are two values at least"
     return made
 
 

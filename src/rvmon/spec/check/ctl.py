@@ -5,7 +5,6 @@ Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import assert_never
 
 from rvmon.diagnostics import Span
@@ -21,13 +20,14 @@ from rvmon.spec.checked.ctl import (
     StateBinary,
     StateFormula,
     StateNot,
+    state_formulas,
 )
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
 from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.print import format_formula
-from rvmon.spec.rules import Refusal, Reported
+from rvmon.spec.rules import Refusal, Reported, short
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.syntax import expressions
@@ -56,7 +56,7 @@ def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     try:
         formula = linear_form(denied, place, time)
     except Refusal as refusal:
-        if any(isinstance(part, ModelAtom) for part in _parts(property_.formula)):
+        if any(isinstance(part, ModelAtom) for part in state_formulas(property_.formula)):
             raise
         not_shown = Refusal(rules.not_shown(property_.span or place))
         raise _not_for_models(not_shown, property_) from refusal
@@ -65,20 +65,10 @@ def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
 
 def _not_for_models(refusal: Refusal, property_: Property) -> Refusal:
     """The refusal, which sends nobody to `rvmon verify` with what that refuses, too."""
-    for part in _parts(property_.formula):
+    for part in state_formulas(property_.formula):
         if isinstance(part, PathUnary | PathBinary) and part.interval and part.interval.low > 0:
             return Refusal(rules.not_for_models(refusal.finding, "a window that opens later"))
     return refusal
-
-
-def _parts(state: StateFormula) -> Iterator[StateFormula]:
-    yield state
-    match state:
-        case StateNot(operand=operand) | PathUnary(operand=operand):
-            yield from _parts(operand)
-        case StateBinary(left=left, right=right) | PathBinary(left=left, right=right):
-            yield from _parts(left)
-            yield from _parts(right)
 
 
 class _Linear:
@@ -92,7 +82,7 @@ class _Linear:
             case StateAtom(formula=formula, span=span):
                 return formula if positive else Unary(UnaryOp.NOT, formula, None, span)
             case ModelAtom(text=text, span=span):
-                raise Refusal(rules.reads_model(span or self.place, text))
+                raise Refusal(rules.reads_model(span or self.place, short(text)))
             case StateNot(operand=operand):
                 return self.of(operand, not positive)
             case StateBinary():
@@ -132,7 +122,7 @@ class _Linear:
         if conjunction:
             return Binary(BinaryOp.AND, *parts, None, state.span)
         apart = self.excludes(left, right)
-        if not (apart or _is_present(left[0]) or _is_present(right[0])):
+        if not (apart or isinstance(left[0], StateAtom) or isinstance(right[0], StateAtom)):
             raise Refusal(rules.choice_of_paths(state.span or self.place))
         if state.op is BinaryOp.IMPLIES and not left[1]:
             premise = self.of(left[0], True)
@@ -146,7 +136,7 @@ class _Linear:
         op = state.op if positive else UnaryOp.of(state.op.entry.dual)
         if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
             raise Refusal(time_rules.step_in_held_time("next", span))
-        if op is UnaryOp.EVENTUALLY and not _is_present(state.operand):
+        if op is UnaryOp.EVENTUALLY and not isinstance(state.operand, StateAtom):
             raise Refusal(rules.not_on_one_path(span))
         return Unary(op, self.of(state.operand, positive), state.interval, state.span)
 
@@ -158,9 +148,11 @@ class _Linear:
         left, right = state.left, state.right
         if op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
             # Where the right one comes has to be seen at once: p and φ until not p and ψ.
-            plain = _is_present(right) or self.excludes((left, positive), (right, positive))
+            plain = isinstance(right, StateAtom) or self.excludes(
+                (left, positive), (right, positive)
+            )
         else:
-            plain = _is_present(left)
+            plain = isinstance(left, StateAtom)
         if not plain:
             raise Refusal(rules.not_on_one_path(span))
         parts = self.of(left, positive), self.of(right, positive)
@@ -172,12 +164,16 @@ class _Linear:
         return any((text, not sign) in its for text, sign in mine)
 
 
+_PATHS = (expressions.Path, expressions.Quantified, expressions.LeadsTo)
+"""What has a path quantifier."""
+
+
 def _signed(state: StateFormula, positive: bool) -> StateFormula:
     return state if positive else StateNot(state, state.span)
 
 
-def _is_present(state: StateFormula) -> bool:
-    return isinstance(state, StateAtom)
+_CONJOINED = {True: (BinaryOp.AND,), False: (BinaryOp.OR, BinaryOp.IMPLIES)}
+"""Connectives that are conjunctions as they are, and that are ones if they are denied."""
 
 
 def _present_parts(state: StateFormula, positive: bool) -> list[tuple[str, bool]]:
@@ -187,12 +183,9 @@ def _present_parts(state: StateFormula, positive: bool) -> list[tuple[str, bool]
             return _signs(formula, positive)
         case StateNot(operand=operand):
             return _present_parts(operand, not positive)
-        case StateBinary(op=BinaryOp.AND, left=left, right=right) if positive:
-            return [*_present_parts(left, True), *_present_parts(right, True)]
-        case StateBinary(op=BinaryOp.OR, left=left, right=right) if not positive:
-            return [*_present_parts(left, False), *_present_parts(right, False)]
-        case StateBinary(op=BinaryOp.IMPLIES, left=left, right=right) if not positive:
-            return [*_present_parts(left, True), *_present_parts(right, False)]
+        case StateBinary(op=op, left=left, right=right) if op in _CONJOINED[positive]:
+            first = positive or op is BinaryOp.IMPLIES
+            return [*_present_parts(left, first), *_present_parts(right, positive)]
         case _:
             return []
 
@@ -274,10 +267,7 @@ def _connected(
             return StateBinary(op, *_both(checker, left, right, foreign), span)
         case expressions.Prefix() | expressions.Infix():
             raise Refusal(rules.bare_time(expression.op_span))
-        case _ if any(
-            isinstance(p, expressions.Path | expressions.Quantified | expressions.LeadsTo)
-            for p in expressions.expressions_in(expression)
-        ):
+        case _ if any(isinstance(p, _PATHS) for p in expressions.expressions_in(expression)):
             raise Refusal(rules.path_in_number(span))
         case _:
             return ModelAtom(span.text, span)
@@ -307,8 +297,7 @@ def _quantified(
 def _needs_splitting(expression: expressions.Expression, foreign: frozenset[str]) -> bool:
     """Whether path quantifiers or names of a model stand somewhere inside."""
     return any(
-        isinstance(part, expressions.Path | expressions.Quantified | expressions.LeadsTo)
-        or (isinstance(part, expressions.Name) and part.text in foreign)
+        isinstance(part, _PATHS) or (isinstance(part, expressions.Name) and part.text in foreign)
         for part in expressions.expressions_in(expression)
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import ParamSpec, TypeVar, assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.spec.check.bounds import bound_of, bounded_infix, bounded_prefix
+from rvmon.spec.check.bounds import bound_of, bounded
 from rvmon.spec.check.comparisons import compared, formula_of, moved, number_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic, closed_interval, spread, ticks_of
@@ -335,10 +335,10 @@ class Checker:
             interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
         if operand is None:
             raise Reported
+        required = formula_of(operand, prefix.operand.span)
         if bound is not None:
-            required = formula_of(operand, prefix.operand.span)
-            return bounded_prefix(prefix.op, required, bound, prefix.span)
-        return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
+            return bounded(prefix.op, (required,), bound, prefix.span)
+        return Unary(prefix.op, required, interval, prefix.span)
 
     def _interval_of(
         self, op: UnaryOp, window: WindowSyntax | None, span: Span, scope: Scope
@@ -371,7 +371,7 @@ class Checker:
             raise Reported
         sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
         if bound is not None:
-            return bounded_infix(infix.op, *sides, bound, infix.span)
+            return bounded(infix.op, sides, bound, infix.span)
         return Binary(infix.op, *sides, interval, infix.span)
 
     def interval(self, window: WindowSyntax | None, scope: Scope) -> Interval:

@@ -22,12 +22,12 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.operators import Tense
-from rvmon.spec.checked.rewrite import rewritten
+from rvmon.spec.checked.rewrite import chain, rewritten
 from rvmon.spec.checked.specification import Event, Mode, Role, Signal
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import properties as rules
 
-_UNBOUNDED = Interval()
+_ALL = Interval()
 
 
 def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
@@ -53,7 +53,7 @@ def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
 def _always(formula: Formula) -> Formula | None:
     """The φ of a formula that is `G φ` once `G G φ` and `G φ and G ψ` are joined."""
     match formula:
-        case Unary(op=UnaryOp.ALWAYS, interval=interval) if interval == _UNBOUNDED:
+        case Unary(op=UnaryOp.ALWAYS, interval=interval) if interval == _ALL:
             return _always(formula.operand) or formula.operand
         case Binary(op=BinaryOp.AND):
             left, right = _always(formula.left), _always(formula.right)
@@ -62,7 +62,7 @@ def _always(formula: Formula) -> Formula | None:
             return None
 
 
-def _both(left: Formula, right: Formula) -> Binary:
+def _both(left: Formula, right: Formula) -> Formula:
     return Binary(BinaryOp.AND, left, right, None, joined(left.span, right.span))
 
 
@@ -90,12 +90,12 @@ def derived_response(
     if not isinstance(goal.operand, StateAtom) or goal.interval != Interval():
         raise Refusal(rules.no_response(goal.operand.span or span))
     by_role: dict[Role, list[Formula]] = {Role.INPUT: [], Role.OUTPUT: []}
-    for conjunct in _conjuncts(goal.operand.formula):
+    for conjunct in chain(goal.operand.formula):
         by_role[_role(table, conjunct, conjunct.span or span)].append(conjunct)
     if not by_role[Role.OUTPUT]:
         raise Refusal(rules.no_output(span))
     inputs = by_role[Role.INPUT]
-    trigger = _conjunction(inputs) if inputs else BoundAtom(Bound.START, place)
+    trigger = reduce(_both, inputs) if inputs else BoundAtom(Bound.START, place)
     return trigger, _required(by_role[Role.OUTPUT], Interval(0, within))
 
 
@@ -105,10 +105,10 @@ def _required(outputs: Sequence[Formula], interval: Interval) -> Formula:
     positive = [part for part in outputs if part not in negated]
     required: list[Formula] = []
     if positive:
-        goal = _conjunction(positive)
+        goal = reduce(_both, positive)
         required.append(Unary(UnaryOp.EVENTUALLY, goal, interval, goal.span))
     required += [Unary(UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
-    return _conjunction(required)
+    return reduce(_both, required)
 
 
 def _role(table: Table, conjunct: Formula, place: Span) -> Role:
@@ -121,28 +121,6 @@ def _role(table: Table, conjunct: Formula, place: Span) -> Role:
     if len(found) != 1:
         raise Refusal(rules.mixed_roles(place, {name: str(role) for name, role in roles.items()}))
     return Role(str(found.pop()))
-
-
-def _conjuncts(formula: Formula) -> list[Formula]:
-    found: list[Formula] = []
-    waiting = [formula]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, Binary) and node.op is BinaryOp.AND:
-            waiting += (node.right, node.left)
-        else:
-            found.append(node)
-    return found
-
-
-def _conjunction(parts: Sequence[Formula]) -> Formula:
-    def both(left: Formula, right: Formula) -> Formula:
-        return Binary(BinaryOp.AND, left, right, None, joined(left.span, right.span))
-
-    return reduce(both, parts)
-
-
-_ALL = Interval()
 
 
 def scoped_trigger(trigger: Formula, opening: Formula | None, closing: Formula | None) -> Formula:

@@ -28,7 +28,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.rules import Refusal
+from rvmon.spec.rules import Refusal, short
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
@@ -195,7 +195,7 @@ def _common_unit(args: Sequence[Placed], doing: str, span: Span) -> Unit:
             raise Refusal(rules.missing_unit(place, unit.symbol))
         if not unit.symbol:
             other = next(p for v, p in args if v.constant is None)
-            raise Refusal(rules.superfluous_unit(place, value.unit.symbol, other))
+            raise Refusal(rules.superfluous_unit(place, value.unit.symbol, short(other.text)))
         shown = [v.unit.symbol or "no unit" for v, _ in args if not _bare_zero(v)]
         raise Refusal(rules.mismatch(span, shown[0], shown[-1], doing))
     return unit
@@ -280,8 +280,7 @@ def decided(value: Value, span: Span) -> Formula:
     if isinstance(value, Chosen):
         chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
         return either(value.condition, chosen, otherwise, span)
-    if isinstance(value, Quantity | Beside):
-        raise AssertionError("it was made of formulas")
+    assert not isinstance(value, Quantity | Beside), "it was made of formulas"
     return value
 
 
@@ -349,11 +348,17 @@ def seconds_of(duration: Placed) -> Numeric:
     Raises:
         Refusal: it is none.
     """
-    value, place = duration
-    if value.constant is not None:
-        ticks_of(value, place)
-    whole = Quantity(SignalValue(""), unit=parse_unit("s"))
-    beside = compare(CompareOp.GE, (whole, place), duration, place)
-    if not isinstance(beside, Compare):
-        raise AssertionError("one side varies")
+    if duration[0].constant is not None:
+        ticks_of(*duration)
+    return brought_to(parse_unit("s"), duration, duration[1])
+
+
+def brought_to(unit: Unit, placed: Placed, span: Span) -> Numeric:
+    """A number as it stands beside one of a unit in a comparison.
+
+    Raises:
+        Refusal: the units do not fit, or a constant is out of range.
+    """
+    beside = compare(CompareOp.GE, (Quantity(SignalValue(""), unit=unit), span), placed, span)
+    assert isinstance(beside, Compare), "one side varies"
     return beside.right

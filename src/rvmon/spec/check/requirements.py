@@ -29,12 +29,10 @@ from rvmon.spec.check.traps import (
 )
 from rvmon.spec.checked.classify import (
     end_part,
-    fields_in,
     future_part,
     is_pulse,
     is_timeless,
     mixed_disjunction,
-    reads_field,
     subformulas,
     windows_of,
 )
@@ -47,6 +45,7 @@ from rvmon.spec.checked.formula import (
     FieldValue,
     Formula,
     NowValue,
+    fields_in,
 )
 from rvmon.spec.checked.names_read import names_read
 from rvmon.spec.checked.specification import (
@@ -57,7 +56,7 @@ from rvmon.spec.checked.specification import (
     Requirement,
     RunShare,
 )
-from rvmon.spec.rules import Refusal, Reported
+from rvmon.spec.rules import Refusal, Reported, short
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import requirements as rules
@@ -134,9 +133,9 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
     """Of several occurrences at one instant each has to tell by itself whether it counts."""
     for window in windows_of(*formulas):
-        if window.value is None or not reads_field(window.value):
+        events = {one.event for one in fields_in(window.value)} if window.value else None
+        if not events:
             continue
-        events = {one.event for one in fields_in(window.value)}
         for one in subformulas(window.operand):
             read = {*names_read(one)} & events if isinstance(one, Compare) else set()
             own = isinstance(one, Compare) and one.left == one.right == window.value
@@ -238,9 +237,8 @@ def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formu
     if instant and not on_purpose(body.consequent):
         checker.report(rules.one_instant(body.consequent.span))
     if mixed := mixed_disjunction(trigger):
-        pulse, level = mixed
-        place = body.trigger.span
-        checker.report(rules.mixed_trigger(pulse.span or place, level.span or place))
+        pulse, level = (part.span or body.trigger.span for part in mixed)
+        checker.report(rules.mixed_trigger(pulse, level, short(level.text)))
 
 
 def _warn_of_traps(

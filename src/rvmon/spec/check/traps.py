@@ -9,7 +9,6 @@ from rvmon.spec.checked.classify import (
     FIRST,
     Facts,
     facts_of,
-    fields_in,
     is_pulse,
     is_timeless,
     subformulas,
@@ -25,6 +24,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Unary,
     UnaryOp,
+    fields_in,
 )
 from rvmon.spec.checked.specification import Capture, Mode, TimeModel
 from rvmon.spec.print import format_duration, format_formula

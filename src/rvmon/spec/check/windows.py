@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeGuard
@@ -12,9 +11,8 @@ from rvmon.spec.check.comparisons import number_of
 from rvmon.spec.check.quantities import arithmetic, node_of
 from rvmon.spec.check.scope import Chosen, Lone, Operands, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.classify import fields_in, future_part, is_pulse
+from rvmon.spec.checked.classify import future_part, is_pulse
 from rvmon.spec.checked.formula import (
-    Binary,
     BinaryOp,
     Compare,
     EventAtom,
@@ -25,12 +23,14 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalValue,
     WindowValue,
+    fields_in,
     itself,
     windows_in,
 )
 from rvmon.spec.checked.functions import LAST
 from rvmon.spec.checked.measured import Dimension, Members
 from rvmon.spec.checked.names_read import names_in, names_read
+from rvmon.spec.checked.rewrite import Formulas, chain
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.rules import Refusal
 from rvmon.spec.rules import time as time_rules
@@ -122,7 +122,7 @@ def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> 
     of = replace(lone.of, window=window.ticks, most=window.most)
     if window.since and scope.trigger is not None:
         begun = scope.trigger.begun(window.span)
-        of = replace(of, operand=_both(begun, of.operand, window.span))
+        of = replace(of, operand=Formulas(window.span).both(begun, of.operand))
         lone = replace(lone, begun=begun)
     lone = replace(lone, of=of)
     added = lone.added or Quantity(integral=True)
@@ -187,8 +187,9 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     place = window.span
     (value,) = operands.values((window.of,), window.scope)
     conditions: list[Formula] = []
-    if isinstance(value, Chosen) and _may_choose(measured, window) and _is_nothing(value.otherwise):
-        conditions, value = [*_conjuncts(value.condition)], value.chosen
+    may_choose = measured in (Measured.SUM, Measured.INTEGRAL) and window.most is None
+    if isinstance(value, Chosen) and may_choose and _is_nothing(value.otherwise):
+        conditions, value = chain(value.condition), value.chosen
     quantity = number_of(value, place)
     if quantity.node is None:
         raise Refusal(rules.not_added(place, measured, measured.of.value))
@@ -215,36 +216,19 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     member: Formula = itself(node, place)
     for condition in reversed([one for one in conditions if one not in chosen]):
         _refuse_future(condition, call, measured)
-        member = _both(condition, member, place)
+        member = Formulas(place).both(condition, member)
     return Lone(WindowValue(measured, member, None, node, chosen=chosen), quantity)
+
+
+def _is_nothing(value: Value) -> bool:
+    return isinstance(value, Quantity) and value.constant == 0
 
 
 def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
     """Whether it is a comparison that says something of one occurrence of the only event."""
     if not isinstance(formula, Compare) or len(events) != 1:
         return False
-    fields = (*fields_in(formula.left), *fields_in(formula.right))
-    return {one.event for one in fields} == events
-
-
-def _conjuncts(formula: Formula) -> Iterator[Formula]:
-    if isinstance(formula, Binary) and formula.op is BinaryOp.AND:
-        yield from _conjuncts(formula.left)
-        yield from _conjuncts(formula.right)
-    else:
-        yield formula
-
-
-def _both(left: Formula, right: Formula, span: Span) -> Formula:
-    return Binary(BinaryOp.AND, left, right, None, span)
-
-
-def _may_choose(measured: Measured, window: _Window) -> bool:
-    return measured in (Measured.SUM, Measured.INTEGRAL) and window.most is None
-
-
-def _is_nothing(value: Value) -> bool:
-    return isinstance(value, Quantity) and value.constant == 0
+    return {one.event for one in fields_in(formula.left, formula.right)} == events
 
 
 def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:

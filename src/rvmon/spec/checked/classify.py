@@ -7,7 +7,6 @@ from typing import assert_never
 
 from rvmon.spec.checked.formula import (
     Amount,
-    Arithmetic,
     Binary,
     BinaryOp,
     Bound,
@@ -16,10 +15,8 @@ from rvmon.spec.checked.formula import (
     CompareOp,
     Constant,
     EventAtom,
-    FieldValue,
     Formula,
     Interval,
-    Numeric,
     Passed,
     Probe,
     ProbeAtom,
@@ -27,6 +24,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
     WindowValue,
+    fields_in,
     windows_in,
 )
 from rvmon.spec.checked.operators import OPERATORS, Connectives, Reading, Tense
@@ -149,7 +147,7 @@ def _pulses(formula: Formula) -> Pulses:
         case EventAtom():
             return True, False
         case Compare(left=left, right=right):
-            return reads_field(left) or reads_field(right), False
+            return any(fields_in(left, right)), False
         case ProbeAtom(probe=probe):
             return probe is not Probe.KNOWN, False
         case SignalAtom() | BoundAtom() | Amount() | Passed():
@@ -175,22 +173,6 @@ def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:
         if node.op in (BinaryOp.AND, BinaryOp.OR):
             waiting += reversed(sides)
     return None
-
-
-def reads_field(numeric: Numeric) -> bool:
-    """Whether a payload field is read."""
-    return any(True for _ in fields_in(numeric))
-
-
-def fields_in(numeric: Numeric) -> Iterator[FieldValue]:
-    """The payload fields that a number is made of."""
-    waiting = [numeric]
-    while waiting:
-        match waiting.pop():
-            case FieldValue() as field:
-                yield field
-            case Arithmetic(args=args):
-                waiting += args
 
 
 Facts = Mapping[Hashable, bool]
@@ -330,7 +312,7 @@ def _compared(formula: Compare) -> tuple[Hashable, bool]:
 
 def _events(formula: Compare) -> list[str]:
     """The events whose fields are compared."""
-    return [field.event for side in (formula.left, formula.right) for field in fields_in(side)]
+    return [field.event for field in fields_in(formula.left, formula.right)]
 
 
 def _key(atom: SignalAtom | EventAtom | ProbeAtom | BoundAtom) -> Hashable:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
@@ -74,6 +75,17 @@ class PathBinary:
 
 
 StateFormula = StateAtom | ModelAtom | StateNot | StateBinary | PathUnary | PathBinary
+
+
+def state_formulas(formula: StateFormula) -> Iterator[StateFormula]:
+    """The formula and all below it, from the outside in, left to right."""
+    yield formula
+    match formula:
+        case StateNot(operand=operand) | PathUnary(operand=operand):
+            yield from state_formulas(operand)
+        case StateBinary(left=left, right=right) | PathBinary(left=left, right=right):
+            yield from state_formulas(left)
+            yield from state_formulas(right)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ meaning is SEMANTICS 2.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -123,7 +123,9 @@ class WindowValue:
     def moves(self) -> bool:
         """Whether it goes on changing between samples, and not by jumps."""
         held = self.measured in (Measured.MEAN, Measured.VARIANCE) and self.most is None
-        return self.measured.of_time or (held and not _reads_field(self.value))
+        return self.measured.of_time or (
+            held and not (self.value is not None and any(fields_in(self.value)))
+        )
 
     @property
     def born_with(self) -> tuple[Compare, ...]:
@@ -132,29 +134,29 @@ class WindowValue:
         return (itself(self.value),) if asks and self.value is not None else ()
 
 
-def _reads_field(number: Numeric | None) -> bool:
-    if isinstance(number, Arithmetic):
-        return any(map(_reads_field, number.args))
-    return isinstance(number, FieldValue)
-
-
 Read = NowValue | SignalValue | FieldValue | Captured | UpdateValue
 """What a number is read off."""
 
 Numeric = Literal | Read | WindowValue | Arithmetic
 
 
+def numbers_in(*numbers: Numeric) -> Iterator[Numeric]:
+    """Numbers and what they are made of, from the left; not what stands inside of windows."""
+    for number in numbers:
+        yield number
+        if isinstance(number, Arithmetic):
+            yield from numbers_in(*number.args)
+
+
 def windows_in(*numbers: Numeric) -> tuple[WindowValue, ...]:
     """The windows that numbers are made of, each once, from the left."""
-    found: dict[WindowValue, None] = {}
-    waiting = [*reversed(numbers)]
-    while waiting:
-        match waiting.pop():
-            case WindowValue() as window:
-                found[window] = None
-            case Arithmetic(args=args):
-                waiting += reversed(args)
-    return tuple(found)
+    windows = (one for one in numbers_in(*numbers) if isinstance(one, WindowValue))
+    return tuple(dict.fromkeys(windows))
+
+
+def fields_in(*numbers: Numeric) -> Iterator[FieldValue]:
+    """The payload fields that numbers are made of, from the left."""
+    return (one for one in numbers_in(*numbers) if isinstance(one, FieldValue))
 
 
 class CompareOp(StrEnum):

@@ -6,14 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from rvmon.errors import UnknownNameError
 from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.ctl import (
-    PathBinary,
-    PathUnary,
-    StateAtom,
-    StateBinary,
-    StateFormula,
-    StateNot,
-)
+from rvmon.spec.checked.ctl import StateAtom, state_formulas
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Compare,
@@ -71,7 +64,9 @@ def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
     for requirement in spec.requirements.values():
         yield from names_of_requirement(requirement)
     for found in spec.properties.values():
-        yield from names_of_property(found.formula)
+        for part in state_formulas(found.formula):
+            if isinstance(part, StateAtom):
+                yield from names_read(part.formula)
     for cover in spec.covers.values():
         yield from names_read(cover.formula)
     for _, names in names_of_coverage(spec):
@@ -87,19 +82,6 @@ def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
     for cross in spec.crosses.values():
         if cross.upon is not None:
             yield cross.name, names_read(cross.upon)
-
-
-def names_of_property(formula: StateFormula) -> Iterator[str]:
-    """The names of the spec that a property reads, with repetitions."""
-    waiting = [formula]
-    while waiting:
-        match waiting.pop():
-            case StateAtom(formula=inner):
-                yield from names_read(inner)
-            case StateNot(operand=operand) | PathUnary(operand=operand):
-                waiting.append(operand)
-            case StateBinary(left=left, right=right) | PathBinary(left=left, right=right):
-                waiting += (right, left)
 
 
 def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:

@@ -80,6 +80,19 @@ def rewritten(formula: Unary | Binary) -> Formula:
     return read(formula, lambda operand: operand, Formulas(formula.span))
 
 
+def chain(formula: Formula, op: BinaryOp = BinaryOp.AND) -> list[Formula]:
+    """The operands of an associative connective, from the left, however they are grouped."""
+    operands: list[Formula] = []
+    waiting = [formula]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, Binary) and node.op is op:
+            waiting += (node.right, node.left)
+        else:
+            operands.append(node)
+    return operands
+
+
 def without_spans(part: Part) -> Part:
     """A formula, or a number, wherever in a spec it stands.
 

@@ -38,7 +38,7 @@ from rvmon.spec.checked.formula import (
     since_trigger,
 )
 from rvmon.spec.checked.operators import PREFIXED, Window
-from rvmon.spec.checked.rewrite import without_spans
+from rvmon.spec.checked.rewrite import chain, without_spans
 from rvmon.spec.syntax.words import RESERVED
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -179,7 +179,7 @@ def format_window(formula: WindowValue) -> str:
 
 def _conditions(formula: WindowValue) -> list[Formula]:
     """Where there is a member, but for that its number is there, and that a signal is updated."""
-    conditions = [without_spans(one) for one in _chain(formula.operand, BinaryOp.AND)]
+    conditions = [without_spans(one) for one in chain(formula.operand)]
     if formula.value is not None and not isinstance(formula.value, Literal):
         conditions = [one for one in conditions if one != itself(formula.value)]
         if isinstance(formula.value, SignalValue):
@@ -222,7 +222,7 @@ def _binary(formula: Binary) -> str:
     op = formula.op
     level = op.entry.level
     if op.entry.chained:
-        operands = _chain(formula, op)
+        operands = chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
         texts.append(_formula(operands[-1], level + 1))
         if op is not BinaryOp.IFF:
@@ -238,19 +238,6 @@ def _binary(formula: Binary) -> str:
 
 def _is_kin_of_until(formula: Formula) -> bool:
     return isinstance(formula, Binary) and formula.op.entry.level == BinaryOp.UNTIL.entry.level
-
-
-def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
-    """The operands of an associative connective, left to right."""
-    operands = []
-    waiting = [formula]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, Binary) and node.op is op:
-            waiting += (node.right, node.left)
-        else:
-            operands.append(node)
-    return operands
 
 
 def _left(formula: Formula, level: int) -> str:

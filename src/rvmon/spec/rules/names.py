@@ -26,16 +26,9 @@ outside = Breach(
 )
 
 
-def unknown_library(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
-    """A library that does not exist."""
-    return finding(
-        IMPORT,
-        f"no library named `{name}`",
-        span,
-        fix=f'there is {", ".join(known)}; a file is imported as "{name}.rv", in quotes',
-    )
-
-
+unknown_library = Breach(
+    IMPORT, "no library named `{1}`", 'there is {2}; a file is imported as "{1}.rv", in quotes'
+)
 circle = Breach(
     IMPORT,
     "files import each other in a circle",
@@ -91,25 +84,16 @@ def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
 unknown_function = Breach(UNKNOWN_FUNCTION, "no function or macro named `{1}`", "{2}")
 
 
-def recursive(names: list[str], span: Span) -> Diagnostic:
-    """Definitions that use each other in a circle; the first name stands last again."""
-    circle = " → ".join(f"`{name}`" for name in names)
-    return finding(
-        RECURSIVE,
-        f"`{names[0]}` is defined by itself: {circle}",
-        span,
-        fix="for what goes on without end use `always`, `until` and the like",
-    )
-
-
+recursive = Breach(
+    RECURSIVE,
+    "`{1}` is defined by itself: {2}",
+    "for what goes on without end use `always`, `until` and the like",
+)
 double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
 
 
 built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose another name")
 
 
-def unused(span: Span, kind: str) -> Diagnostic:
-    """A name that nothing uses; `kind` is `define`, `const` or `let`."""
-    name = span.text.strip("`")
-    fix = "remove it, or look for what should use it"
-    return finding(UNUSED, f"`{kind} {name}` is used nowhere", span, fix=fix)
+unused = Breach(UNUSED, "`{1} {2}` is used nowhere", "remove it, or look for what should use it")
+"""What nothing uses, a `define`, `const` or `let`: which of them, and its name."""

@@ -119,16 +119,11 @@ no_goal = Breach(
 )
 
 
-def reads_model(span: Span, text: str) -> Diagnostic:
-    """A clock or location in a property that is monitored."""
-    return finding(
-        NOT_LINEAR,
-        f"`{short(text)}` reads a clock or location of a model, which no run shows",
-        span,
-        fix="check it with `rvmon verify`, or write it with signals of this file",
-    )
-
-
+reads_model = Breach(
+    NOT_LINEAR,
+    "`{1}` reads a clock or location of a model, which no run shows",
+    "check it with `rvmon verify`, or write it with signals of this file",
+)
 some_path = Breach(
     NOT_LINEAR,
     "`{}` speaks of some path, and a run shows one only",

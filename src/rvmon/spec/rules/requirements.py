@@ -33,12 +33,8 @@ def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic
     )
 
 
-def false_at_first(span: Span, when: str, fix: str) -> Diagnostic:
-    """What is required from the start on cannot hold then; `when` says at which instant."""
-    text = short(span.text)
-    return finding(
-        AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, fix=fix
-    )
+false_at_first = Breach(AT_FIRST, "`{0}` is false {1}, whatever comes: it fails there", "{2}")
+"""What is required from the start on and cannot hold then: at which instant, and how to fix it."""
 
 
 def captured_once(span: Span, trigger: str) -> Diagnostic:
@@ -94,17 +90,12 @@ bare_instant = Breach(
 )
 
 
-def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
-    """A disjunction of an event and a state."""
-    return finding(
-        MIXED_TRIGGER,
-        f"`{short(pulse.text)}` is an event and `{short(level.text)}` a state: while the state "
-        "holds, the event triggers nothing",
-        pulse,
-        level,
-        fix=f"write `rise({short(level.text)})`, or make two requirements",
-    )
-
+mixed_trigger = Breach(
+    MIXED_TRIGGER,
+    "`{0}` is an event and `{1}` a state: while the state holds, the event triggers nothing",
+    "write `rise({1})`, or make two requirements",
+)
+"""A disjunction of an event and a state: the places of both, and the text of the state."""
 
 double_clause = Breach(
     DOUBLE_CLAUSE, "a requirement has one `{1}` clause", "join them, or remove one", "first here"
@@ -124,11 +115,9 @@ bad_run_share = Breach(
 )
 
 
-def never_read(span: Span, kind: str) -> Diagnostic:
-    """A declared name that nothing reads; `kind` is `signal` or `event`."""
-    return finding(
-        NEVER_READ,
-        f"{kind} `{span.text.strip('`')}` is read by no requirement",
-        span,
-        fix="remove it, or look for the requirement that should read it",
-    )
+never_read = Breach(
+    NEVER_READ,
+    "{1} `{2}` is read by no requirement",
+    "remove it, or look for the requirement that should read it",
+)
+"""A declared name that nothing reads: `signal` or `event`, and the name."""

@@ -16,11 +16,6 @@ TOO_MANY = Rule("RV006", "too-many-findings", Severity.ERROR)
 EMPTY = Rule("RV007", "empty-file", Severity.WARNING)
 
 
-def syntax_error(message: str, span: Span, fix: str = "") -> Diagnostic:
-    """Something else was expected here."""
-    return finding(SYNTAX, message, span, fix=fix)
-
-
 def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
     """The operator can be read as reaching over its operand alone or on to `end`."""
     head = short(operator.text)
@@ -58,15 +53,12 @@ def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diag
     )
 
 
-def mixed_chain(first: Span, second: Span) -> Diagnostic:
-    """Two different operators of the `until` family without brackets."""
-    return finding(
-        MIXED_CHAIN,
-        f"`{short(first.text)}` and `{short(second.text)}` in one chain need brackets",
-        second,
-        first,
-        fix="put brackets around the part that belongs together",
-    )
+mixed_chain = Breach(
+    MIXED_CHAIN,
+    "`{1}` and `{0}` in one chain need brackets",
+    "put brackets around the part that belongs together",
+)
+"""Two different operators of the `until` family: the places of second and first, and the first."""
 
 
 def comparison_chain(left: Span, first: str, middle: Span, second: str, right: Span) -> Diagnostic:

@@ -117,12 +117,11 @@ since_no_trigger = Breach(
 )
 
 
-def not_of_last(span: Span, name: str) -> Diagnostic:
-    """What is not measured of the last updates; `name` is the function."""
-    fix = "of updates there are `count`, `sum`, `mean`, `min`, `max`, `variance` and `distinct`"
-    return finding(WRONG_ARGUMENTS, f"`{name}` is of a time, not of updates", span, fix=fix)
-
-
+not_of_last = Breach(
+    WRONG_ARGUMENTS,
+    "`{1}` is of a time, not of updates",
+    "of updates there are `count`, `sum`, `mean`, `min`, `max`, `variance` and `distinct`",
+)
 not_added = Breach(
     WRONG_ARGUMENTS,
     "`{1}` is of {2}, and `{0}` is not",
@@ -201,16 +200,11 @@ mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of th
 missing_unit = Breach(MISSING_UNIT, "`{0}` needs a unit", "did you mean `{0} {1}`?")
 
 
-def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
-    """A number with a unit where the other side has none."""
-    return finding(
-        UNIT_MISMATCH,
-        f"[{unit}] meets `{short(other.text)}`, which has no unit",
-        span,
-        fix=f"declare the signal as `real [{unit}]`, or leave the unit out",
-    )
-
-
+superfluous_unit = Breach(
+    UNIT_MISMATCH,
+    "[{1}] meets `{2}`, which has no unit",
+    "declare the signal as `real [{1}]`, or leave the unit out",
+)
 no_root = Breach(
     UNIT_MISMATCH,
     "[{1}] has no square root",

@@ -16,7 +16,7 @@ from lark.visitors import Transformer_NonRecursive, v_args
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
-from rvmon.spec.rules import Refusal
+from rvmon.spec.rules import Refusal, short
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.syntax import expressions
 
@@ -160,7 +160,8 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         op = BinaryOp.of(" ".join(token.split()))
         self._check_reach(left, right)
         if token.type == "INFIX" and isinstance(right, expressions.Infix) and right.op is not op:
-            self.findings.append(rules.mixed_chain(self.span(token), right.op_span))
+            first = self.span(token)
+            self.findings.append(rules.mixed_chain(right.op_span, first, short(first.text)))
         return expressions.Infix(
             op, left, right, first_of(window), self.span(token), self.span(meta)
         )

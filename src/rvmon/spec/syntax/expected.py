@@ -9,7 +9,7 @@ import lark
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics import Diagnostic, Source, Span
-from rvmon.spec.rules import names, short, syntax, types
+from rvmon.spec.rules import finding, names, short, syntax, types
 from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
 from rvmon.units import unit_table
@@ -114,7 +114,7 @@ def explain_unexpected(
     shown = f"`{short(found)}`" if found else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
     fix = fix_of(found, accepted, parser, Span(source, start, place.start))
-    return syntax.syntax_error(message, place, fix)
+    return finding(syntax.SYNTAX, message, place, fix=fix)
 
 
 def _is_demanded(before: str, word: Span) -> bool:

@@ -81,7 +81,7 @@ class _Loader:
             yield Source(str(path), self._read(path, item)), path.parent, _key(path)
             return
         if item.target not in LIBRARIES:
-            raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
+            raise Refusal(rules.unknown_library(item.span, item.target, ", ".join(LIBRARIES)))
         folder = resources.files("rvmon.spec") / item.target
         for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
             if file.name.endswith(".rv"):
