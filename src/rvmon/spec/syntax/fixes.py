@@ -40,6 +40,40 @@ _CLAUSE = re.compile(
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
     r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
 )
+_LET = "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
+_SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
+_WRITTEN = (
+    (r'[={,]\s*\0"([^\W\d]\w*)"\Z', "NAME", "labels have no quotes: `{0}`"),
+    (r"\0=>\Z|==\s*\0>\Z", "", "write `->` for what follows, `>=` to compare"),
+    (r"(?<![\w.])never[ \t]+\0.", "", NEVER),
+    (
+        r"\Arequirement\s+([\w.]+)\s*\0\Z",
+        *("", "`{0}` is taken for its name; what it demands stands behind it"),
+    ),
+    (
+        rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\Z",
+        *("", "its name comes first: `requirement R1 {0} …`"),
+    ),
+    (r"\0let\Z|(?<![\w.])let[ \t]+\0.", "", _LET),
+    (
+        r"\Asignal.*\0ignore\Z",
+        *("", "write `ignore NaN` behind the type and role, before `stale after`"),
+    ),
+    ("", "_OF_RUNS", _SHARE),
+    (r"\0in\Z", "AND", _SHARE),
+    (r"([^\W\d]\w*)[ \t]+\0\(\Z", "", "a call has no space before its bracket: `{0}(`"),
+    (r"\0([AE][\[<].*)", "LPAR", "put brackets around `{0} …`"),
+    ("", "THEN", "the consequent stands after `then`"),
+    (r"\Arequirement\s*\0", "NAME", 'its name comes first: `requirement R1 "text"`'),
+    (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
+    (
+        r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\Z",
+        *("", "for what is to hold then write `eventually[{0}, {0}] (…)`"),
+    ),
+    (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
+)
+"""What stands before a word or sign that cannot stand there, and behind `\\0` that; a terminal that
+could, or none; and what fixes it."""
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
 """Before what a formula begins."""
 _TYPES = {
@@ -65,18 +99,13 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
     return (
         if_fix(before.text)
         or _FIX.get(found, "")
-        or _sign_fix(found, accepted, before.text)
         or _unit_fix(found, before.text)
         or _held_fix(found, before)
         or _range_fix(found, before)
         or _number_fix(found, before)
-        or _never_fix(found, before.text)
-        or _name_fix(found, before.text)
+        or _dash_fix(before.text)
         or _clause_fix(found, before.text)
-        or _let_fix(found, before.text)
-        or _ignore_fix(found, before.text)
-        or _share_fix(found, accepted)
-        or _structure_fix(found, accepted, before.text)
+        or _fix_written(found, accepted, before.text)
         or _word_fix(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
     )
@@ -86,16 +115,6 @@ def if_fix(before: str) -> str:
     """What fixes an `if` that is no choice between numbers; empty if there is none."""
     found = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
     return _TRIGGER_WORDS.format("if") if found else ""
-
-
-def _sign_fix(found: str, accepted: set[str], before: str) -> str:
-    """What fixes a label in quotes, or an arrow of another language."""
-    label = re.fullmatch(r'"([^\W\d]\w*)"', found)
-    if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
-        return f"labels have no quotes: `{label[1]}`"
-    if found == "=>" or (found == ">" and before.rstrip().endswith("==")):
-        return "write `->` for what follows, `>=` to compare"
-    return ""
 
 
 def _unit_fix(found: str, before: str) -> str:
@@ -130,73 +149,30 @@ def _held_fix(found: str, before: Span) -> str:
     )
 
 
-def _never_fix(found: str, before: str) -> str:
-    """What fixes `never φ`, which is no operator here."""
-    never = found and re.search(r"(?<![\w.])never[ \t]+$", before)
-    return NEVER if never else ""
-
-
-def _name_fix(found: str, before: str) -> str:
-    """What fixes a requirement whose name is none, or that has none."""
+def _dash_fix(before: str) -> str:
+    """What fixes a requirement whose name has dashes."""
     dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
-    if dashed:
-        name = dashed[1].replace("-", "_")
-        return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
-    alone = re.fullmatch(r"requirement\s+([\w.]+)\s*", before)
-    if alone and not found:
-        return f"`{alone[1]}` is taken for its name; what it demands stands behind it"
-    nameless = before.split() == ["requirement"] and found in NAMELESS
-    return f"its name comes first: `requirement R1 {found} …`" if nameless else ""
+    if not dashed:
+        return ""
+    name = dashed[1].replace("-", "_")
+    return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
+
+
+def _fix_written(found: str, accepted: set[str], before: str) -> str:
+    """What fixes one of `_WRITTEN`; or a unit without brackets."""
+    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
+        return f"a unit stands in brackets: `[{found}]`"
+    for pattern, terminal, fix in _WRITTEN:
+        written = re.search(pattern, f"{before}\0{found}", re.DOTALL)
+        if written and (not terminal or terminal in accepted):
+            return fix.format(*written.groups())
+    return ""
 
 
 def _clause_fix(found: str, before: str) -> str:
     """What fixes a clause above the formula, where the first word of most reads as a name."""
     clause = _CLAUSE.fullmatch(f"{before.rstrip()} {found}")
     return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
-
-
-def _let_fix(found: str, before: str) -> str:
-    """What fixes a `let` before what is required."""
-    behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
-    if found == "let" or behind:
-        return "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
-    return ""
-
-
-def _ignore_fix(found: str, before: str) -> str:
-    """What fixes what a signal ignores, in a wrong place or spelling."""
-    if found == "ignore" and before.startswith("signal"):
-        return "write `ignore NaN` behind the type and role, before `stale after`"
-    return ""
-
-
-def _share_fix(found: str, accepted: set[str]) -> str:
-    """What fixes a share of runs in other words."""
-    if "_OF_RUNS" in accepted or (found == "in" and "AND" in accepted):
-        return "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
-    return ""
-
-
-def _structure_fix(found: str, accepted: set[str], before: str) -> str:
-    """What fixes parts of an item that are in a wrong place or missing."""
-    call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
-    if found == "(" and call:
-        return f"a call has no space before its bracket: `{call[1]}(`"
-    if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
-        return f"put brackets around `{found} …`"
-    if "THEN" in accepted:
-        return "the consequent stands after `then`"
-    if accepted == {"NAME"} and before.split() == ["requirement"]:
-        return 'its name comes first: `requirement R1 "text"`'
-    if "COLON" in accepted and re.match(r"signal\b", before):
-        return "a signal has a type, as in `signal x : real [m]`"
-    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
-        return f"a unit stands in brackets: `[{found}]`"
-    if re.match(r"[\d.]+\s*[^\W\d]+$", found) and re.search(r"(?<![\w.])(after|at)[ \t]+$", before):
-        return f"for what is to hold then write `eventually[{found}, {found}] (…)`"
-    if accepted == {"COLON"} and re.match(r"event\b", before):
-        return "a field has a type, as in `event pick(id: int)`"
-    return ""
 
 
 def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
