@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import product
 
 from rvmon.analysis.words import requirement_in_words
 from rvmon.cli.lsp.names import Names, about_word
@@ -13,7 +12,7 @@ from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals
 from rvmon.spec.syntax.expressions import Ident
-from rvmon.spec.syntax.fixes import word_pattern
+from rvmon.spec.syntax.fixes import words_of
 from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem, RequirementItem
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, split_items
@@ -27,7 +26,6 @@ _NUMBER = re.compile(
 _BRACKET = re.compile(r"(?<![\w.])real[ \t]*\[[^\]\n]*\Z")
 _COMPARED = re.compile(r"`?([^\W\d][\w.]*)`?[ \t]*(?:==|!=|=)[ \t]*\Z")
 _OWN = re.compile(r"(?<![\w.])(?:let|each)\s+([^\W\d][\w.]*)|\Adefine\s+\w[\w.]*\(([^)]*)\)")
-_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
 
 
 def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
@@ -68,7 +66,7 @@ def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]
     elif "NAME" in accepted:
         yield from _named(names, item)
     for terminal in sorted(accepted - {"$END"}):
-        yield from ((word, "keyword") for word in _words(terminal))
+        yield from ((word, "keyword") for word in words_of(terminal, grammar()))
     if alone and "$END" in accepted:
         yield from ((word, "keyword") for word in (*ITEM_WORDS, "max delay"))
 
@@ -114,21 +112,6 @@ def _coverpoints(names: Names) -> Iterator[tuple[str, str]]:
     for ident in names.goals.values():
         if isinstance(names.owners[id(ident)], CoverpointItem):
             yield ident.span.text, "name"
-
-
-def _words(terminal: str) -> Iterator[str]:
-    """The words that a terminal of the grammar stands for; signs and single letters are left out.
-
-    >>> list(_words("RUN_SHARE")), list(_words("CTL"))[:2]
-    (['in at least', 'in at most'], ['AG', 'AF'])
-    """
-    plain = _LOOK_AHEAD.sub("", word_pattern(terminal, grammar())).replace(r"\s+", " ")
-    if letters := re.fullmatch(r"\[([A-Z]+)\]\[([A-Z]+)\]", plain):
-        yield from map("".join, product(*letters.groups()))
-        return
-    group = re.fullmatch(r"([a-z ]*)\(([a-z|]+)\)", plain)
-    words = [group[1] + one for one in group[2].split("|")] if group else plain.split("|")
-    yield from (word for word in words if re.fullmatch(r"[A-Za-z][A-Za-z ]+", word))
 
 
 def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span, str] | None:

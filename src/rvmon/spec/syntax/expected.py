@@ -10,7 +10,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.spec.rules import finding, names, short, syntax, types
-from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix
+from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix, words_of
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
 from rvmon.units import unit_table
 
@@ -45,38 +45,14 @@ _WORDS = {
     "STRING": 'a text in "quotes"',
     "UNIT": "a unit",
     "CALL": "a name with `(`",
-    "ROLE": "`input` or `output`",
     "$END": "the end of the item",
-    "LSQB": "`[`",
-    "INFINITE": "`inf`",
-    "EQUAL": "`=`",
-    "STALE_AFTER": "`stale after`",
-    "IGNORE_NAN": "`ignore NaN`",
-    "MONITOR_AS_RESPONSE": "`monitor as response`",
-    "MONITOR_AS_WRITTEN": "`monitor as written`",
-    "MONITOR_AS_COVER": "`monitor as cover`",
-    "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
     "MINUS": "`-`",
-    "UPON": "`upon`",
-    "WHENEVER": "`whenever`",
-    "THEN": "`then`",
-    "WITHIN": "`within`",
-    "TEXT_CLAUSE": "`source` or `rationale`",
     "UNWANTED": "`ignore` or `illegal`",
-    "FOR_EACH": "`for each`",
-    "AT_END": "`at end`",
     "RUN_SHARE": "`in at least`",
-    "_OF_RUNS": "`of runs`",
-    "TRUTH": "`true` or `false`",
-    "NOT": "`not`",
-    "AND": "`and`",
-    "OR": "`or`",
-    "XOR": "`xor`",
     "IFF": "`<->`",
     "IMPLIES": "`->`",
     "INFIX": "an operator such as `until`",
-    "LEADS_TO": "`-->`",
     "TEMPORAL": "an operator such as `always`",
     "CTL": "an operator such as `AG`",
     "PATH": "`A[]` or `E<>`",
@@ -185,6 +161,5 @@ def _in_words(accepted: set[str], parser: lark.Lark) -> str:
 def _word(terminal: str, parser: lark.Lark) -> str:
     if terminal in _WORDS:
         return _WORDS[terminal]
-    pattern = parser.get_terminal(terminal).pattern
-    word = re.match(r"[a-z]+", pattern.value)
-    return f"`{word[0] if word and pattern.type == 're' else pattern.value}`"
+    words = words_of(terminal, parser) or [parser.get_terminal(terminal).pattern.value]
+    return " or ".join(f"`{word}`" for word in words)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import product
 
 import lark
 
@@ -181,7 +182,8 @@ def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) ->
         return ""
     if "LBRACE" in accepted and found.lower() in _TYPES:
         return f"write `{_TYPES[found.lower()]}`"
-    words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", word_pattern(t, parser))]
+    phrases = " ".join(phrase for one in accepted for phrase in words_of(one, parser))
+    words = re.findall(r"[a-z]{3,}", phrases)
     close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
     if close and close != found:
         return f"did you mean `{close}`?"
@@ -219,8 +221,22 @@ def _decimal_comma(text: str) -> str:
     return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
 
 
-def word_pattern(terminal: str, parser: lark.Lark) -> str:
-    """The pattern of a terminal that stands for words; empty if it is another."""
+_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
+
+
+def words_of(terminal: str, parser: lark.Lark) -> list[str]:
+    """The words that a terminal of the grammar stands for; signs and single letters are left out.
+
+    >>> from rvmon.spec.syntax.parse import grammar
+    >>> words_of("RUN_SHARE", grammar()), words_of("CTL", grammar())[:2]
+    (['in at least', 'in at most'], ['AG', 'AF'])
+    """
     if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
-        return ""
-    return str(parser.get_terminal(terminal).pattern.value)
+        return []
+    pattern = str(parser.get_terminal(terminal).pattern.value)
+    plain = _LOOK_AHEAD.sub("", pattern).replace(r"\s+", " ")
+    if letters := re.fullmatch(r"\[([A-Z]+)\]\[([A-Z]+)\]", plain):
+        return [*map("".join, product(*letters.groups()))]
+    group = re.fullmatch(r"([a-z ]*)\(([a-z|]+)\)", plain)
+    words = [group[1] + one for one in group[2].split("|")] if group else plain.split("|")
+    return [word for word in words if re.fullmatch(r"[A-Za-z][A-Za-z ]+", word)]
