@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import ArgumentParser
 
-from rvmon.cli.options import add_dask, add_format
+from rvmon.cli.options import declare
 from rvmon.cli.parser import duration, number_or_folder, positive, shard
 
 
@@ -31,7 +31,7 @@ def add_run_options(parser: ArgumentParser) -> None:
 
 def _add_playing_options(parser: ArgumentParser) -> None:
     _add_seed_and_jobs(parser)
-    add_dask(parser)
+    declare(parser, "--dask")
     _add_timeout(parser)
     add = parser.add_argument
     add("--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML")
@@ -130,4 +130,4 @@ def _add_timeout(parser: ArgumentParser) -> None:
 def add_judging_options(parser: ArgumentParser) -> None:
     """Declare what judges, and in which form verdicts are printed."""
     parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
-    add_format(parser)
+    declare(parser, "--format")

@@ -8,10 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_max_memory, constants_of
+from rvmon.cli.options import constants_of, declare
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.parser import duration
-from rvmon.cli.reading import add_binding
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 if TYPE_CHECKING:
@@ -28,8 +27,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add = parser.add_argument
     add("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
-    add_const(parser)
-    add_binding(parser)
+    declare(parser, "--const", "--binding")
     add(
         "--format",
         choices=("text", "concise", "json"),
@@ -45,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "others imply",
     )
     add("--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file")
-    add_max_memory(parser)
+    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

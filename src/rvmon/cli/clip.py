@@ -8,13 +8,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, constants_of, refuse_over
+from rvmon.cli.options import READING, constants_of, declare, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.cli.parser import span, ticks
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
-    add_allow_missing,
-    add_reading,
     allowed_names,
     chosen_attempt,
     named_attempt,
@@ -72,9 +70,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="one file (.rvcase) with the piece and its specification: `rvmon why FILE` explains "
         "the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
     )
-    add_const(parser)
-    add_reading(parser)
-    add_allow_missing(parser)
+    declare(parser, "--const", *READING, "--allow-missing")
 
 
 def run(arguments: argparse.Namespace) -> int:

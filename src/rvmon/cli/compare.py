@@ -6,7 +6,7 @@ import argparse
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_format
+from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say_json
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("before", metavar="OLD", help="the earlier verdicts")
     add("after", metavar="NEW", help="the later ones")
     add("--all", action="store_true", help="list everything, however many")
-    add_format(parser)
+    declare(parser, "--format")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,10 +7,9 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_budget, add_format, budget_of
+from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import duration
-from rvmon.cli.reading import add_time
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.texts import counted
 
@@ -33,7 +32,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add = parser.add_argument
     add("model", metavar="MODEL", help="a .ta or .xml file")
     add("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")
-    add_time(parser)
+    declare(parser, "--time")
     add(
         "--observe",
         metavar="LABELS",
@@ -52,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=duration,
         help="compare to T seconds after the first sample, be it before or after the last one",
     )
-    add_format(parser)
+    declare(parser, "--format")
     add_budget(parser)
 
 

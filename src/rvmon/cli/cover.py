@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_format, add_max_memory
+from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import percentage
 from rvmon.errors import RvmonError, UnknownNameError
@@ -51,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="show what is new, lost or has another verdict since an earlier database, or an "
         "earlier campaign of this one",
     )
-    add_format(parser)
+    declare(parser, "--format")
     add("--report", metavar="FILE", help="write a page to look at")
     add("--ucis", metavar="FILE", help="write it as UCIS XML, for other tools")
     add("--merge", metavar="OUT", help="write all that the databases hold into this one")
@@ -68,7 +68,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="exit with 1 if something was hit that is illegal, or called unreachable, a test "
         "failed or did not complete, or --compare shows a loss",
     )
-    add_max_memory(parser)
+    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

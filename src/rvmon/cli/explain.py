@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_max_memory, constants_of
+from rvmon.cli.options import constants_of, declare
 from rvmon.cli.output import say
 from rvmon.cli.parser import positive
 from rvmon.errors import RvmonError
@@ -32,11 +32,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add = parser.add_argument
     add("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
     add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
-    add_const(parser)
+    declare(parser, "--const")
     add(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
-    add_max_memory(parser)
+    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

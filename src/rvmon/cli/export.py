@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.report.folder import write_file
@@ -37,8 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
     add("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
     add("-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)")
-    add_only(parser)
-    add_const(parser)
+    declare(parser, *ONLY, "--const")
 
 
 def run(arguments: argparse.Namespace) -> int:

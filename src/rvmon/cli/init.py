@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.options import constants_of, declare
 from rvmon.cli.output import busy, say, warn
-from rvmon.cli.reading import add_time, time_words
+from rvmon.cli.reading import time_words
 from rvmon.errors import RvmonError
 from rvmon.files import write_whole
 from rvmon.texts import counted
@@ -36,14 +36,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add = parser.add_argument
     add("data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it")
     add("--for", metavar="SPEC", dest="spec", help="print a binding for this")
-    add_const(parser)
+    declare(parser, "--const")
     add(
         "--campaign",
         metavar="DIR",
         help="write a campaign there: code under test, its surroundings, requirements, strategies",
     )
     add("-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)")
-    add_time(parser)
+    declare(parser, "--time")
     add("--force", action="store_true", help="overwrite what is there")
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.options import READING, constants_of, declare
 from rvmon.cli.output import busy, say
-from rvmon.cli.reading import add_reading, reading_spec
+from rvmon.cli.reading import reading_spec
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -28,8 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     add("spec", metavar="SPEC", nargs="?", help="a .rv file")
     add("-o", "--output", metavar="FILE", help="write a page instead")
-    add_const(parser)
-    add_reading(parser)
+    declare(parser, "--const", *READING)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -2,39 +2,119 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rvmon.cli.parser import duration, positive
+from rvmon.cli.parser import duration, instant, positive
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
-    import argparse
-
     from rvmon.session import Spec
     from rvmon.timed.search.outcome import Budget
 
 
-def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
-    """Declare `--only`, `--severity` and `--tag`."""
-    add = parser.add_argument
-    add("--only", metavar="IDS", help=f"{what}: R1,R3")
-    add(
-        "--severity", metavar="LEVELS", help="of these, those of one of the severities: high,medium"
-    )
-    add(
-        "--tag",
-        metavar="TAGS",
-        action="append",
-        default=[],
-        help="of these, those with one of the tags: stop,arm; given twice: with one of each list",
-    )
+_LEAST = 512
+"""With less, libraries in C end the process as they are loaded, each in its own words."""
+
+
+def _megabytes(text: str) -> int:
+    if (number := positive(text)) < _LEAST:
+        message = f"expected at least {_LEAST} MB, which Python and its libraries take, not {text}"
+        raise argparse.ArgumentTypeError(message)
+    return number
+
+
+_SHARED: dict[str, dict[str, Any]] = {
+    "--only": {"metavar": "IDS", "help": "these requirements: R1,R3"},
+    "--severity": {
+        "metavar": "LEVELS",
+        "help": "of these, those of one of the severities: high,medium",
+    },
+    "--tag": {
+        "metavar": "TAGS",
+        "action": "append",
+        "default": [],
+        "help": "of these, those with one of the tags: stop,arm; given twice: with one of each "
+        "list",
+    },
+    "--const": {
+        "metavar": "NAME=VALUE",
+        "action": "append",
+        "default": [],
+        "help": "override a constant",
+    },
+    "--until": {
+        "metavar": "T",
+        "type": instant,
+        "help": "evaluate to T seconds, be it before or after the last sample",
+    },
+    "--time": {
+        "metavar": "COLUMN[:UNIT]",
+        "help": "the column of stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a form of "
+        "dates such as %%d.%%m.%%Y %%H:%%M:%%S; two columns are SEC+NANOSEC; default: t in "
+        "seconds, or t_ns",
+    },
+    "--map": {
+        "metavar": "NAME=COLUMN",
+        "action": "append",
+        "default": [],
+        "help": "the column of a declared name that is called otherwise; can be given repeatedly",
+    },
+    "--nan": {
+        "choices": [reading.replace(" ", "-") for reading in READINGS_OF_NAN],
+        "help": "what NaN means: unknown (default), or no update, as where topics were merged",
+    },
+    "--binding": {
+        "metavar": "FILE",
+        "help": "TOML that maps topics and fields of messages (bags, MCAP) to names; "
+        "`rvmon init DATA --for SPEC` proposes one",
+    },
+    "--clock": {
+        "choices": ("log", "header"),
+        "help": "which stamps of messages count where the binding names none: log, when each "
+        "was recorded (default), or header",
+    },
+    "--allow-missing": {
+        "metavar": "[=NAMES]",
+        "help": "evaluate recordings in columns that lack these names (default: any): what reads "
+        "them is I, and the exit code 1",
+    },
+    "--dask": {
+        "metavar": "ADDRESS",
+        "help": "in the place of --jobs: do the work on the workers of this scheduler of Dask",
+    },
+    "--format": {
+        "choices": ("text", "json"),
+        "default": "text",
+        "help": "for people (default), or as data",
+    },
+    "--max-memory": {
+        "dest": "most_megabytes",
+        "metavar": "MB",
+        "type": _megabytes,
+        "help": "give up beyond, in each process (default: as much as there is)",
+    },
+}
+ONLY = ("--only", "--severity", "--tag")
+"""Which requirements are meant."""
+READING = ("--time", "--map", "--nan", "--binding", "--clock")
+"""How recordings are read."""
+EVALUATED = ("--const", "--until", *READING, "--allow-missing")
+"""The constants, how far and how recordings are evaluated, and what they may lack."""
+
+
+def declare(parser: argparse.ArgumentParser, *names: str) -> None:
+    """Declare options that several commands take."""
+    for name in names:
+        parser.add_argument(name, **_SHARED[name])
 
 
 def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
-    """The requirements that what `add_only` declares leaves; `None`: all.
+    """The requirements that what the options `ONLY` leave; `None`: all.
 
     Raises:
         UnknownNameError: there is no such requirement, severity or tag, or none that fits all.
@@ -68,25 +148,6 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     return requirements_asked(spec.checked, ids)
 
 
-def add_format(parser: argparse.ArgumentParser) -> None:
-    """Declare `--format`."""
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
-
-
-def add_dask(parser: argparse.ArgumentParser) -> None:
-    """Declare `--dask`."""
-    parser.add_argument(
-        "--dask",
-        metavar="ADDRESS",
-        help="in the place of --jobs: do the work on the workers of this scheduler of Dask",
-    )
-
-
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
     add = parser.add_argument
@@ -106,13 +167,6 @@ def budget_of(arguments: argparse.Namespace) -> Budget:
     from rvmon.timed.search.outcome import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
-
-
-def add_const(parser: argparse.ArgumentParser) -> None:
-    """Declare `--const`."""
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
 
 
 def constants_of(texts: Iterable[str]) -> dict[str, str]:
@@ -150,30 +204,6 @@ def _is_same_file(one: str, other: str) -> bool:
         return os.path.samefile(one, other)
     except (OSError, ValueError):
         return False
-
-
-_LEAST = 512
-"""With less, libraries in C end the process as they are loaded, each in its own words."""
-
-
-def add_max_memory(parser: argparse.ArgumentParser) -> None:
-    """Declare `--max-memory`."""
-    parser.add_argument(
-        "--max-memory",
-        dest="most_megabytes",
-        metavar="MB",
-        type=_megabytes,
-        help="give up beyond, in each process (default: as much as there is)",
-    )
-
-
-def _megabytes(text: str) -> int:
-    import argparse
-
-    if (number := positive(text)) < _LEAST:
-        message = f"expected at least {_LEAST} MB, which Python and its libraries take, not {text}"
-        raise argparse.ArgumentTypeError(message)
-    return number
 
 
 @contextmanager

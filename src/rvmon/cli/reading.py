@@ -7,10 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const
-from rvmon.cli.parser import instant
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
     import argparse
@@ -26,80 +23,6 @@ OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 
 OPTIONAL_OF_COVER = ("--bins",)
 """Those of the command that has others, of which one begins like one of these."""
-
-
-def add_time(parser: argparse.ArgumentParser) -> None:
-    """Declare `--time`."""
-    parser.add_argument(
-        "--time",
-        metavar="COLUMN[:UNIT]",
-        help="the column of stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a form of "
-        "dates such as %%d.%%m.%%Y %%H:%%M:%%S; two columns are SEC+NANOSEC; default: t in "
-        "seconds, or t_ns",
-    )
-
-
-def add_map(parser: argparse.ArgumentParser) -> None:
-    """Declare `--map`."""
-    parser.add_argument(
-        "--map",
-        metavar="NAME=COLUMN",
-        action="append",
-        default=[],
-        help="the column of a declared name that is called otherwise; can be given repeatedly",
-    )
-
-
-def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Declare how recordings are read."""
-    add_time(parser)
-    add_map(parser)
-    parser.add_argument(
-        "--nan",
-        choices=[reading.replace(" ", "-") for reading in READINGS_OF_NAN],
-        help="what NaN means: unknown (default), or no update, as where topics were merged",
-    )
-    add_binding(parser)
-    parser.add_argument(
-        "--clock",
-        choices=("log", "header"),
-        help="which stamps of messages count where the binding names none: log, when each "
-        "was recorded (default), or header",
-    )
-
-
-def add_binding(parser: argparse.ArgumentParser) -> None:
-    """Declare `--binding`."""
-    parser.add_argument(
-        "--binding",
-        metavar="FILE",
-        help="TOML that maps topics and fields of messages (bags, MCAP) to names; "
-        "`rvmon init DATA --for SPEC` proposes one",
-    )
-
-
-def add_allow_missing(parser: argparse.ArgumentParser) -> None:
-    """Declare `--allow-missing`."""
-    parser.add_argument(
-        "--allow-missing",
-        metavar="[=NAMES]",
-        default=None,
-        help="evaluate recordings in columns that lack these names (default: any): what reads them "
-        "is I, and the exit code 1",
-    )
-
-
-def add_evaluated(parser: argparse.ArgumentParser) -> None:
-    """Declare the constants, how far and how recordings are evaluated, and what they may lack."""
-    add_const(parser)
-    parser.add_argument(
-        "--until",
-        metavar="T",
-        type=instant,
-        help="evaluate to T seconds, be it before or after the last sample",
-    )
-    add_reading(parser)
-    add_allow_missing(parser)
 
 
 def with_values(words: Sequence[str]) -> list[str]:

@@ -37,8 +37,7 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
     """The reproducer that is named as the specification; the arguments then say what it says.
 
     Args:
-        arguments: with `spec`, and all that `add_reading`, `add_const` and `add_allow_missing`
-            declare.
+        arguments: with `spec`, and the options `READING`, `--const` and `--allow-missing`.
 
     Raises:
         RvmonError: it cannot be read, or they say otherwise.

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_dask, add_format, add_max_memory, add_only, ids_of, refuse_over
+from rvmon.cli.options import EVALUATED, ONLY, declare, ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.parser import positive, shard
-from rvmon.cli.reading import add_evaluated, reading_words
+from rvmon.cli.reading import reading_words
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
@@ -44,8 +44,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
-    add_only(parser, "evaluate these requirements")
-    add_evaluated(parser)
+    add("--only", metavar="IDS", help="evaluate these requirements: R1,R3")
+    declare(parser, *ONLY[1:], *EVALUATED)
     add(
         "--join",
         action="store_true",
@@ -53,13 +53,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "column's, or FILE.COLUMN",
     )
     add("--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)")
-    add_dask(parser)
+    declare(parser, "--dask")
     add(
         "--robustness",
         action="store_true",
         help="add by how much each attempt passed or failed (SI units; negative: failed)",
     )
-    add_format(parser)
+    declare(parser, "--format")
     add("--quiet", action="store_true", help="as text, only how many recordings got which verdicts")
     add(
         "--coverage",
@@ -109,7 +109,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="[=IDS]",
         help="exit with 1 if one of these (default: any) was triggered in no recording",
     )
-    add_max_memory(parser)
+    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cli.options import add_budget, add_format, budget_of
+from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
@@ -62,7 +62,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
-    add_format(parser)
+    declare(parser, "--format")
     add_budget(parser)
 
 

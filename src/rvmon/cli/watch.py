@@ -12,10 +12,10 @@ from collections.abc import Callable
 from io import FileIO
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import warn
 from rvmon.cli.parser import positive, span
-from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
+from rvmon.cli.reading import mapped_names
 from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict import Verdict
 
@@ -59,11 +59,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "ros2: (those of ROS 2) or dds:DOMAIN (the same without an installation of ROS). What "
         "has a time (t, t_ns, --time) is evaluated at it, the rest as it arrives",
     )
-    add_only(parser)
-    add_const(parser)
-    add_time(parser)
-    add_map(parser)
-    add_binding(parser)
+    declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
     add(
         "--robot",
         metavar="FIELD",

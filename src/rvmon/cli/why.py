@@ -7,11 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_format, constants_of
+from rvmon.cli.options import EVALUATED, constants_of, declare
 from rvmon.cli.output import busy, say_json, shown_while_reading
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
-    add_evaluated,
     allowed_names,
     chosen_attempt,
     named_attempt,
@@ -41,8 +40,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest")
     add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
-    add_evaluated(parser)
-    add_format(parser)
+    declare(parser, *EVALUATED, "--format")
 
 
 def run(arguments: argparse.Namespace) -> int:
