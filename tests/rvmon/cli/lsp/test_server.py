@@ -1,8 +1,6 @@
 """`rvmon lsp` as editors use it: a process that is talked to by the protocol."""
 
 import asyncio
-import json
-import re
 import signal
 import subprocess
 import sys
@@ -192,42 +190,3 @@ def test_without_pygls(monkeypatch, capsys):
     monkeypatch.delitem(sys.modules, "rvmon.cli.lsp.server", raising=False)
     assert main(["lsp"]) == 2
     assert "pip install 'rvmon[lsp]'" in capsys.readouterr().err
-
-
-MALFORMED = {
-    "{nope": (None, -32700),
-    "[" * 100_000: (None, -32700),
-    "[]": (None, -32600),
-    "null": (None, -32600),
-    '{"id": 7, "method": "shutdown"}': (7, -32600),
-    '{"jsonrpc": "2.0", "id": 7}': (7, -32600),
-    '{"jsonrpc": "2.0", "id": {"a": 1}, "method": "shutdown"}': (None, -32600),
-    '{"jsonrpc": "2.0", "id": 7, "method": "textDocument/hover", "params": [1]}': (7, -32602),
-    '{"jsonrpc": "2.0", "id": 7, "method": "textDocument/hover", "params": {"textDocument": '
-    '{"uri": "file:///x.rv"}, "position": {"line": 0, "character": 0}}}': (7, -32602),
-    '{"jsonrpc": "2.0", "id": 7, "method": "unknown/request"}': (7, -32601),
-    '{"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"x": 1}}': None,
-    '{"jsonrpc": "2.0", "method": "textDocument/didSave", "params": {"textDocument": '
-    '{"uri": "file:///x.rv"}}}': None,
-    '{"jsonrpc": "2.0", "id": 99, "result": null}': None,
-}
-
-
-def test_malformed_messages_are_answered_or_skipped():
-    """Each gets the error of the protocol, or nothing; what follows is served as ever."""
-    texts = [
-        '{"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": '
-        '{"processId": null, "rootUri": null, "capabilities": {}}}',
-        *MALFORMED,
-        '{"jsonrpc": "2.0", "id": 50, "method": "shutdown"}',
-        '{"jsonrpc": "2.0", "method": "exit"}',
-    ]
-    sent = "".join(f"Content-Length: {len(text)}\r\n\r\n{text}" for text in texts)
-    done = subprocess.run(COMMAND, input=sent.encode(), capture_output=True, timeout=60)  # noqa: S603
-    bodies = re.split(r"Content-Length: \d+\r\n(?:Content-Type: .*\r\n)?\r\n", done.stdout.decode())
-    told = [json.loads(body) for body in bodies[1:]]
-    answers = [(one["id"], one["error"]["code"]) for one in told if "error" in one]
-    assert answers == [answer for answer in MALFORMED.values() if answer]
-    assert [one["id"] for one in told if "error" not in one] == [1, 50]
-    assert b"Traceback" not in done.stderr
-    assert done.returncode == 0
