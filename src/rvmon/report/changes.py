@@ -32,6 +32,27 @@ class Course(Sequence[tuple[int, Scalar]]):
     def __init__(self, times: NDArray[Any], values: NDArray[Any], hidden: NDArray[Any]) -> None:
         self._columns = times, values, hidden
 
+    @classmethod
+    def of(cls, changes: Sequence[tuple[int, Scalar]]) -> Course:
+        """The same changes in columns."""
+        import numpy as np
+
+        # `False` where a value is unknown: an array of truth values stays one.
+        values = [False if value is None else value for _, value in changes]
+        texts = any(isinstance(value, str) for value in values)
+        return cls(
+            np.array([t for t, _ in changes], np.int64),
+            np.array(values, object if texts else None),
+            np.array([value is None for _, value in changes], bool),
+        )
+
+    @classmethod
+    def joined(cls, courses: Sequence[Course]) -> Course:
+        """One behind the other."""
+        import numpy as np
+
+        return cls(*map(np.concatenate, zip(*(one._columns for one in courses), strict=True)))
+
     def __len__(self) -> int:
         return len(self._columns[0])
 
@@ -99,13 +120,6 @@ class Course(Sequence[tuple[int, Scalar]]):
         return Course(times[rows], values[rows], hidden[rows])
 
 
-def shifted(changes: Sequence[tuple[int, Scalar]], ticks: int) -> Sequence[tuple[int, Scalar]]:
-    """Changes moved by some ticks."""
-    if isinstance(changes, Course):
-        return changes.shifted(ticks)
-    return tuple((t + ticks, value) for t, value in changes)
-
-
 def changes_of(
     spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
 ) -> Mapping[str, Changes]:
@@ -163,7 +177,7 @@ class Changes:
         self._last: int | None = None
         self._known: Scalar = None
         self._found: list[tuple[int, Scalar]] = []
-        self._columns: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]] = []
+        self._courses: list[Course] = []
 
     def add(self, t: int, value: Value, *, is_signal: bool) -> None:
         """Add an update."""
@@ -213,10 +227,10 @@ class Changes:
         kept = np.flatnonzero(differs) + 1
         gone = np.flatnonzero(aged)
         order = np.argsort(np.concatenate([2 * kept, 2 * gone + 1]), kind="stable")
-        told = np.concatenate([times[kept], times[gone] + (self._stale_after or 0) + 1])
-        column = told[order], np.concatenate([values[kept], values[gone]])[order]
+        changed = np.concatenate([times[kept], times[gone] + (self._stale_after or 0) + 1])
+        column = changed[order], np.concatenate([values[kept], values[gone]])[order]
         self._settle()
-        self._columns.append((*column, np.concatenate([hidden[kept], aged[gone]])[order]))
+        self._courses.append(Course(*column, np.concatenate([hidden[kept], aged[gone]])[order]))
         self._last = int(times[-1])
         self._known = None if hidden[-1] else _plain(values[-1])
 
@@ -236,39 +250,27 @@ class Changes:
             limit = self._stale_after
             return None if limit is not None and instant > self._last + limit else self._known
         self._settle()
-        for columns in reversed(self._columns):
-            course = Course(*columns)
+        for course in reversed(self._courses):
             if behind := course.behind(instant):
                 return course[behind - 1][1]
         return None
 
     def forget(self) -> None:
         """Discard all changes but the last one."""
-        self._columns = []
+        self._courses = []
         self._found = [] if self._last is None else [(self._last, self._known)]
 
     def _settle(self) -> None:
         """Move the changes added one by one into columns."""
-        import numpy as np
-
         if self._found:
-            times, values = zip(*self._found, strict=True)
-            hidden = np.array([value is None for value in values])
-            shown = [0 if value is None else value for value in values]
-            texts = any(isinstance(value, str) for value in values)
-            column = np.array(shown, object if texts else None)
-            self._columns.append((np.array(times, np.int64), column, hidden))
+            self._courses.append(Course.of(self._found))
             self._found = []
 
-    def ended(self) -> Sequence[tuple[int, Scalar]]:
+    def ended(self) -> Course:
         """All changes of a signal, or all sure and possible occurrences of an event."""
         self._grow_stale(None)
-        if not self._columns:
-            return tuple(self._found)
-        import numpy as np
-
         self._settle()
-        return Course(*map(np.concatenate, zip(*self._columns, strict=True)))
+        return Course.joined(self._courses or [Course.of(())])
 
 
 def _plain(value: Any) -> Scalar:

@@ -66,7 +66,7 @@ def _row(part_truth: PartTruth, panel: Panel, end: int) -> ET.Element:
     return truth_row(label, track, panel.view, end)
 
 
-def _changes(part_truth: PartTruth) -> tuple[tuple[int, Scalar], ...]:
+def _changes(part_truth: PartTruth) -> Course:
     """The truth of a subformula as the changes of a track; `None` is unknown."""
     stretches: Sequence[tuple[int, int, bool]] = sorted(
         [(a, b, True) for a, b in part_truth.true] + [(a, b, False) for a, b in part_truth.false]
@@ -80,7 +80,7 @@ def _changes(part_truth: PartTruth) -> tuple[tuple[int, Scalar], ...]:
         after = last + 1
     if after is not None:
         changes.append((after, None))
-    return tuple(changes)
+    return Course.of(changes)
 
 
 def has_unknown(panel: Panel) -> bool:
@@ -92,11 +92,7 @@ def _is_unknown(track: Track, panel: Panel) -> bool:
     if track.absent:
         return True
     view = panel.view
-    changes = track.between(view.start, view.end)
-    if isinstance(changes, Course):
-        inside = changes.has_unknown
-    else:
-        inside = any(value is None for _, value in changes)
+    inside = track.between(view.start, view.end).has_unknown
     return inside or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -12,7 +11,7 @@ from rvmon.analysis.near_miss import miss_in, parts_asked
 from rvmon.analysis.subformulas import PartTruth, late_in, part_truths_of, waits_of
 from rvmon.analysis.truths import Question, Seen, look_through, parts_of
 from rvmon.errors import RvmonError
-from rvmon.report.changes import Changes, changes_of, shifted
+from rvmon.report.changes import Changes, changes_of
 from rvmon.report.pages import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
@@ -128,7 +127,7 @@ def nearest_passing(
     best: tuple[float, Candidate, Attempt] | None = None
     looks = range(LOOKS)
     instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
-    own = [() if one.kind is TrackKind.EVENT else one.values_at(instants) for one in tracks]
+    own = [() if one.kind is TrackKind.EVENT else one.changes.values_at(instants) for one in tracks]
     for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):
         shift = attempt.triggered - passed.triggered
         moved = [instant - shift for instant in instants]
@@ -137,7 +136,7 @@ def nearest_passing(
             if mine.kind is TrackKind.EVENT:
                 distance += abs(_first(mine, view, 0) - _first(other, view, shift))
             else:
-                distance += _distance(values, other.values_at(moved))
+                distance += _distance(values, other.changes.values_at(moved))
         if best is None or distance < best[0]:
             best = (distance, candidate, passed)
     return None if best is None else _laid_over(best[1], best[2], attempt)
@@ -154,7 +153,7 @@ def _passing(
 
 def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
     shift = failed.triggered - passed.triggered
-    moved = (replace(track, changes=shifted(track.changes, shift)) for track in candidate.tracks)
+    moved = (replace(one, changes=one.changes.shifted(shift)) for one in candidate.tracks)
     end = candidate.run.report.end
     return ReferenceAttempt(
         name=candidate.run.name,
@@ -179,7 +178,7 @@ def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
 
 def _first(track: Track, view: View, shift: int) -> float:
     """The place of the first occurrence of an event in the view; 1 if it does not occur."""
-    index = bisect_left(track.changes, view.start - shift, key=lambda change: change[0])
+    index = track.changes.behind(view.start - shift - 1)
     if index == len(track.changes):
         return 1.0
     return min(view.fraction(track.changes[index][0] + shift), 1.0)

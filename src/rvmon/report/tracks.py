@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -103,37 +102,25 @@ class Track:
 
     name: str
     kind: TrackKind
-    changes: Sequence[tuple[int, Scalar]]
+    changes: Course
     unit: str = ""
     thresholds: tuple[Threshold, ...] = ()
     absent: bool = False
 
     def value_at(self, instant: int) -> Scalar:
         """A signal's value at an instant; `None` where it is unknown."""
-        index = self._behind(instant)
+        index = self.changes.behind(instant)
         return self.changes[index - 1][1] if index else None
 
-    def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
-        """The signal's values at several instants."""
-        if isinstance(self.changes, Course):
-            return self.changes.values_at(instants)
-        return [self.value_at(instant) for instant in instants]
-
-    def between(self, first: int, last: int) -> Sequence[tuple[int, Scalar]]:
+    def between(self, first: int, last: int) -> Course:
         """The changes from one instant to another, both included."""
-        return self.changes[self._behind(first - 1) : self._behind(last)]
-
-    def _behind(self, instant: int) -> int:
-        """The number of changes up to an instant, inclusive."""
-        if isinstance(self.changes, Course):
-            return self.changes.behind(instant)
-        return bisect_right(self.changes, instant, key=lambda change: change[0])
+        return self.changes[self.changes.behind(first - 1) : self.changes.behind(last)]
 
 
 def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
     """By signal, its value at an instant with its unit; events are left out.
 
-    >>> force = Track("force", TrackKind.NUMBER, ((0, 40.5), (9, None)), "N")
+    >>> force = Track("force", TrackKind.NUMBER, Course.of([(0, 40.5), (9, None)]), "N")
     >>> signals_told([force], 3), signals_told([force], 9)
     ({'force': '40.5 N'}, {'force': 'not known'})
     """
@@ -178,7 +165,7 @@ def stretches(track: Track, view: View, end: int) -> list[Stretch]:
     """
     stop = min(view.end, end)
     inside = track.between(view.start + 1, stop - 1)
-    if isinstance(inside, Course) and track.kind is TrackKind.NUMBER:
+    if track.kind is TrackKind.NUMBER:
         inside = inside.outlined(PLACES)
     changes = [(view.start, track.value_at(view.start)), *inside, (stop, None)]
     return [

@@ -145,7 +145,7 @@ def test_dense_numbers_keep_their_peaks(steps):
         t += gap
         times.append(t)
     known = ((t, float(value)) for t, (_, value) in zip(times, steps, strict=True))
-    changes = ((0, 0.0), *known)
+    changes = Course.of([(0, 0.0), *known])
     end = (times[-1] if times else 0) + 10
     view = View(0, end)
     pieces = stretches(Track("x", TrackKind.NUMBER, changes), view, end)
@@ -160,7 +160,7 @@ def test_dense_numbers_keep_their_peaks(steps):
 
 def test_a_fast_switch_is_busy_not_lost():
     """Ten thousand toggles become one busy stretch, and what is wide stays as it is."""
-    changes = tuple((t, bool(t % 2)) for t in range(10_000))
+    changes = Course.of([(t, bool(t % 2)) for t in range(10_000)])
     view = View(0, 20_000)
     drawn = readable(stretches(Track("x", TrackKind.SWITCH, changes), view, 20_000))
     assert [piece.busy for piece in drawn] == [True, False]
@@ -169,7 +169,7 @@ def test_a_fast_switch_is_busy_not_lost():
 
 def test_many_events_keep_their_places():
     """Of a million occurrences one is left per place, over the whole width."""
-    events = Track("x", TrackKind.EVENT, tuple((t, True) for t in range(100_000)))
+    events = Track("x", TrackKind.EVENT, Course.of([(t, True) for t in range(100_000)]))
     shown = [place for place, _ in occurrences(events, View(0, 99_999))]
     assert len(shown) <= PLACES + 1
     assert min(shown) < 0.01
@@ -178,7 +178,7 @@ def test_many_events_keep_their_places():
 
 def test_nothing_is_drawn_behind_the_end_of_the_run():
     """A value does not go on when the run is over."""
-    pieces = stretches(Track("x", TrackKind.SWITCH, ((0, True),)), View(0, 100), 40)
+    pieces = stretches(Track("x", TrackKind.SWITCH, Course.of([(0, True)])), View(0, 100), 40)
     assert [(piece.left, piece.right) for piece in pieces] == [(0, 0.4)]
 
 
@@ -206,6 +206,17 @@ def test_held_columns_give_the_tracks_of_samples(tmp_path, monkeypatch):
             assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
                 SPEC, requirement, changes_of(SPEC, samples)
             )
+
+
+def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
+    """In rows of a file, too, its values are truth values and no numbers."""
+    spec = rvmon.loads("signal p : bool stale after 2 s\nrequirement R always p")
+    (tmp_path / "a.csv").write_text("t,p\n0,true\n1,false\n2,true\n8,true\n")
+    held = HeldRecording(spec.recording(tmp_path / "a.csv").pieces(), {}, [])
+    (track,) = tracks_of(spec.checked, spec.requirements["R"], changes_of(spec.checked, held))
+    assert [str(value) for _, value in track.changes] == (
+        ["True", "False", "True", "None", "True", "None"]
+    )
 
 
 def test_while_it_is_lost_nothing_is_drawn_as_known():
