@@ -12,7 +12,6 @@ from rvmon.analysis.spans import FOREVER, distinct, joined, outside, within
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
-from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import (
     Amount,
@@ -146,7 +145,7 @@ def look_through(
             instants.append(times)
         if valueless:
             valueless -= _born(piece, valueless)
-        samples = _samples(spec, piece) if of_instances else ()
+        samples = _samples(piece) if of_instances else ()
         for run in runs:
             run.take(piece, samples)
     positions = None if begin is None else _positions(spec, begin, end, instants)
@@ -230,10 +229,8 @@ class _Group:
         return {text: found[core] for text, core in self._made.cores.items()}
 
 
-def _samples(spec: CheckedSpec, piece: Batch | Sample) -> Sequence[Sample]:
-    if isinstance(piece, Sample):
-        return (piece,)
-    return tuple(coalesce(piece.rows(0, len(piece.times)), spec.events, Conflicts()))
+def _samples(piece: Batch | Sample) -> Sequence[Sample]:
+    return (piece,) if isinstance(piece, Sample) else tuple(piece.samples())
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:

@@ -72,7 +72,7 @@ def write_files(
         if trace == "-":
             return []
         source = Source(spec.recording(place))
-        return HeldRecording(source.pieces(), spec.checked.events, source.outages)
+        return HeldRecording(source.pieces(), source.outages)
 
     if arguments.mcap:
         from rvmon.export.verdicts_mcap import write_verdicts

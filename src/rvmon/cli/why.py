@@ -85,7 +85,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     report = spec.judge(Source(recording, until, is_cut=is_cut, shown=kept), only=[name])
     if is_cut and until is not None:
         pieces = pieces_up_to(pieces, until)
-    samples = HeldRecording(pieces, spec.checked.events, recording.outages)
+    samples = HeldRecording(pieces, recording.outages)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)

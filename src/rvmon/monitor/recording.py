@@ -14,7 +14,6 @@ from rvmon.monitor.intake import Turn, Validator
 from rvmon.monitor.planned import PlannedCore
 from rvmon.monitor.records import report_of_run
 from rvmon.readers.batch import NO_UPDATE, YES
-from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
@@ -148,8 +147,7 @@ class RecordingRun:
             if done < count:
                 last = batch.times[done if columns is not None else -1]
                 end = int(batch.times.searchsorted(last, "right"))
-                events = self._planned.packed.events
-                for sample in coalesce(batch.rows(done, end), events, Conflicts()):
+                for sample in batch.samples(done, end):
                     self._take_sample(sample)
                 done = end
 

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.coalesce import Alternations, Conflicts
+from rvmon.readers.coalesce import Alternations, Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -61,8 +60,6 @@ class Cells:
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Cells:
         """The same at some of more rows; the others say nothing."""
-        import numpy as np
-
         values = np.zeros(count, self.values.dtype)
         values[rows] = self.values
         return Cells(values, _spread(self.says, rows, count), self.labels)
@@ -166,10 +163,8 @@ class Batch:
 
     def rows(self, start: int, stop: int) -> Iterator[Sample]:
         """Some of the rows, one by one."""
-        columns: dict[str, Iterator[Any]] = {
-            **{name: one.of_rows(start, stop) for name, one in self.signals.items()},
-            **{name: one.of_rows(start, stop) for name, one in self.events.items()},
-        }
+        both: Mapping[str, Cells | Occurrences] = {**self.signals, **self.events}
+        columns = {name: one.of_rows(start, stop) for name, one in both.items()}
         for t in self.times[start:stop].tolist():
             found: dict[str, Value] = {}
             for name, cells in columns.items():
@@ -177,6 +172,11 @@ class Batch:
                 if value is not _NOTHING:
                     found[name] = value
             yield Sample(t, found)
+
+    def samples(self, start: int = 0, stop: int | None = None) -> Iterator[Sample]:
+        """Rows as samples, those of one instant merged; see `coalesce`."""
+        rows = self.rows(start, len(self.times) if stop is None else stop)
+        return coalesce(rows, self.events, Conflicts())
 
     def numbered(self) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
         """Number, ticks and values of each row."""
@@ -202,8 +202,6 @@ def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
     Returns:
         `None` if a name is in two of them, or an instant twice in one: these are merged as samples.
     """
-    import numpy as np
-
     names = [name for one in batches for name in (*one.signals, *one.events)]
     is_twice = any((one.times[1:] == one.times[:-1]).any() for one in batches)
     if is_twice or len(names) > len({*names}):
@@ -222,8 +220,6 @@ def _spread(
     says: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
 ) -> NDArray[np.uint8]:
     """What rows say, in more rows, of which the others say nothing."""
-    import numpy as np
-
     made = np.full(count, NO_UPDATE, np.uint8)
     made[rows] = YES if says is None else says
     return made

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,8 +23,6 @@ from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from rvmon.readers.batch import Batch
 
 
 class TableRecording:
@@ -66,11 +64,9 @@ class TableRecording:
         header = list(columns)
         stamps = stamps_among(header, schema)
         given = columns[stamps.column]
-        if not stamps.is_stated and is_of_dates(given):
-            stamps = Stamps(stamps.column, "iso", is_stated=True)
-        elif is_of_durations(given):
+        stamps = stamps_of_column(stamps, given)
+        if is_of_durations(given):
             self.columns = {**columns, stamps.column: nanoseconds_of(given)}
-            stamps = Stamps(stamps.column, "ns", is_stated=True)
         self.layout: Layout = layout_of(header, stamps, schema)
         self.names: frozenset[str] | None = self.layout.names
         self.ignored = Counter(self.layout.ignored)
@@ -85,7 +81,6 @@ class TableRecording:
         return self.rows.pieces(self._batches()) if self.rows.ordered else iter(self)
 
     def _batches(self) -> Iterator[Batch | Iterator[Row]]:
-
         try:
             yield batch_of_table(self.columns, self.layout)
         except NotPlainError:
@@ -102,14 +97,12 @@ class TableRecording:
     def _read(self) -> Iterator[Row]:
         """Number from 0, ticks and values of each row."""
         layout = self.layout
-        places = [layout.time, *(column.index for column in layout.columns)]
-        names = [layout.header[place] for place in places]
-        cells = {name: cells_of(name, self.columns[name]) for name in names}
+        cells = {name: cells_of(name, self.columns[name]) for name in layout.names_read}
         lengths = {name: len(column) for name, column in cells.items()}
         if len(set(lengths.values())) > 1:
             listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
             raise TraceError(f"columns differ in length: {listed}")
-        yield from rows_of_cells(list(cells.values()), layout, 0)
+        yield from rows_of_cells(cells.values(), layout, 0)
 
     @property
     def unread(self) -> list[str]:
@@ -136,7 +129,21 @@ class TableRecording:
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
 
 
-def rows_of_cells(columns: Sequence[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
+def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
+    """The stamps of a column as its type says them: of dates, unless a unit is stated; durations.
+
+    Args:
+        stamps: as its name, or a person, says them.
+        column: an array, or what else has a type of its cells.
+    """
+    if not stamps.is_stated and is_of_dates(column):
+        return Stamps(stamps.column, "iso", is_stated=True)
+    if is_of_durations(column):
+        return Stamps(stamps.column, "ns", is_stated=True)
+    return stamps
+
+
+def rows_of_cells(columns: Iterable[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
     """Rows of columns of values, those of stamps first; `None` is absent.
 
     Raises:

@@ -59,6 +59,11 @@ class Layout:
         return self.signals + self.events
 
     @property
+    def names_read(self) -> list[str]:
+        """The names in the header of the time column and of those that the spec reads."""
+        return [self.header[place] for place in (self.time, *(one.index for one in self.columns))]
+
+    @property
     def names(self) -> frozenset[str]:
         """The declared names that have a column."""
         return frozenset(column.name for column in self.columns)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Container, Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from itertools import pairwise
-from typing import overload
+from typing import Any
 
 from rvmon.readers.batch import Batch
-from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.trace.sample import Outage, Sample
 
 
@@ -26,19 +25,12 @@ class HeldRecording(Sequence[Sample]):
 
     Args:
         pieces: of the recording, in order.
-        events: the names that are events.
         outages: what it lost.
     """
 
-    def __init__(
-        self,
-        pieces: Iterable[Batch | Sample],
-        events: Container[str],
-        outages: Sequence[Outage] = (),
-    ) -> None:
+    def __init__(self, pieces: Iterable[Batch | Sample], outages: Sequence[Outage] = ()) -> None:
         self.pieces = tuple(pieces)
         self.outages = tuple(outages)
-        self._events = events
 
     def __len__(self) -> int:
         """How many rows there are, of which some may be of one sample."""
@@ -50,14 +42,9 @@ class HeldRecording(Sequence[Sample]):
             if isinstance(piece, Sample):
                 yield piece
             else:
-                rows = piece.rows(0, len(piece.times))
-                yield from coalesce(rows, self._events, Conflicts())
+                yield from piece.samples()
 
-    @overload
-    def __getitem__(self, place: int) -> Sample: ...
-    @overload
-    def __getitem__(self, place: slice) -> list[Sample]: ...
-    def __getitem__(self, place: int | slice) -> Sample | list[Sample]:
+    def __getitem__(self, place: Any) -> Any:
         """A sample; all are gone through, but for the first."""
         return next(iter(self)) if place == 0 else list(self)[place]
 

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from heapq import merge
 from itertools import takewhile
+from operator import attrgetter
 from typing import TYPE_CHECKING, Protocol
 
 from rvmon.errors import TraceError
-from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.places import name_of, named_errors
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.sample import Health, Outage, Recording, Sample
@@ -106,7 +106,9 @@ class Joined:
             before = [own for one in heads if (own := one.take_before(until)) is not None]
             count = sum(len(one.times) for one in before)
             joined = outer_join(before, number) if count >= _FEW else None
-            rows = [] if joined is not None else [*merge(*map(_merged_rows, before), key=_instant)]
+            # Each file has noted itself where two values of an instant differ.
+            own = [one.samples() for one in before] if joined is None else []
+            rows = [*merge(*own, key=attrgetter("t"))]
             rows += [sample for one in heads for sample in one.take_at(until)]
             if joined is not None:
                 yield joined
@@ -122,7 +124,7 @@ class Joined:
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of time, equal stamps merged; errors are those of `blocks`."""
         for piece in self.pieces():
-            yield from (piece,) if isinstance(piece, Sample) else _merged_rows(piece)
+            yield from (piece,) if isinstance(piece, Sample) else piece.samples()
 
     def stamp_doubts(self) -> list[Health]:
         """What is odd about each file."""
@@ -166,7 +168,7 @@ class _Head:
                 yield part
             elif part is not None:
                 count = int(part.times.searchsorted(until, "right"))
-                yield from _merged_rows(part.cut(0, count))
+                yield from part.samples(0, count)
                 self._part = part.cut(count, len(part.times))
                 if count < len(part.times):
                     return
@@ -177,15 +179,6 @@ class _Head:
         part = self._part
         assert part is not None, "it is there"
         return part.t if isinstance(part, Sample) else int(part.times[0])
-
-
-def _merged_rows(batch: Batch) -> Iterator[Sample]:
-    """The rows of a file, which has noted itself where two values of an instant differ."""
-    return coalesce(batch.rows(0, len(batch.times)), batch.events, Conflicts())
-
-
-def _instant(sample: Sample) -> int:
-    return sample.t
 
 
 def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError, needed
 from rvmon.readers.batch import NotPlainError
-from rvmon.readers.columns import rows_of_cells
+from rvmon.readers.columns import batch_of_table, rows_of_cells, stamps_of_column
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.places import is_short_of_memory
 from rvmon.readers.rows import Row
-from rvmon.readers.tables import arrow_cells, is_of_dates, is_of_durations, nanoseconds_of
+from rvmon.readers.tables import arrow_cells, is_of_durations, nanoseconds_of
 from rvmon.readers.values import first_line
-from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.schema import Schema
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
@@ -61,12 +61,6 @@ def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
         yield dict(zip(names, map(arrow_cells, arrays), strict=True))
 
 
-def columns_read(layout: Layout) -> list[str]:
-    """The column of stamps and those that the spec reads."""
-    places = [layout.time, *(column.index for column in layout.columns)]
-    return [layout.header[place] for place in places]
-
-
 def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
     """These columns, rows by rows.
 
@@ -105,13 +99,8 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
     """
     fields = parquet_file(path).schema_arrow
     layout = read_layout(list(fields.names), schema)
-    stamps = layout.stamps
-    field = fields.field(stamps.column)
-    if not stamps.is_stated and is_of_dates(field):
-        return replace(layout, stamps=Stamps(stamps.column, "iso", is_stated=True))
-    if is_of_durations(field):
-        return replace(layout, stamps=Stamps(stamps.column, "ns", is_stated=True))
-    return layout
+    field = fields.field(layout.stamps.column)
+    return replace(layout, stamps=stamps_of_column(layout.stamps, field))
 
 
 def numbers_of_durations(column: Any) -> Any:
@@ -130,20 +119,13 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         RvmonError: there is no pyarrow.
         TraceError: with the row's number, or it is damaged.
     """
-    from rvmon.readers.cells import batch_of, cells_of_arrow
-    from rvmon.readers.columns import instants
-
     layout = parquet_layout(path, schema)
-    row = 0
-    for given, *arrays in parquet_batches(path, columns_read(layout)):
-        stamps = numbers_of_durations(given)
+    row = 1
+    for given, *others in parquet_batches(path, layout.names_read):
+        arrays = [numbers_of_durations(given), *others]
         try:
-            times = instants(stamps, layout.stamps)
-            cells = {
-                column: cells_of_arrow(array, column.kind, layout.gaps)
-                for column, array in zip(layout.columns, arrays, strict=True)
-            }
-            yield replace(batch_of(times, layout, cells), first=row + 1)
-        except (NotPlainError, TraceError):
-            yield rows_of_cells([arrow_cells(one) for one in (stamps, *arrays)], layout, row + 1)
-        row += len(stamps)
+            columns = dict(zip(layout.names_read, arrays, strict=True))
+            yield replace(batch_of_table(columns, layout), first=row)
+        except NotPlainError:
+            yield rows_of_cells(map(arrow_cells, arrays), layout, row)
+        row += len(given)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 import re
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache, partial
-from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, BinaryIO, TextIO
 
@@ -72,11 +71,17 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
     """
     with open(local_path(str(path)), "rb") as raw:
         packed = endings_of(str(path))[1]
-        if packed:
-            with BufferedReader(_Unpacked(raw, packed)) as plain:
-                yield plain, raw
-        else:
+        if not packed:
             yield raw, raw
+            return
+        open_packed, damage = _packing(packed)
+        try:
+            with open_packed(raw, "rb") as plain:
+                yield plain, raw
+        except damage as error:
+            cut = isinstance(error, EOFError)
+            fix = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
+            raise TraceError(f"cannot be unpacked ({first_line(error)}): {fix}") from None
 
 
 @contextmanager
@@ -113,58 +118,24 @@ def created(path: Path) -> Iterator[BinaryIO]:
     with open(path, "wb") as raw:
         if not packed:
             yield raw
-        elif packed == ".gz":
-            from gzip import GzipFile
-
-            with GzipFile(fileobj=raw, mode="wb") as file:
-                yield file  # type: ignore[misc]  # it can be written to
         else:
-            with _zstd().ZstdFile(raw, mode="wb") as file:
+            with _packing(packed)[0](raw, "wb") as file:
                 yield file
 
 
-class _Unpacked(RawIOBase):
-    """The text of a packed file."""
-
-    def __init__(self, raw: BinaryIO, packed: str) -> None:
+def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Exception], ...]]:
+    """What opens a file that is packed in that way, and what it raises where one is damaged."""
+    if packed == ".gz":
+        import gzip
         import zlib
 
-        self._damage: tuple[type[Exception], ...] = (EOFError, OSError, zlib.error)
-        self._plain: Any
-        if packed == ".gz":
-            from gzip import GzipFile
-
-            self._plain = GzipFile(fileobj=raw)
-        else:
-            zstd = _zstd()
-            self._damage += (zstd.ZstdError,)
-            self._plain = zstd.ZstdFile(raw)
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: Any, /) -> int:
-        """Fill the buffer with what comes next; 0 at the end."""
-        try:
-            count: int = self._plain.readinto(buffer)
-        except self._damage as error:
-            cut = isinstance(error, EOFError)
-            fix = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
-            raise TraceError(f"cannot be unpacked ({first_line(error)}): {fix}") from None
-        return count
-
-    def close(self) -> None:
-        self._plain.close()
-        super().close()
-
-
-def _zstd() -> Any:
+        return gzip.open, (EOFError, gzip.BadGzipFile, zlib.error)
     try:
         from compression import zstd  # of Python from 3.14 on
     except ImportError:
         with needed("Zstandard", "backports.zstd"):
             from backports import zstd
-    return zstd
+    return zstd.open, (EOFError, zstd.ZstdError)
 
 
 def local_path(path: str) -> Path:

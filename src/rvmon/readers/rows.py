@@ -98,13 +98,7 @@ class Rows:
         self._schema = schema
         self._unit = unit
         self.ordered = ordered
-        self._conflicts = Conflicts()
-        self.count = 0
-        self.lateness = 0
-        self.first: list[int] = []
-        self.alternations = Alternations()
-        self._last: int | None = None
-        self._leaps: list[tuple[int, int]] = []
+        self._begin()
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
         """The samples of a source that is read from its start.
@@ -159,10 +153,10 @@ class Rows:
 
     def _begin(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
-        self.count, self.first = 0, []
-        self.lateness = 0
-        self._last = None
-        self._leaps = []
+        self.count = self.lateness = 0
+        self.first: list[int] = []
+        self._last: int | None = None
+        self._leaps: list[tuple[int, int]] = []
 
     def _noted(self, sample: Sample) -> Sample:
         self.alternations.note(sample.values)

@@ -16,7 +16,6 @@ import numpy as np
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.readers.cells import cells_of_values
-from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.found import files_of
@@ -286,8 +285,7 @@ def _updates(
         elif is_plain:
             yield _of_batch(piece, columns)
         else:
-            events = {name for name, one in columns.items() if one.is_event}
-            waiting += coalesce(piece.rows(0, len(piece.times)), events, Conflicts())
+            waiting += piece.samples()
     if waiting:
         yield _of_samples(waiting, columns)
 

@@ -199,8 +199,8 @@ def test_held_columns_give_the_tracks_of_samples(tmp_path, monkeypatch):
         lost = [
             Outage(at, at + rng.randint(0, SECOND), "lost") for at in rng.sample(range(t), seed % 3)
         ]
-        held = HeldRecording(recording.pieces(), SPEC.events, lost)
-        samples = HeldRecording(list(recording), SPEC.events, lost)
+        held = HeldRecording(recording.pieces(), lost)
+        samples = HeldRecording(list(recording), lost)
         assert repr(list(held)) == repr(list(samples))
         for requirement in (R1, R2):
             assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
@@ -222,7 +222,7 @@ def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
 def test_while_it_is_lost_nothing_is_drawn_as_known():
     """Up to the first update at the last instant or behind, be it the same value."""
     samples = [Sample(t, {"gap": 2.0, "go": True}) for t in (0, 4, 6, 9)]
-    own = HeldRecording(samples, SPEC.events, [Outage(3, 8, "lost", frozenset({"gap"}))])
+    own = HeldRecording(samples, [Outage(3, 8, "lost", frozenset({"gap"}))])
     changes = changes_of(SPEC, own)
     assert list(changes["gap"].ended()) == [(0, 2.0), (3, None), (9, 2.0), (200_000_010, None)]
     assert [t for t, _ in changes["go"].ended()] == [0, 4, 6, 9]
