@@ -66,15 +66,22 @@ class MessageFeed:
         """
         if self._clock is not None:
             yield CLOCK
-        bounds = self._schema.binding.bounds
-        found = dict.fromkeys(bound.topic for bound in bounds.values())
-        for name in (*self._schema.signals, *self._schema.events):
-            column = self._schema.columns.get(name)
-            if column is not None:
-                found |= dict.fromkeys(_leading(column.strip("/").replace(".", "/")))
-            elif name not in bounds:
-                found |= dict.fromkeys(_leading(name.replace(".", "/")))
-        yield from found
+        names = (*self._schema.signals, *self._schema.events)
+        yield from dict.fromkeys(topic for name in names for topic in self._topics_of(name))
+
+    def _topics_of(self, name: str) -> Iterator[str]:
+        """The topics that may feed a name: of its column, of its binding, or those it begins with.
+
+        `base.odom` may be of the topic `/base/odom`, or a field of `/base`.
+        """
+        bound = self._schema.binding.bounds.get(name)
+        if bound is not None and name not in self._schema.columns:
+            yield bound.topic
+            return
+        path = self._schema.columns.get(name, name).strip("/").replace(".", "/")
+        while path:
+            yield f"/{path}"
+            path = path.rpartition("/")[0]
 
     def take(self, topic: Topic, content: Any) -> None:
         """Offer the sample of a message.
@@ -146,30 +153,8 @@ class MessageFeed:
 
     def _names_of(self, topic: str) -> list[str]:
         """What a topic feeds, or may feed, of the specification that holds now."""
-        declared = self._driver.spec.schema
-        return [
-            name
-            for name in self._fed.get(topic) or self._may_feed(topic)
-            if name in declared.signals or name in declared.events
+        declared, own = self._driver.spec.schema, self._schema
+        names = self._fed.get(topic) or [
+            name for name in (*own.signals, *own.events) if topic in self._topics_of(name)
         ]
-
-    def _may_feed(self, topic: str) -> list[str]:
-        """The names that a topic may feed which was never read."""
-        bounds, columns = self._schema.binding.bounds, self._schema.columns
-        found = []
-        for name in (*self._schema.signals, *self._schema.events):
-            path = columns.get(name, name).strip("/").replace(".", "/")
-            if bounds[name].topic == topic if name in bounds else topic in _leading(path):
-                found.append(name)
-        return found
-
-
-def _leading(path: str) -> Iterator[str]:
-    """The topics that a name may begin with.
-
-    >>> list(_leading("base/odom"))
-    ['/base/odom', '/base']
-    """
-    while path:
-        yield f"/{path}"
-        path = path.rpartition("/")[0]
+        return [name for name in names if name in declared.signals or name in declared.events]

@@ -31,12 +31,7 @@ class Ros1Source:
         RvmonError: rospy or rosbags is not there.
     """
 
-    def __init__(
-        self,
-        feed: MessageFeed,
-        *,
-        verdicts: str | None = None,
-    ) -> None:
+    def __init__(self, feed: MessageFeed, *, verdicts: str | None = None) -> None:
         self._rospy = _rospy()
         bag_readers()  # says what to install
         self._feed = feed

@@ -289,7 +289,7 @@ def ranges_of(
         key = one.topic.name, one.value
         if one.value and key not in ranges:
             ranges[key] = Range()
-            readers[one.topic.name].append((ranges[key], _reading(one.value)))
+            readers[one.topic.name].append((ranges[key], getter(term_of(one.value))))
     with suppress(TraceError):
         for number, (topic, _, content) in enumerate(source.read(set(readers))):
             if number == MOST:
@@ -298,9 +298,3 @@ def ranges_of(
                 with suppress(KeyError, TraceError):
                     kept.add(plain(read(content)))
     return ranges
-
-
-def _reading(value: str) -> Get:
-    term = term_of(value)
-    by_name, by_key = getter(term, mappings=False), getter(term, mappings=True)
-    return lambda content: (by_key if isinstance(content, Mapping) else by_name)(content)

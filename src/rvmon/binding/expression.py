@@ -85,24 +85,22 @@ def _known(values: Iterable[float]) -> list[float]:
     return [value for value in listed if value == value]
 
 
-def some(values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float) -> Any:
-    """Whether a comparison holds of an element; unknown if of none that is known, and one is not.
+def compared(
+    values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float, decisive: bool
+) -> bool | None:
+    """Whether a comparison holds of some element (`decisive` is true), or of all (it is false).
 
-    >>> some([2.0, 0.1], holds=operator.lt, limit=0.3), some([], holds=operator.lt, limit=0.3)
-    (True, False)
+    Returns:
+        `decisive` if it comes out so for an element that is known; unknown if it does not, and
+        there are others.
+
+    >>> [compared([2.0, 0.1], holds=operator.lt, limit=0.3, decisive=one) for one in (True, False)]
+    [True, False]
     """
     known = _known(values)
-    if any(holds(value, limit) for value in known):
-        return True
-    return False if len(known) == len(list(values)) else None
-
-
-def every(values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float) -> Any:
-    """Whether a comparison holds of all elements; unknown if it does but for unknown ones."""
-    known = _known(values)
-    if not all(holds(value, limit) for value in known):
-        return False
-    return True if len(known) == len(list(values)) else None
+    if any(holds(value, limit) == decisive for value in known):
+        return decisive
+    return (not decisive) if len(known) == len(list(values)) else None
 
 
 CONNECTIVES: Mapping[BinaryOp, Callable[[float, float], bool]] = {
@@ -118,7 +116,8 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
-_OF_ELEMENTS: Mapping[str, Callable[..., Any]] = {"any": some, "all": every}
+_OF_ELEMENTS = {"any": True, "all": False}
+"""The comparison of an element that decides that of all."""
 
 _ROTATION = ("x", "y", "z", "w")
 
@@ -174,10 +173,10 @@ def _term(expression: expressions.Expression) -> Term:
             return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
         case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
             return Applied(operator.not_, (_term(operand),), "not")
-        case expressions.Call(function=function, args=[expressions.Comparison() as compared]) if (
+        case expressions.Call(function=function, args=[expressions.Comparison() as comparison]) if (
             function.text in _OF_ELEMENTS
         ):
-            return _of_elements(function.text, compared)
+            return _of_elements(function.text, comparison)
         case expressions.Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
@@ -197,12 +196,13 @@ def _number(value: Fraction | None, unit: str) -> Constant:
         raise RvmonError("a number is too large") from None
 
 
-def _of_elements(name: str, compared: expressions.Comparison) -> Term:
+def _of_elements(name: str, comparison: expressions.Comparison) -> Term:
     """A comparison of each element of an array with a number."""
-    left, right = _term(compared.left), _term(compared.right)
+    left, right = _term(comparison.left), _term(comparison.right)
     if not isinstance(left, Field) or not isinstance(right, Constant):
         raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
-    operation = partial(_OF_ELEMENTS[name], holds=compared.op.holds, limit=right.value)
+    holds, decisive = comparison.op.holds, _OF_ELEMENTS[name]
+    operation = partial(compared, holds=holds, limit=right.value, decisive=decisive)
     return Applied(operation, (Elements(left),), name)
 
 

@@ -61,12 +61,9 @@ def _as_recorded(source: Messages, bounds: Mapping[str, Bound], piece: Piece) ->
     """The piece by the clock of the recorder."""
     clocks = {bound.topic: bound.clock or piece.schema.binding.clock for bound in bounds.values()}
     stamped = [topic for topic, clock in clocks.items() if clock is Clock.HEADER]
-    getters: dict[str, Callable[[Any], int]] = {}
+    getters = {topic: stamp_getter(source.topics[topic]) for topic in stamped}
     logged = [piece.start, piece.stop] if len(stamped) < len(clocks) or not clocks else []
     for topic, t, content in source.read(stamped):
-        if topic not in getters:
-            is_mapping = isinstance(content, Mapping)
-            getters[topic] = stamp_getter(source.topics[topic], mappings=is_mapping)
         if piece.holds(getters[topic](content)):
             logged.append(t)
     start, stop = (min(logged), max(logged)) if logged else (piece.start, piece.stop)

@@ -59,10 +59,8 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
     with zipfile.ZipFile(made, "w") as packed:
         for name, body in sorted({**entries, SUMS: sums.encode()}.items()):
             entry = zipfile.ZipInfo(name)
-            entry.create_system, entry.external_attr = (
-                3,
-                0o100644 << 16,
-            )  # as of Unix, whatever it is
+            # As of Unix, whatever it is.
+            entry.create_system, entry.external_attr = 3, 0o100644 << 16
             packed.writestr(entry, body)
     if made.tell() > MOST_BYTES:
         raise RvmonError(f"evidence of {made.tell():,} bytes is too much: evaluate fewer at once")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import sys
 import threading
 import time
 import uuid
@@ -17,14 +16,13 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import cache
 from itertools import islice
-from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from rvmon.errors import RvmonError, WorkerLostError, needed
 from rvmon.execute import Ended
+from rvmon.execute.journal import checksum
 from rvmon.execute.worker import answer, packed_error
-from rvmon.files import contents
 
 CONNECT_S = 10
 """Seconds in which a scheduler has to answer."""
@@ -47,15 +45,15 @@ def execute_on_dask(
     instead: Callable[[Any, Ended], Any] | None,
     timeout_s: float | None,
 ) -> Iterator[Any]:
-    """Do tasks; the results come in their order.
+    """Do tasks as `parallel.execute` does; what is said there of processes is of workers here.
 
     Args:
-        tasks: taken from as workers have time; what can be pickled.
-        begin: called once in each worker; what it returns does a task.
+        tasks: see there; so are the others.
+        begin: see there.
         address: of the scheduler, such as `tcp://10.0.0.5:8786`.
-        what: the word for a task in messages.
+        what: see there.
         instead: the result of a task whose worker was lost again and again, or took too long.
-        timeout_s: with `instead`, seconds after which a worker is begun anew.
+        timeout_s: see there.
 
     Raises:
         WorkerLostError: there is no worker; or those that had a task were lost, and there is no
@@ -199,14 +197,8 @@ class _Work:
         self._done[number] = (False, pickle.dumps(result))
 
 
-@cache
-def program() -> str:
-    """What distinguishes a program whose results can be mixed with these from others."""
-    import hashlib
-
-    inputs = [sys.version, *contents(Path(__file__).parents[1])]
-    return hashlib.sha256(repr(inputs).encode()).hexdigest()
-
+program = cache(checksum)
+"""What distinguishes a program whose results can be mixed with these from others."""
 
 _ONE_AT_A_TIME = threading.Lock()
 _WORK: dict[str, Callable[[Any], Any]] = {}

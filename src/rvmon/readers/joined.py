@@ -107,8 +107,8 @@ class Joined:
             count = sum(len(one.times) for one in before)
             joined = outer_join(before, number) if count >= _FEW else None
             # Each file has noted itself where two values of an instant differ.
-            own = [one.samples() for one in before] if joined is None else []
-            rows = [*merge(*own, key=attrgetter("t"))]
+            apart = [one.samples() for one in before] if joined is None else []
+            rows = [*merge(*apart, key=attrgetter("t"))]
             rows += [sample for one in heads for sample in one.take_at(until)]
             if joined is not None:
                 yield joined

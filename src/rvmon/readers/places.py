@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import weakref
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache, partial
 from pathlib import Path
@@ -247,24 +247,6 @@ def bounded_lines(text: TextIO) -> Iterator[str]:
                 "Put each sample on a line of its own"
             )
         yield line
-
-
-class Ends:
-    """Lines as they are taken.
-
-    Attributes:
-        is_there: whether the last one that was taken has its end: what lacks it may be half a line.
-    """
-
-    def __init__(self, lines: Iterable[str]) -> None:
-        self._lines = lines
-        self.is_there = True
-
-    def __iter__(self) -> Iterator[str]:
-        """The lines."""
-        for line in self._lines:
-            self.is_there = line[-1:] in ("\n", "\r")
-            yield line
 
 
 def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
@@ -57,6 +57,20 @@ class Shapes:
 
     declared: Mapping[str, Shape]
     left_out: Mapping[str, str]
+
+
+def reasons_of(left_out: Mapping[str, str], most: int) -> Iterator[str]:
+    """Why names are left out: each reason behind its names, of which at most so many are listed.
+
+    >>> list(reasons_of({"a": "lists", "b": "no value", "c": "lists"}, 1))
+    ['a and 1 more: lists', 'b: no value']
+    """
+    by_reason: dict[str, list[str]] = {}
+    for name, why in left_out.items():
+        by_reason.setdefault(why, []).append(name)
+    for why, names in by_reason.items():
+        more = f" and {len(names) - most} more" if len(names) > most else ""
+        yield f"{', '.join(names[:most])}{more}: {why}"
 
 
 MOST = 160

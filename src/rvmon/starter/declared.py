@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from rvmon.errors import TraceError
-from rvmon.readers.messages.by_names import arrays_with_names
+from rvmon.readers.messages.by_names import Get, arrays_with_names
 from rvmon.readers.messages.fields import field_of, getter
 from rvmon.readers.messages.file import MessageFile
 from rvmon.readers.messages.look import Looked, names_in
@@ -237,20 +237,14 @@ def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
 def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, Seen]:
     """The texts of a recording; a topic on which nothing was said has none."""
     seen = {name: Seen() for name in texts}
-    reading: dict[str, list[tuple[Seen, str]]] = {}
+    reading: dict[str, list[tuple[Seen, Get]]] = {}
     for name, (topic, leaf) in texts.items():
-        reading.setdefault(topic, []).append((seen[name], leaf))
-    getters = {
-        (leaf, mappings): getter(field, mappings=mappings)
-        for own in reading.values()
-        for _, leaf in own
-        for mappings in (False, True)
-        if (field := field_of(leaf)) is not None
-    }
+        if (field := field_of(leaf)) is not None:
+            reading.setdefault(topic, []).append((seen[name], getter(field)))
     for topic, _, content in source.read(reading) if reading else ():
-        for entry, leaf in reading[topic]:
+        for entry, get in reading[topic]:
             try:
-                value = getters[leaf, isinstance(content, Mapping)](content)
+                value = get(content)
             except KeyError:
                 continue
             except TraceError:

@@ -25,7 +25,7 @@ from rvmon.readers.naming import DEFAULT_COLUMNS, stamps_among
 from rvmon.readers.places import bounded_lines, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
 from rvmon.readers.values import as_declared
-from rvmon.starter.column import Column, Profile, Shape, Shapes, Updates
+from rvmon.starter.column import Column, Profile, Shape, Shapes, Updates, reasons_of
 from rvmon.starter.declared import Seen, message_shapes, shapes_seen
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
@@ -38,9 +38,11 @@ if TYPE_CHECKING:
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
 
-
 AT_ONCE = 8192
 """Rows, or samples, of which the columns are looked at together."""
+
+Told = tuple["NDArray[np.int64]", Mapping[str, Updates]]
+"""The instants of some samples, and of each name its updates there."""
 
 
 def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
@@ -270,10 +272,7 @@ def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
     return Profile(recording.path, kept, left_out, start, end, samples, late, outages)
 
 
-def _updates(
-    pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]
-) -> Iterator[tuple[NDArray[np.int64], Mapping[str, Updates]]]:
-    """The instants of some samples, and of each name its updates there."""
+def _updates(pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]) -> Iterator[Told]:
     waiting: list[Sample] = []
     for piece in pieces:
         is_plain = isinstance(piece, Batch) and (np.diff(piece.times) > 0).all()
@@ -290,9 +289,7 @@ def _updates(
         yield _of_samples(waiting, columns)
 
 
-def _of_batch(
-    batch: Batch, columns: Mapping[str, Column]
-) -> tuple[NDArray[np.int64], Mapping[str, Updates]]:
+def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Told:
     times = batch.times
     found = {name: columns[name].updates_in(times, one) for name, one in batch.signals.items()}
     for name, one in batch.events.items():
@@ -302,9 +299,7 @@ def _of_batch(
     return times, found
 
 
-def _of_samples(
-    samples: Sequence[Sample], columns: Mapping[str, Column]
-) -> tuple[NDArray[np.int64], Mapping[str, Updates]]:
+def _of_samples(samples: Sequence[Sample], columns: Mapping[str, Column]) -> Told:
     told: dict[str, tuple[list[int], list[Value]]] = {}
     for sample in samples:
         for name, value in sample.values.items():
@@ -335,13 +330,5 @@ def _cells(values: Sequence[Value], kind: Kind) -> Cells:
 
 def _reasons(left_out: Mapping[str, str]) -> str:
     """Why nothing can be declared, each reason with the first of its names."""
-    if not left_out:
-        return "there is only time"
-    by_reason: dict[str, list[str]] = {}
-    for name, why in left_out.items():
-        by_reason.setdefault(why, []).append(f"`{name}`")
-    listed = []
-    for why, names in by_reason.items():
-        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-        listed.append(f"{', '.join(names[:MOST_NAMED])}{more}: {why}")
-    return "; ".join(listed)
+    quoted = {f"`{name}`": why for name, why in left_out.items()}
+    return "; ".join(reasons_of(quoted, MOST_NAMED)) or "there is only time"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from itertools import islice
@@ -13,7 +13,7 @@ from pathlib import Path
 from rvmon.spec.checked.formula import Literal, SignalAtom
 from rvmon.spec.print import format_duration, format_formula, format_numeric
 from rvmon.spec.print.formatter import format_text
-from rvmon.starter.column import Column, Profile
+from rvmon.starter.column import Column, Profile, reasons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
@@ -223,17 +223,9 @@ def starter_text(profile: Profile) -> str:
         lines += [f"# {_declaration(column)}" for column in others]
     if profile.left_out:
         lines += ["", "# What cannot be declared as it is:"]
-        lines += [f"#   {name}: {why}" for why, name in _by_reason(profile.left_out)]
+        plain = {_plain(name): why for name, why in profile.left_out.items()}
+        lines += [f"#   {reason}" for reason in reasons_of(plain, _LISTED)]
     return format_text("\n".join(lines) + "\n")
-
-
-def _by_reason(left_out: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    names: dict[str, list[str]] = {}
-    for name, why in left_out.items():
-        names.setdefault(why, []).append(_plain(name))
-    for why, own in names.items():
-        more = f" and {len(own) - _LISTED} more" if len(own) > _LISTED else ""
-        yield why, f"{', '.join(own[:_LISTED])}{more}"
 
 
 def _header(profile: Profile) -> Iterator[str]:

@@ -176,12 +176,9 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnT
     }
     paths = distinct([path_of(name) for name in found])
     columns = dict(zip(paths, found.values(), strict=True))
-    leaves = {
-        path + "[]" * (len(one.shape) - 1): kind_of_type(one.dtype) for path, one in columns.items()
-    }
-    units = {
-        path + "[]" * (len(one.shape) - 1): one.unit for path, one in columns.items() if one.unit
-    }
+    arrays = {path + "[]" * (len(one.shape) - 1): one for path, one in columns.items()}
+    leaves = {leaf: kind_of_type(one.dtype) for leaf, one in arrays.items()}
+    units = {leaf: one.unit for leaf, one in arrays.items() if one.unit}
     name = "/" + "/".join(path_of(step) for step in place.strip("/").split("/") if step)
     topic = Topic(name if place else "/data", "arrays", leaves, units=units)
     return ColumnTopic(topic, count, lambda: (_ticks(array, stamps), columns))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rvmon.errors import TraceError
@@ -20,8 +20,6 @@ KEYS = ("name", "key", "child_frame_id", "joint_name", "hardware_id", "device_id
 """Fields that name the message that they are in."""
 
 _LISTS = re.compile(rf"(^|\.)({'|'.join(NAMES)})\[\]$")
-
-_ABSENT = object()
 
 
 def arrays_of_names(topic: Topic) -> list[str]:
@@ -53,49 +51,54 @@ def arrays_with_names(topic: Topic) -> dict[str, str]:
     return found
 
 
-def by_names(path: tuple[Step, ...], *, mappings: bool) -> Get:
-    """A function that gives the element of that name.
+def by_names(path: tuple[Step, ...]) -> Get:
+    """A function that goes a path step by step, to elements by their place or their name.
 
     It raises `KeyError` where a message has none of that name, which is then no update: joints of
     an arm and those of its hand often share a topic.
     """
 
-    def part(content: Any, name: str) -> Any:
-        if mappings:
-            return content.get(name, _ABSENT) if isinstance(content, dict) else _ABSENT
-        return getattr(content, name, _ABSENT)
-
-    def named(above: list[Any], elements: Sequence[Any], name: str) -> Any:
-        for holder in reversed(above):
-            for key in NAMES:
-                names = part(holder, key)
-                if isinstance(names, list | tuple) and names is not elements:
-                    if name not in names:
-                        raise KeyError(name)
-                    place = names.index(name)
-                    return elements[place] if place < len(elements) else None
-        for element in elements:
-            if any(part(element, key) == name for key in KEYS):
-                return element
-        raise KeyError(name)
-
     def read(content: Any) -> Any:
         above: list[Any] = []
         value = content
-        for step in path:
-            try:
+        is_mapping = isinstance(content, Mapping)
+        try:
+            for step in path:
                 if isinstance(step, str):
                     above.append(value)
-                    value = value[step] if mappings else getattr(value, step)
+                    value = value[step] if is_mapping else getattr(value, step)
                 elif isinstance(step, Named):
-                    value = named(above, value, step.name)
+                    value = _named(above, value, step.name)
                 else:
                     value = value[step]
-            except IndexError:
-                return None
-            except (TypeError, AttributeError):
-                shown = shorten(str(content))
-                raise TraceError(f"there is no `{Field(path)}` in `{shown}`") from None
+        except IndexError:
+            return None
+        except (TypeError, AttributeError):
+            shown = shorten(str(content))
+            raise TraceError(f"there is no `{Field(path)}` in `{shown}`") from None
         return value
 
     return read
+
+
+def _named(above: list[Any], elements: Sequence[Any], name: str) -> Any:
+    """The element of that name, by names beside it or beside what is above it, or by its own."""
+    for holder in reversed(above):
+        for key in NAMES:
+            names = part_of(holder, key)
+            if isinstance(names, list | tuple) and names is not elements:
+                if name not in names:
+                    raise KeyError(name)
+                place = names.index(name)
+                return elements[place] if place < len(elements) else None
+    for element in elements:
+        if any(part_of(element, key) == name for key in KEYS):
+            return element
+    raise KeyError(name)
+
+
+def part_of(content: Any, name: str) -> Any:
+    """What a message, or a part of one, has by that name; `None` if it has nothing."""
+    if isinstance(content, Mapping):
+        return content.get(name)
+    return getattr(content, name, None)

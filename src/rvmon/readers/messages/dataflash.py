@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
-from functools import partial
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -86,9 +85,8 @@ def dataflash_messages(path: Path) -> ColumnMessages:
     return ColumnMessages(topics, max(end, last), outages, log.filehandle.close)
 
 
-def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
-    """What a log has of a message; each instance is a topic of its own."""
-    whole = starts[starts + form.len <= len(data)]
+def _rows(form: Any, data: Any, starts: Any) -> Any:
+    """The messages of a format that begin at those places, as they are written."""
     letters = list(form.msg_fmts)
     if len(letters) != len(form.columns):
         raise TraceError(f"its format of {form.name} names fields without a type: copy it again")
@@ -97,8 +95,13 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
     )
     if layout.itemsize != form.len - _HEAD:
         raise TraceError(f"its format of {form.name} contradicts its length: copy it again")
-    bodies = data[whole[:, None] + np.arange(_HEAD, form.len)]
-    rows = np.ascontiguousarray(bodies).view(layout).reshape(-1)
+    bodies = data[starts[:, None] + np.arange(_HEAD, form.len)]
+    return np.ascontiguousarray(bodies).view(layout).reshape(-1)
+
+
+def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
+    """What a log has of a message; each instance is a topic of its own."""
+    rows = _rows(form, data, starts[starts + form.len <= len(data)])
     stamp = _stamp_of(form)
     if stamp is None or not len(rows):
         return []
@@ -121,12 +124,12 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
         told = {field: unit for field, unit in units.items() if field in columns}
         told = {field: unit for field, unit in told.items() if unit not in ("", "UNKNOWN")}
         topic = Topic(name, form.name, leaves_of(columns), units=told)
-        found.append(ColumnTopic(topic, len(own), partial(_both, own_times, columns)))
+
+        def load(loaded: tuple[Any, Columns] = (own_times, columns)) -> tuple[Any, Columns]:
+            return loaded
+
+        found.append(ColumnTopic(topic, len(own), load))
     return found
-
-
-def _both(times: Any, columns: Columns) -> tuple[Any, Columns]:
-    return times, columns
 
 
 def _stamp_of(form: Any) -> str | None:
@@ -164,9 +167,9 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
         form = log.formats[number]
         stamp = _stamp_of(form)
         if stamp is not None and len(own):
-            inside = own + form.len <= len(data)
-            at = np.searchsorted(places, own[inside])
-            times[at] = _stamps(form, data, own[inside], stamp)
+            inside = own[own + form.len <= len(data)]
+            stamped = _rows(form, data, inside)[stamp].astype(np.int64)
+            times[np.searchsorted(places, inside)] = stamped * _STAMPS[stamp]
     found = []
     for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]
@@ -180,12 +183,3 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     if len(places) and (behind[-1] > len(data) or not is_filling):
         found.append(Outage(end, end + 1, "it ends within a message"))
     return sorted(found, key=lambda one: one.since)
-
-
-def _stamps(form: Any, data: Any, starts: Any, stamp: str) -> Any:
-    letters = form.msg_fmts[: form.columns.index(stamp)]
-    skipped = sum(np.dtype(_TYPES[letter]).itemsize for letter in letters)
-    kind = np.dtype(_TYPES[form.msg_fmts[form.columns.index(stamp)]])
-    first = _HEAD + skipped
-    body = data[starts[:, None] + np.arange(first, first + kind.itemsize)]
-    return np.ascontiguousarray(body).view(kind).reshape(-1).astype(np.int64) * _STAMPS[stamp]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from functools import reduce
 from math import inf
 from operator import attrgetter
 from typing import Any, assert_never
@@ -122,31 +121,33 @@ def expect_kinds(
             )
 
 
-def getter(term: Term, *, mappings: bool) -> Get:
+def getter(term: Term) -> Get:
     """A function that gives the value of a term for the content of a message.
 
-    It raises `KeyError` where a mapping lacks a field; an element behind the end of an array, and
-    what is calculated with it, is `None`, which is unknown.
+    A content is an object with attributes, or a mapping. The function raises `KeyError` where one
+    lacks a field; an element behind the end of an array, and what is calculated with it, is `None`,
+    which is unknown.
     """
     match term:
         case Constant(value=value):
             return lambda _: value
         case Field(path=path):
-            if not mappings and all(isinstance(step, str) for step in path):
-                return attrgetter(".".join(map(str, path)))
-            if any(isinstance(step, Named) for step in path):
-                return by_names(path, mappings=mappings)
-            return _stepping(path, mappings=mappings)
+            step_by_step = by_names(path)
+            if not all(isinstance(step, str) for step in path):
+                return step_by_step
+            at_once = attrgetter(".".join(map(str, path)))
+            return lambda content: (
+                step_by_step(content) if isinstance(content, Mapping) else at_once(content)
+            )
         case Elements(array=array):
-            return getter(array, mappings=mappings)
-        case Applied(operation=operation, args=(Field() as field,), sign="number"):
-            text = getter(field, mappings=mappings)
-            return lambda content: None if (one := text(content)) is None else operation(one)
-        case Applied(operation=operation, args=(Elements() as elements,)):
-            values = getter(elements, mappings=mappings)
-            return lambda content: None if (one := values(content)) is None else operation(one)
+            return getter(array)
+        case Applied(operation=operation, args=(Field() | Elements() as read_from,), sign=sign) if (
+            sign == "number" or isinstance(read_from, Elements)
+        ):
+            value_of = getter(read_from)
+            return lambda content: None if (one := value_of(content)) is None else operation(one)
         case Applied(operation=operation, args=args):
-            read = [getter(arg, mappings=mappings) for arg in args]
+            read = [getter(arg) for arg in args]
             return lambda content: _calculated(operation, [one(content) for one in read])
         case _:
             assert_never(term)
@@ -166,24 +167,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
     return calculated(operation, *known)
 
 
-def _stepping(path: tuple[Step, ...], *, mappings: bool) -> Get:
-    def step(content: Any, name: Any) -> Any:
-        if mappings or isinstance(name, int):
-            return content[name]
-        return getattr(content, name)
-
-    def read(content: Any) -> Any:
-        try:
-            return reduce(step, path, content)
-        except IndexError:
-            return None
-        except TypeError:
-            raise TraceError(f"there is no `{Field(path)}` in `{shorten(str(content))}`") from None
-
-    return read
-
-
-def stamp_getter(topic: Topic, *, mappings: bool) -> Callable[[Any], int]:
+def stamp_getter(topic: Topic) -> Callable[[Any], int]:
     """A function that gives the ticks that the header of a message says.
 
     Raises:
@@ -192,10 +176,7 @@ def stamp_getter(topic: Topic, *, mappings: bool) -> Callable[[Any], int]:
     for prefix in _STAMPS:
         for seconds, parts in _PARTS:
             if {f"{prefix}.{seconds}", f"{prefix}.{parts}"} <= topic.leaves.keys():
-                read = [
-                    getter(Field((*prefix.split("."), part)), mappings=mappings)
-                    for part in (seconds, parts)
-                ]
+                read = [getter(Field((*prefix.split("."), one))) for one in (seconds, parts)]
                 return lambda content: int(read[0](content)) * 1_000_000_000 + int(read[1](content))
     raise TraceError(
         f"topic {topic.name} ({topic.type}) has no header whose stamp could count: "

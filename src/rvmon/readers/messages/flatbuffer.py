@@ -71,7 +71,7 @@ class FlatBuffers:
 
     def __init__(self, schema: bytes, name: str) -> None:
         told = _Packed(schema)
-        root = told.start()
+        root = told.follow(0)
         self._types = [told.type_at(place) for place in told.tables(root, 0)]
         found = (one for one in self._types if one.name == name)
         self._root = next(found, None) or told.type_at(told.follow(told.slot(root, 12)))
@@ -96,7 +96,7 @@ class FlatBuffers:
             Exception: it is none; what struct raises.
         """
         message = _Packed(data)
-        return dict(self._values(message, message.start(), self._root))
+        return dict(self._values(message, message.follow(0), self._root))
 
     def _values(self, packed: _Packed, at: int, of: _Type) -> Iterator[tuple[str, Any]]:
         packed.spend(4)
@@ -157,10 +157,6 @@ class _Packed:
         if at < 0:
             raise ValueError("an offset leads out of it")
         return form.unpack_from(self.data, at)[0]
-
-    def start(self) -> int:
-        """Where its root is."""
-        return self.follow(0)
 
     def follow(self, at: int) -> int:
         """Where an offset leads."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.messages.by_names import arrays_of_names
+from rvmon.readers.messages.by_names import arrays_of_names, part_of
 from rvmon.readers.messages.fields import field_of, getter
 from rvmon.readers.messages.file import MessageFile
 
@@ -85,7 +85,7 @@ def _entries(steps: Sequence[str], content: Any) -> Iterator[tuple[str, str]]:
 
 
 def _elements(array: str, content: Any) -> Sequence[Any]:
-    found = content.get(array) if isinstance(content, Mapping) else getattr(content, array, None)
+    found = part_of(content, array)
     return found if isinstance(found, list | tuple) else ()
 
 
@@ -93,9 +93,8 @@ def _texts(leaf: str, content: Any) -> list[str]:
     field = field_of(leaf.removesuffix("[]"))
     if field is None:
         return []
-    get = getter(field, mappings=isinstance(content, Mapping))
     with suppress(KeyError, TraceError):
-        value = get(content)
+        value = getter(field)(content)
         return [value] if isinstance(value, str) else [str(one) for one in value or ()]
     return []
 

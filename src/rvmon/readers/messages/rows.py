@@ -13,7 +13,7 @@ from rvmon.readers.messages.topic import Messages, Topic
 from rvmon.readers.rows import Row
 from rvmon.readers.values import DESCRIPTION, as_declared, fits, plain, shorten
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Bound, Clock, Kind, Schema, Term
+from rvmon.trace.schema import Bound, Clock, Gaps, Kind, Schema, Term
 from rvmon.trace.time import whole_ticks
 
 _ABSENT = object()
@@ -81,30 +81,28 @@ class MessageReaders:
         """
         made = self._made.get(topic.name)
         if made is None:
-            made = self._made[topic.name] = self._make(topic, isinstance(content, Mapping))
+            made = self._made[topic.name] = self._make(topic)
         for stamp, takes in made:
             values: dict[str, Value] = {}
             for take in takes:
                 take(content, values)
             yield whole_ticks(logged if stamp is None else stamp(content)), values
 
-    def _make(
-        self, topic: Topic, mappings: bool
-    ) -> list[tuple[Callable[[Any], int] | None, list[Take]]]:
+    def _make(self, topic: Topic) -> list[tuple[Callable[[Any], int] | None, list[Take]]]:
         takes: dict[Clock, list[Take]] = defaultdict(list)
         for name, bound in self._by_topic[topic.name]:
             make = _signal if name in self._schema.signals else _event
-            take = make(name, bound, self._schema, mappings)
-            takes[bound.clock or self._schema.binding.clock].append(take)
+            clock = bound.clock or self._schema.binding.clock
+            takes[clock].append(make(name, bound, self._schema))
         return [
-            (stamp_getter(topic, mappings=mappings) if clock is Clock.HEADER else None, own)
+            (stamp_getter(topic) if clock is Clock.HEADER else None, own)
             for clock, own in takes.items()
         ]
 
 
-def _signal(name: str, bound: Bound, schema: Schema, mappings: bool) -> Take:
+def _signal(name: str, bound: Bound, schema: Schema) -> Take:
     assert bound.value is not None, "a signal has a value"
-    read = _reader(name, bound.value, schema.signals[name], bound.labels, schema, mappings)
+    read = _reader(name, bound.value, schema.signals[name], bound.labels, schema.gaps)
     before: list[Any] = [_ABSENT]
 
     def take(content: Any, values: dict[str, Value]) -> None:
@@ -120,15 +118,14 @@ def _is_same(first: Any, second: Any) -> bool:
     return first is second or first == second or (first != first and second != second)
 
 
-def _event(name: str, bound: Bound, schema: Schema, mappings: bool) -> Take:
-    kinds = schema.events[name]
+def _event(name: str, bound: Bound, schema: Schema) -> Take:
+    kinds, gaps, occurs = schema.events[name], schema.gaps, None
     fields = {
-        field: _reader(f"{name}.{field}", term, kinds[field], {}, schema, mappings)
+        field: _reader(f"{name}.{field}", term, kinds[field], {}, gaps)
         for field, term in bound.fields.items()
     }
-    occurs = None
     if bound.value is not None:
-        occurs = _reader(name, bound.value, Kind.BOOL, {}, schema, mappings)
+        occurs = _reader(name, bound.value, Kind.BOOL, {}, gaps)
     before: list[Any] = [_ABSENT]
 
     def take(content: Any, values: dict[str, Value]) -> None:
@@ -151,16 +148,10 @@ def _event(name: str, bound: Bound, schema: Schema, mappings: bool) -> Take:
 
 
 def _reader(
-    name: str,
-    term: Term,
-    kind: Kind,
-    labels: Mapping[str, str],
-    schema: Schema,
-    mappings: bool,
+    name: str, term: Term, kind: Kind, labels: Mapping[str, str], gaps: Gaps
 ) -> Callable[[Any], Any]:
     """What gives a value of the kind, `None` where it is unknown, or `_ABSENT`."""
-    get = getter(term, mappings=mappings)
-    gaps = schema.gaps
+    get = getter(term)
 
     def read(content: Any) -> Any:
         try:

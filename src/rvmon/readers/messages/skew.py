@@ -7,7 +7,7 @@ difference of many messages is mostly the second.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -84,7 +84,7 @@ class Skew:
         """Take a message."""
         found = self.by_topic.get(topic.name)
         if found is None:
-            found = self.by_topic[topic.name] = Differences(_stamp_of(topic, content))
+            found = self.by_topic[topic.name] = Differences(_stamp_of(topic))
         if found.stamp is not None:
             found.note(logged, content)
 
@@ -115,8 +115,8 @@ def _remarks(one: Differences, nearest: int, topics: int) -> list[str]:
     return [*remarks, "do the clocks agree?"] if remarks else []
 
 
-def _stamp_of(topic: Topic, content: Any) -> Callable[[Any], int] | None:
+def _stamp_of(topic: Topic) -> Callable[[Any], int] | None:
     try:
-        return stamp_getter(topic, mappings=isinstance(content, Mapping))
+        return stamp_getter(topic)
     except TraceError:
         return None

@@ -10,7 +10,7 @@ import re
 import tomllib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import merge
 from io import TextIOWrapper
 from itertools import islice
@@ -22,7 +22,7 @@ from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
 from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.places import Ends, bounded_lines, endings_of, named_errors
+from rvmon.readers.places import bounded_lines, endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.texts import did_you_mean, text_of_file
 from rvmon.trace.schema import Kind, Schema, Stamps
@@ -96,7 +96,7 @@ def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
         raise TraceError(f"{place}: no TOML: {error}") from None
     _expect(content, ("time", "topics"), place)
     listed = content.get("topics") or {
-        endings_stripped(path): path.name
+        path.name.partition(".")[0]: path.name
         for path in sorted(folder.iterdir())
         if endings_of(path.name)[0] == ".csv"
     }
@@ -111,15 +111,6 @@ def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
         stamps = None if time is None else stamps_of(str(time))
         kind = str(table.get("type", "CSV"))
         yield f"/{name.strip('/')}", _Table(folder / table["file"], kind, stamps, {})
-
-
-def endings_stripped(path: Path) -> str:
-    """The name of a file without its endings.
-
-    >>> endings_stripped(Path("flight/odom.csv.gz"))
-    'odom'
-    """
-    return path.name.partition(".")[0]
 
 
 def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None:
@@ -137,12 +128,21 @@ def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
         opened_as_csv(table.path, table.stamps) as (plain, _),
         TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
     ):
-        yield _ended(split_lines(ends := Ends(bounded_lines(text))), ends)
+        yield _ended(bounded_lines(text))
 
 
-def _ended(rows: Iterator[tuple[int, list[str]]], ends: Ends) -> Iterator[tuple[int, list[str]]]:
-    for line, row in rows:
-        if not ends.is_there:
+def _ended(lines: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
+    """The lines, split: what lacks its end may be half a line."""
+    last = ""
+
+    def taken() -> Iterator[str]:
+        nonlocal last
+        for line in lines:
+            last = line
+            yield line
+
+    for line, row in split_lines(taken()):
+        if not last.endswith(("\n", "\r")):
             raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
         yield line, row
 
@@ -166,7 +166,7 @@ def _looked_over(table: _Table) -> _Table:
             for name, own in cells.items()
             if name != stamps.column and _PATH.fullmatch(name)
         }
-    return _Table(table.path, table.type, table.stamps, kinds)
+    return replace(table, kinds=kinds)
 
 
 def _kind(cells: Sequence[str]) -> Kind | None:
