@@ -129,8 +129,11 @@ class _Values:
         self._reads = [
             (attempt, names) for attempt in failures if (names := _names_blamed(spec, attempt))
         ]
-        self.names: Set[str] = {name for _, names in self._reads for name in names}
-        self.until = max((attempt.decided or 0 for attempt, _ in self._reads), default=0)
+        self._asked: dict[int, set[str]] = {}
+        for attempt, names in self._reads:
+            self._asked.setdefault(attempt.decided or 0, set()).update(names)
+        self.names: Set[str] = {name for names in self._asked.values() for name in names}
+        self.until = max(self._asked, default=0)
         self._told: dict[int, Mapping[str, str]] = {}
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
@@ -138,7 +141,7 @@ class _Values:
         from rvmon.report.changes import RunChanges
 
         changes = RunChanges(self._spec.checked, self.names)
-        waiting = sorted({attempt.decided or 0 for attempt, _ in self._reads}, reverse=True)
+        waiting = sorted(self._asked, reverse=True)
 
         def tell(until: int) -> None:
             while waiting and waiting[-1] <= until:
@@ -160,7 +163,7 @@ class _Values:
         signals = self._spec.checked.signals
         return {
             name: value_text(changes.by_name[name].value_at(instant), signals[name].type.unit)
-            for name in sorted(self.names)
+            for name in sorted(self._asked[instant])
         }
 
     def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
