@@ -76,7 +76,7 @@ class Measured(StrEnum):
     )
     DISTINCT = (
         *("distinct", Members.EVENTS, Dimension.PLAIN),
-        "how many different values x had in the last D",
+        "how many different values the updates of x in the last D brought",
         *("at least as many as are known", 96, 128, False),
     )
     MIN = (
