@@ -29,13 +29,12 @@ from pathlib import Path
 
 from handover.model import handover_network
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import load_network
 from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
 from rvmon.timed.runs.statistics import sample, trajectories
 from rvmon.timed.search.extremes import extremes
-from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.meter import Budget, Meter
 from rvmon.timed.search.verify import verify
 
 HERE = Path(__file__).parent
@@ -77,7 +76,7 @@ def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
         suffix = ".xml" if name == "csma_cd" else ".ta"
         network = load_network(MODELS / f"{name}{suffix}", constants={"N": size})
     if name == "csma_cd":
-        return [(network, query_on(network, COLLISION))]
+        return [(network, asked_on(network, COLLISION)[1])]
     return [(network, network.queries[0])]
 
 

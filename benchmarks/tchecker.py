@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.meter import Budget
 from rvmon.timed.search.verify import verify
 
 _SEARCH = ("-a", "aLU-covreach", "-s", "bfs")

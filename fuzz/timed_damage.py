@@ -10,7 +10,7 @@ from random import Random
 from rvmon.errors import ModelError
 from rvmon.export.uppaal import network_dot, uppaal_xml
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.meter import Budget
 from rvmon.timed.search.verify import verify
 
 SMALL = Budget(states=300, seconds=5.0)

@@ -20,15 +20,14 @@ from tests.tools.timed_runs import shows
 
 from rvmon.errors import ModelError
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import UnaryOperation
+from rvmon.timed.model.expressions import UnaryOp, UnaryOperation
 from rvmon.timed.model.guards import compares_of, is_linear
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network
-from rvmon.timed.model.operators import UnaryOp
 from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Ending
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 from rvmon.timed.search.verify import verify
 
 ROOT = Path(__file__).parents[2]
@@ -95,7 +94,7 @@ def judge_logics(seed: int, numbers: range) -> Found:
 
 
 def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
-    query = query_on(network, text)
+    query = asked_on(network, text)[1]
     formula, outcome = query.formula, verify(network, query)
     if isinstance(formula, LeadsToFormula | Asked) or not is_linear(formula):
         counts[f"CTL: {str(outcome.holds).lower()}"] += 1

@@ -16,10 +16,16 @@ from random import Random
 import networkx as nx
 from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
-from rvmon.timed.model.expressions import BinaryOperation, Expression, PathFormula, UnaryOperation
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    Expression,
+    PathFormula,
+    PathOp,
+    UnaryOp,
+    UnaryOperation,
+)
 from rvmon.timed.model.guards import is_linear, parts_of
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import PathOp, UnaryOp
 from rvmon.timed.runs.concrete import Rules, initial_configuration
 from rvmon.timed.runs.run import Run
 

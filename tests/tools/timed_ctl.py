@@ -14,15 +14,17 @@ from random import Random
 import networkx as nx
 
 from rvmon.timed.model.expressions import (
+    BinaryOp,
     BinaryOperation,
     Deadlock,
     Expression,
     PathFormula,
+    PathOp,
+    UnaryOp,
     UnaryOperation,
 )
 from rvmon.timed.model.guards import is_plain, parts_of
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network, Query
-from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 Regions = frozenset[Region]

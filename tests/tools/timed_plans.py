@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import (
     FALSE,
@@ -19,7 +19,7 @@ from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Plan
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
@@ -68,6 +68,6 @@ def _watched(network: Network) -> Network:
 
 
 def _formula(network: Network, text: str) -> Expression:
-    formula = query_on(network, text).formula
+    formula = asked_on(network, text)[1].formula
     assert not isinstance(formula, LeadsToFormula | Asked)
     return formula

@@ -18,12 +18,14 @@ from typing import Any
 
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
+    BinaryOp,
     BinaryOperation,
     Choice,
     ClockCompare,
     ClockOp,
     Constant,
     Expression,
+    UnaryOp,
     UnaryOperation,
 )
 from rvmon.timed.model.guards import (
@@ -31,7 +33,6 @@ from rvmon.timed.model.guards import (
     is_discrete,
 )
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,

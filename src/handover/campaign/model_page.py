@@ -101,9 +101,8 @@ def claims() -> list[str]:
 
 
 def _verifier() -> Callable[[str], Row]:
-    from rvmon.timed.model.expressions import PathFormula
+    from rvmon.timed.model.expressions import PathFormula, PathOp
     from rvmon.timed.model.network import Chance
-    from rvmon.timed.model.operators import PathOp
     from rvmon.timed.runs.statistics import sample
     from rvmon.timed.search.verify import verify
 

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from handover.driver.play import Run
-    from rvmon.timed.conformance.conform import Conformance
-    from rvmon.timed.conformance.recordings import Recorded
+    from rvmon.timed.conformance.conform import Conformance, Recorded
     from rvmon.timed.model.network import Network
 
 OBSERVED = (
@@ -41,7 +40,7 @@ def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
     that the robot has to go by. One at an instant at which the model's human has none, such as
     before, is not observed: whether the robot heard it is left open.
     """
-    from rvmon.timed.conformance.recordings import Recorded
+    from rvmon.timed.conformance.conform import Recorded
 
     found = {
         name: [t for t, values in run.samples if name in values] for name in (*OBSERVED, READY)

@@ -171,7 +171,7 @@ def templates_of(
     Raises:
         TestError: a query has no witness.
     """
-    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.meter import Policy
     from rvmon.timed.search.verify import verify
 
     found = []
@@ -214,10 +214,9 @@ def project(
             taken.append(does.get((index, edge)))
     # A test acts in whole units: a limit between two units is the next one inside.
     within = [
-        [floor(bound / timing.scale) if (bound := float(timing.bounds[p, q])) < inf else inf
-         for q in instants]
-        for p in instants
-    ]  # fmt: skip
+        [floor(bound / timing.scale) if bound < inf else inf for bound in row]
+        for row in timing.relation(instants).tolist()
+    ]
     steps = tuple(
         TemplateStep(texts[now], _wait(within, now - 1, now), taken[now])
         for now in range(1, len(instants))

@@ -58,7 +58,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
     from rvmon.readers.found import found_recordings
-    from rvmon.timed.conformance.recordings import labels_of
+    from rvmon.timed.conformance.conform import labels_of
     from rvmon.timed.language.load import load_network
     from rvmon.trace.stamps import stamps_of
 
@@ -101,8 +101,7 @@ def _compare(
     arguments: argparse.Namespace,
 ) -> Conformance:
     from rvmon.readers.recording import FileRecording
-    from rvmon.timed.conformance.conform import conform
-    from rvmon.timed.conformance.recordings import actions_in
+    from rvmon.timed.conformance.conform import actions_in, conform
     from rvmon.trace.schema import Schema
     from rvmon.trace.time import ticks_of_seconds
 

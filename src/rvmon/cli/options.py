@@ -14,7 +14,7 @@ from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.timed.search.outcome import Budget
+    from rvmon.timed.search.meter import Budget
 
 
 _LEAST = 512
@@ -164,7 +164,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
     """When a search gives up."""
-    from rvmon.timed.search.outcome import Budget
+    from rvmon.timed.search.meter import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rvmon.timed.runs.run import Run
     from rvmon.timed.runs.statistics import Sampled
     from rvmon.timed.search.extremes import Extreme
-    from rvmon.timed.search.outcome import Budget, Outcome, Watch
+    from rvmon.timed.search.meter import Budget, Outcome, Watch
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -106,8 +106,7 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
     from rvmon.timed.model.network import Chance, Extremes, Mean, Simulation
     from rvmon.timed.runs.statistics import sample, trajectories
     from rvmon.timed.search.extremes import extremes
-    from rvmon.timed.search.meter import Meter
-    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.meter import Meter, Policy
     from rvmon.timed.search.verify import verify
 
     data: dict[str, list[dict[str, Any]]] = {"queries": [], "simulated": [], "extremes": []}
@@ -318,7 +317,7 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     from rvmon.analysis.example import Example
     from rvmon.report.explain_text import picture_of
     from rvmon.report.tracks import concerned_names
-    from rvmon.timed.conformance.recordings import recording_of
+    from rvmon.timed.conformance.conform import recording_of
     from rvmon.timed.observation.observe import signals_of
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind

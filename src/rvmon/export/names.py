@@ -11,6 +11,7 @@ from typing import assert_never
 
 from rvmon.timed.model.expressions import (
     Assignment,
+    BinaryOp,
     BinaryOperation,
     Choice,
     ClockCompare,
@@ -30,6 +31,7 @@ from rvmon.timed.model.expressions import (
     Return,
     Slot,
     Statement,
+    UnaryOp,
     UnaryOperation,
     Variable,
     VariableValue,
@@ -40,7 +42,6 @@ from rvmon.timed.model.expressions import (
 from rvmon.timed.model.fractions import FUNCTIONS, number_of
 from rvmon.timed.model.guards import parts_of
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 _KEYWORDS = (
     "after_update and assign before_update bool break broadcast case chan clock "

@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape
 from rvmon.analysis.graph import quoted
 from rvmon.export.names import Names, Thing, function_lines, type_text, updates_text
 from rvmon.texts import shown, shown_line
-from rvmon.timed.model.expressions import TRUE, PathFormula, Slot, Variable
+from rvmon.timed.model.expressions import TRUE, LocationKind, PathFormula, PathOp, Slot, Variable
 from rvmon.timed.model.fractions import number_of
 from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (
@@ -28,7 +28,6 @@ from rvmon.timed.model.network import (
     Query,
     QueryFormula,
 )
-from rvmon.timed.model.operators import LocationKind, PathOp
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _HEAD = """<?xml version="1.0" encoding="utf-8"?>

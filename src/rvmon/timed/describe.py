@@ -15,7 +15,7 @@ from rvmon.timed.observation.observe import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.timed.runs.statistics import ERROR, Sampled, Trajectory
 from rvmon.timed.search.extremes import Extreme
-from rvmon.timed.search.outcome import Outcome
+from rvmon.timed.search.meter import Outcome
 from rvmon.timed.search.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
 

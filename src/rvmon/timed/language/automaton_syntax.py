@@ -14,7 +14,7 @@ from rvmon.timed.language.syntax import (
     TypeText,
     UpdateText,
 )
-from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.expressions import LocationKind
 
 
 @dataclass(frozen=True, slots=True)

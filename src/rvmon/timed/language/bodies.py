@@ -8,19 +8,25 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
-from rvmon.timed.language.layout import (
+from rvmon.timed.language.operations import clock_number, fitted
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.symbols import (
     Extents,
     claim,
+    element_of,
+    is_alike,
+    is_whole,
     laid_out,
+    leaves,
     parts_of_initial,
+    value_of,
     values_of,
 )
-from rvmon.timed.language.reals import bound, fitted
-from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.symbols import element_of, is_alike, is_whole, leaves, value_of
 from rvmon.timed.model.expressions import (
     MAX_TIME,
     Assignment,
+    BaseType,
+    BinaryOp,
     BinaryOperation,
     Constant,
     Expression,
@@ -34,7 +40,6 @@ from rvmon.timed.model.expressions import (
     While,
 )
 from rvmon.timed.model.guards import is_discrete
-from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ConstantSymbol,
@@ -92,7 +97,7 @@ def _update(
         return []
     clock = resolver.clock(written.target, scope)
     if clock is not None:
-        value = bound(number(written.value, scope, resolver), resolver.functions)
+        value = clock_number(number(written.value, scope, resolver), resolver.functions)
         if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return [Reset(clock, value, written.span)]

@@ -10,8 +10,8 @@ from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import Document
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_part
+from rvmon.timed.model.expressions import LocationKind
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.model.rules import model_error
 
 

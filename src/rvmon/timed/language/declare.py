@@ -12,20 +12,21 @@ from typing import TypeVar
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
-from rvmon.timed.language.layout import (
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.symbols import (
     MAX_VALUES,
     Value,
     claim,
     default_of,
+    element_of,
+    flat,
     laid_out,
+    leaves,
     parts_of_initial,
     variable_of,
 )
-from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.symbols import element_of, flat, leaves
-from rvmon.timed.model.expressions import Constant, Slot, Variable
+from rvmon.timed.model.expressions import BaseType, Constant, Slot, Variable
 from rvmon.timed.model.network import Channel, Clock
-from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import finding, model_error, refusal
 from rvmon.timed.model.scope import (
     ConstantSymbol,

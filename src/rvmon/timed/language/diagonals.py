@@ -19,6 +19,7 @@ from rvmon.timed.language import syntax
 from rvmon.timed.model.expressions import (
     MAX_TIME,
     Assignment,
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     ClockOp,
@@ -26,13 +27,13 @@ from rvmon.timed.model.expressions import (
     Expression,
     Reset,
     Slot,
+    UnaryOp,
     UnaryOperation,
     Variable,
     VariableValue,
 )
 from rvmon.timed.model.guards import normal_form, parts_of, resets_in
 from rvmon.timed.model.network import Automaton, Clock, Edge
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
 

@@ -8,19 +8,17 @@ from dataclasses import replace
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
-from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.automaton_syntax import Document, SignalText
 from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.diagonals import Diagonals
 from rvmon.timed.language.functions import Functions
-from rvmon.timed.language.instantiate import processes_of
-from rvmon.timed.language.layout import INT32, claim
-from rvmon.timed.language.linear import assuming
+from rvmon.timed.language.instantiate import automaton_of, location_names, processes_of
 from rvmon.timed.language.lower_bounds import without_lower_bounds
+from rvmon.timed.language.operations import as_real, assuming, is_real
 from rvmon.timed.language.parse import parse_query
-from rvmon.timed.language.reals import as_real, is_real
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.model.expressions import FALSE, TRUE, Expression
+from rvmon.timed.language.symbols import INT32, claim
+from rvmon.timed.model.expressions import FALSE, TRUE, BaseType, Expression
 from rvmon.timed.model.guards import is_discrete, is_plain
 from rvmon.timed.model.network import (
     Automaton,
@@ -36,7 +34,6 @@ from rvmon.timed.model.network import (
     Simulation,
     Term,
 )
-from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.timed.model.scope import (
     AutomatonKey,
@@ -165,18 +162,6 @@ def _with_constants(
         else:
             changed.append(item)
     return replace(document, declarations=tuple(changed))
-
-
-def query_on(network: Network, text: str) -> Query:
-    """Read a query on a network.
-
-    Raises:
-        ModelError: the text is no query, or names what the network does not have.
-    """
-    findings = Findings()
-    queries = _queries([parse_query(text)], network.names, findings)
-    findings.raise_errors()
-    return queries[0]
 
 
 def asked_on(network: Network, text: str) -> tuple[Network, Query]:

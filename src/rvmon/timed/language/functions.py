@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
 from rvmon.timed.language.bodies import Bodies, number, variable_type
-from rvmon.timed.language.layout import (
+from rvmon.timed.language.operations import fitted
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.symbols import (
     Extents,
     Value,
     check_count,
@@ -16,13 +18,13 @@ from rvmon.timed.language.layout import (
     count_of,
     default_of,
     laid_out,
+    leaves,
+    value_of,
     variable_of,
 )
-from rvmon.timed.language.reals import fitted
-from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.symbols import leaves, value_of
 from rvmon.timed.model.expressions import (
     Assignment,
+    BaseType,
     Constant,
     Expression,
     Function,
@@ -39,7 +41,6 @@ from rvmon.timed.model.expressions import (
     statements_in,
 )
 from rvmon.timed.model.guards import parts_of
-from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ChosenSymbol,

@@ -9,27 +9,43 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.texts import did_you_mean
-from rvmon.timed.language import reals, syntax
+from rvmon.timed.language import syntax
 from rvmon.timed.language.diagonals import Diagonals, difference, terms_of
 from rvmon.timed.language.foreign import refuse_foreign, type_reason
-from rvmon.timed.language.layout import INT16, INT32, MAX_VALUES, Calls, values_of
-from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
 from rvmon.timed.language.operations import (
     COMPARISONS,
+    LINEAR_WORDS,
     MIRRORED,
     SAMENESS,
     binary,
+    clock_number,
     compare_clock,
+    fitted,
+    fractional_call,
     joined,
+    linear_of,
     refuse_clocks,
     unary,
     whole_compare,
 )
-from rvmon.timed.language.symbols import automaton_at, clock_of, element_of, is_whole, value_of
+from rvmon.timed.language.symbols import (
+    INT16,
+    INT32,
+    MAX_VALUES,
+    Calls,
+    automaton_at,
+    clock_of,
+    element_of,
+    is_whole,
+    value_of,
+    values_of,
+)
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
     MAX_TIME,
     TRUE,
+    BaseType,
+    BinaryOp,
     Choice,
     Constant,
     Deadlock,
@@ -39,7 +55,6 @@ from rvmon.timed.model.expressions import (
 )
 from rvmon.timed.model.fractions import FUNCTIONS, literal
 from rvmon.timed.model.guards import is_fixed, refuse_changes
-from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
     AutomatonKey,
@@ -97,7 +112,7 @@ class Resolver:
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
                 self.fraction = self.fraction or span
                 numbers = [self.expression(one, scope) for one in given]
-                return reals.call(name, numbers, span, self.functions)
+                return fractional_call(name, numbers, span, self.functions)
             case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
                 return linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
@@ -108,8 +123,7 @@ class Resolver:
                 fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
                 raise model_error("TA009", "the rate of a clock stands here", span, fix)
             case syntax.Unary(op, operand, span):
-                inner = self.expression(operand, scope)
-                return reals.unary(op, inner, span, self.functions) or unary(op, inner, span)
+                return unary(op, self.expression(operand, scope), span, self.functions)
             case syntax.Binary(op, left, right, span):
                 if op in COMPARISONS and (clocks := self._clock_compare(written, scope)):
                     return clocks
@@ -118,9 +132,7 @@ class Resolver:
                 first = self.expression(left, scope)
                 if first == Constant(0) and op is BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
-                second = self.expression(right, scope)
-                joint = reals.binary(op, first, second, span, self.functions)
-                return joint or binary(op, first, second, span)
+                return binary(op, first, self.expression(right, scope), span, self.functions)
             case syntax.Conditional(condition, then, otherwise, _):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
@@ -137,7 +149,7 @@ class Resolver:
                     self.expression(body, scope.inner({name: ConstantSymbol(value)}))
                     for value in values
                 ]
-                return joined(op, parts, span)
+                return joined(op, parts, span, self.functions)
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
@@ -176,7 +188,7 @@ class Resolver:
             ModelError: it does, or it has none.
         """
         value = self.expression(written, scope)
-        value = reals.fitted(value, real, self.functions, written.span)
+        value = fitted(value, real, self.functions, written.span)
         if not is_fixed(value):
             fix = "use numbers, `const` names, parameters, and functions of them only"
             raise model_error("TA006", "this is not constant", written.span, fix)
@@ -337,7 +349,7 @@ class Resolver:
                 part in (written.left, written.right) for _, part, its in named if its is not None
             ):
                 bound = self.expression(written.right if sign > 0 else written.left, scope)
-                bound = reals.bound(bound, self.functions)
+                bound = clock_number(bound, self.functions)
                 return compare_clock(clock, op if sign > 0 else MIRRORED[op], bound, span)
         number = -sum(
             sign * self.constant(part, scope) for sign, part, clock in named if clock is None
@@ -358,7 +370,7 @@ class Resolver:
         left, right = self._named(written.left, scope), self._named(written.right, scope)
         if left is None or right is None or not (is_whole(left) and is_whole(right)):
             return None
-        return whole_compare(written.op, left, right, written.span)
+        return whole_compare(written.op, left, right, written.span, self.functions)
 
     def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
         """The record that an expression names, if it names one."""

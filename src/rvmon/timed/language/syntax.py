@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.operators import BaseType, BinaryOp, PathOp, UnaryOp
+from rvmon.timed.model.expressions import BaseType, BinaryOp, PathOp, UnaryOp
 
 # Expressions: of guards, invariants, updates, declarations and queries alike.
 

@@ -13,10 +13,9 @@ from lark.tree import Meta
 
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import SignalText
-from rvmon.timed.language.query_builder import QueryBuilder
-from rvmon.timed.language.statement_builder import Maker, is_rule
+from rvmon.timed.language.statement_builder import Maker, QueryBuilder, is_rule
 from rvmon.timed.language.syntax import TypeText
-from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, UnaryOp
+from rvmon.timed.model.expressions import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 

@@ -9,6 +9,7 @@ from rvmon.timed.model.evaluate import chained
 from rvmon.timed.model.expressions import (
     FALSE,
     TRUE,
+    BinaryOp,
     BinaryOperation,
     Choice,
     ClockCompare,
@@ -21,15 +22,16 @@ from rvmon.timed.model.expressions import (
     Invoke,
     Lookup,
     PathFormula,
+    PathOp,
     Reset,
     Statement,
+    UnaryOp,
     UnaryOperation,
     VariableValue,
     expressions_of,
     statements_in,
 )
 from rvmon.timed.model.network import Guard
-from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
 _NEGATED_CLOCK = {

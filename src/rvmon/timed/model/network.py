@@ -12,14 +12,16 @@ from dataclasses import dataclass, field
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.timed.model.expressions import (
     TRUE,
+    BinaryOp,
     ClockCompare,
     Constant,
     Expression,
+    LocationKind,
+    PathOp,
     Slot,
     Statement,
     Variable,
 )
-from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import Names
 

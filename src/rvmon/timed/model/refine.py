@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.timed.model.expressions import (
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     Constant,
@@ -14,7 +15,6 @@ from rvmon.timed.model.expressions import (
 )
 from rvmon.timed.model.guards import resets_in
 from rvmon.timed.model.network import Automaton, Edge, Guard, Location, Network
-from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 
 

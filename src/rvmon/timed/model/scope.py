@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.expressions import Slot
-from rvmon.timed.model.operators import BaseType
+from rvmon.timed.model.expressions import BaseType, Slot
 
 ConstantValue = int | tuple["ConstantValue", ...]
 """A number, or an array of them."""

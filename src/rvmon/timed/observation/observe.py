@@ -20,13 +20,18 @@ from rvmon.logic.formula import (
 from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import Obligation, lower
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.timed.conformance.recordings import labels_of
+from rvmon.timed.conformance.conform import labels_of
 from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator
-from rvmon.timed.model.expressions import Expression, InLocation, VariableValue
+from rvmon.timed.model.expressions import (
+    BaseType,
+    Expression,
+    InLocation,
+    LocationKind,
+    VariableValue,
+)
 from rvmon.timed.model.guards import either, together
 from rvmon.timed.model.network import Network, check_clocks
-from rvmon.timed.model.operators import BaseType, LocationKind
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import PlacedSymbol
@@ -34,9 +39,8 @@ from rvmon.timed.observation.observer import Observed
 from rvmon.timed.observation.propositions import NotExpressibleError
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import check_start
-from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.search.sought import Seek, Sought
 from rvmon.trace.time import TICKS_PER_UNIT
 

@@ -20,22 +20,25 @@ from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
     FALSE,
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     ClockOp,
     Constant,
     Expression,
+    LocationKind,
 )
 from rvmon.timed.model.guards import either, together
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.operators import BinaryOp, LocationKind
-from rvmon.timed.observation.propositions import Labelling, NotExpressibleError, events_of
-from rvmon.timed.observation.tables import (
+from rvmon.timed.observation.propositions import (
     Ages,
     Edge,
+    Labelling,
+    NotExpressibleError,
     Region,
     Tables,
     bounds_of,
+    events_of,
     negated,
 )
 from rvmon.timed.search.watcher import Watcher

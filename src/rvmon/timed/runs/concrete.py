@@ -19,9 +19,9 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     ClockOp,
     Expression,
+    LocationKind,
 )
 from rvmon.timed.model.network import Edge, Guard, Network
-from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.runs.run import Action, Run
 
 T = TypeVar("T")

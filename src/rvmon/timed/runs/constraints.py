@@ -112,12 +112,6 @@ class Timing:
         self._always = {0, *range(self._last + 1, self._last + 1 + others)}
 
     @cached_property
-    def bounds(self) -> NDArray[np.float64]:
-        """float64[n, n] grid steps: `t[q] − t[p]` at (p, q), closed; the cube of n to work out."""
-        instants = range(self._last + len(self._always))
-        return _together(instants, (), (c for own in self._constraints for c in own)).bounds
-
-    @cached_property
     def is_possible(self) -> bool:
         """Whether there is a run."""
         return all((bag.bounds.diagonal() >= 0).all() for bag in self._forward(()))
@@ -136,7 +130,7 @@ class Timing:
         return found[::-1]
 
     def relation(self, instants: Sequence[int]) -> NDArray[np.float64]:
-        """What is implied of some instants, as in `bounds`, in their order."""
+        """float64[n, n] grid steps: `t[q] − t[p]` at (p, q), of some instants in their order."""
         import numpy as np
 
         *_, last = self._forward(instants)

@@ -16,13 +16,13 @@ from math import inf
 
 from rvmon.diagnostics import Label, Span
 from rvmon.errors import ModelError
-from rvmon.timed.model.arithmetic import check_time
 from rvmon.timed.model.evaluate import (
     Evaluator,
     Frame,
     Locations,
     Runner,
     Values,
+    check_time,
     evaluator,
     runner,
     slot_evaluator,
@@ -34,10 +34,10 @@ from rvmon.timed.model.expressions import (
     Constant,
     Expression,
     Fractional,
+    LocationKind,
 )
 from rvmon.timed.model.guards import alternatives_of
 from rvmon.timed.model.network import Edge, Guard, Network
-from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.constraints import Atom, bound_of
 

@@ -20,10 +20,10 @@ from typing import TypeVar
 
 from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
+from rvmon.timed.model.expressions import BinaryOp, PathOp
 from rvmon.timed.model.fractions import GRID, number_in
 from rvmon.timed.model.guards import is_plain, normal_form
 from rvmon.timed.model.network import Chance, Mean, Network, Query, Simulation
-from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.simulate import CutShortError, stretches, trial_of
 from rvmon.timed.runs.space import Space, State, check_start

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.timed.model.expressions import (
+    BinaryOp,
     BinaryOperation,
     Choice,
     ClockCompare,
@@ -21,11 +22,11 @@ from rvmon.timed.model.expressions import (
     Invoke,
     Lookup,
     Reset,
+    UnaryOp,
     UnaryOperation,
     VariableValue,
 )
 from rvmon.timed.model.network import Automaton, Edge, Network
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 Limits = dict[int, int]
 """For each clock that is compared the largest number; others are compared with none."""

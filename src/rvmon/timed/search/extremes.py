@@ -13,6 +13,7 @@ from math import floor
 
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.expressions import (
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     ClockOp,
@@ -21,15 +22,13 @@ from rvmon.timed.model.expressions import (
 )
 from rvmon.timed.model.guards import compares_of, is_discrete, normal_form
 from rvmon.timed.model.network import Extremes, Network, Query, Term, check_clocks
-from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import Space, check_start
 from rvmon.timed.search.clock_bounds import value_range
-from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.search.sought import Seek, Sought
 
 FARTHEST = 1_000_000

@@ -17,13 +17,14 @@ from rvmon.diagnostics import Span
 from rvmon.timed.model.expressions import (
     FALSE,
     TRUE,
+    BinaryOp,
     BinaryOperation,
     Deadlock,
     Expression,
     PathFormula,
+    PathOp,
 )
 from rvmon.timed.model.guards import is_discrete, normal_form, parts_of
-from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 
 MOST_STATES = 2_000

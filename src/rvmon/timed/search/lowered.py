@@ -8,6 +8,7 @@ from math import log
 
 from rvmon.timed.model.expressions import (
     TRUE,
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     ClockOp,
@@ -15,7 +16,10 @@ from rvmon.timed.model.expressions import (
     Deadlock,
     Expression,
     InLocation,
+    LocationKind,
     PathFormula,
+    PathOp,
+    UnaryOp,
     UnaryOperation,
 )
 from rvmon.timed.model.guards import (
@@ -27,11 +31,10 @@ from rvmon.timed.model.guards import (
     together,
 )
 from rvmon.timed.model.network import Edge, Guard, Network
-from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.clock_bounds import ClockBounds, location_bounds
 from rvmon.timed.search.linear import WayState
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 from rvmon.timed.search.programs import Programs
 from rvmon.timed.search.sought import Seek, Sought
 

@@ -16,10 +16,17 @@ from rvmon.timed.model.guards import together
 from rvmon.timed.model.network import Guard, Network
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.constraints import STRICT, Atom, Zone
-from rvmon.timed.runs.paths import PathStep, Piece, crossing_step, make_run, mark_step, move_step
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.space import Space, State, atoms_of, pieces_of
-from rvmon.timed.runs.timing import timing_of
+from rvmon.timed.runs.timing import (
+    PathStep,
+    Piece,
+    crossing_step,
+    make_run,
+    mark_step,
+    move_step,
+    timing_of,
+)
 from rvmon.timed.search.loops import time_passes
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.meter import Meter

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from rvmon.timed.model.expressions import (
     Assignment,
+    BinaryOp,
     BinaryOperation,
     Choice,
     Constant,
@@ -22,6 +23,7 @@ from rvmon.timed.model.expressions import (
     Return,
     Slot,
     Statement,
+    UnaryOp,
     UnaryOperation,
     VariableValue,
     While,
@@ -29,7 +31,6 @@ from rvmon.timed.model.expressions import (
     statements_in,
 )
 from rvmon.timed.model.guards import parts_of
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
 # The numbers of `plan.h`.

@@ -8,7 +8,7 @@ from enum import IntEnum
 from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import parts_of
 from rvmon.timed.search.linear import Ways
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 
 
 class Seek(IntEnum):

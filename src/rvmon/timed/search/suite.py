@@ -16,6 +16,7 @@ from enum import StrEnum
 
 from rvmon.timed.model.expressions import (
     Assignment,
+    BinaryOp,
     BinaryOperation,
     Choice,
     Constant,
@@ -26,12 +27,10 @@ from rvmon.timed.model.expressions import (
     VariableValue,
 )
 from rvmon.timed.model.network import Network, check_clocks
-from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import check_start
-from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.search.sought import Seek, Sought
 
 

@@ -9,10 +9,12 @@ from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.model.expressions import (
     FALSE,
     TRUE,
+    BinaryOp,
     BinaryOperation,
     ClockCompare,
     Expression,
     PathFormula,
+    PathOp,
 )
 from rvmon.timed.model.guards import (
     compares_of,
@@ -34,14 +36,12 @@ from rvmon.timed.model.network import (
     Simulation,
     check_clocks,
 )
-from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.linear import check_linear, ways_of
-from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.outcome import UNLIMITED, Budget, Outcome, Policy, Watch
 from rvmon.timed.search.sought import Seek, Sought
 
 

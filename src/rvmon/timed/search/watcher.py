@@ -17,6 +17,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Expression,
     InLocation,
+    LocationKind,
     Reset,
     Slot,
     Statement,
@@ -32,7 +33,6 @@ from rvmon.timed.model.network import (
     Network,
     Priorities,
 )
-from rvmon.timed.model.operators import LocationKind
 
 
 def names_of(network: Network, edge: Edge) -> tuple[str, ...]:

@@ -6,8 +6,7 @@ import pytest
 from tests.tools.timed_generate import random_model
 
 from rvmon.errors import ModelError
-from rvmon.timed.conformance.conform import Allowed, conform
-from rvmon.timed.conformance.recordings import Recorded
+from rvmon.timed.conformance.conform import Allowed, Recorded, conform
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.search.suite import Criterion, build_suite

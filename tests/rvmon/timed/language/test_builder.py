@@ -5,7 +5,7 @@ import pytest
 from rvmon.errors import ModelError
 from rvmon.timed.language.builder import NetworkBuilder
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.expressions import LocationKind
 from rvmon.timed.search.verify import verify
 
 

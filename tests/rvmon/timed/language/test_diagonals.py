@@ -9,7 +9,7 @@ from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on, signal_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.concrete import Configuration, Rules
 from rvmon.timed.runs.statistics import sample
@@ -197,6 +197,6 @@ def test_figures_are_refused_where_edges_are_split():
     """Nobody knows their odds; nor is a difference kept up for a network that is not changed."""
     network = loads_network(MODEL.format("E<> A.c"))
     with pytest.raises(ModelError, match="keep their difference up"):
-        query_on(network, "E<> x - y > 3")
+        signal_on(network, "far", "x - y > 3")
     with pytest.raises(ModelError, match="odds are not known"):
-        sample(network, query_on(network, "Pr[<=9](<> A.c)"))
+        sample(network, asked_on(network, "Pr[<=9](<> A.c)")[1])

@@ -7,7 +7,7 @@ import lark
 import pytest
 
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.language.parse import STARTS
 from rvmon.timed.search.verify import verify
@@ -376,7 +376,10 @@ def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
 def test_operators_bind_as_those_of_uppaal(text, bound):
     """Words as signs: UTAP's grammar has `imply` beside `or`, from the left, and `and` above."""
     network = loads_network("bool p, q, r, s int[0,3] v automaton A { location l start l }")
-    assert query_on(network, f"E<> ({text})").formula == query_on(network, f"E<> ({bound})").formula
+    assert (
+        asked_on(network, f"E<> ({text})")[1].formula
+        == asked_on(network, f"E<> ({bound})")[1].formula
+    )
 
 
 @pytest.mark.parametrize(

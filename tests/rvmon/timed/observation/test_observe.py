@@ -18,7 +18,7 @@ from rvmon.timed.runs.concrete import (
     initial_configuration,
 )
 from rvmon.timed.runs.run import Ending
-from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.meter import Budget
 from rvmon.timed.search.verify import verify
 from rvmon.trace.time import TICKS_PER_SECOND
 

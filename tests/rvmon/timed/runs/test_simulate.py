@@ -6,7 +6,7 @@ import pytest
 
 from rvmon.confidence import interval
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.statistics import sample
 
@@ -23,7 +23,7 @@ automaton A {
 def share(text, asked, runs=500, seed=7):
     """The estimate of a probability on a model given as text."""
     network = loads_network(text)
-    query = query_on(network, asked.replace("Pr[", "Pr[<=").replace("]", f"; {runs}]", 1))
+    query = asked_on(network, asked.replace("Pr[", "Pr[<=").replace("]", f"; {runs}]", 1))[1]
     return sample(network, query, seed=seed)
 
 

@@ -7,7 +7,7 @@ import pytest
 from rvmon.cli import main
 from rvmon.errors import ModelError
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.statistics import MARGIN, sample, trajectories
 from rvmon.timed.search.extremes import extremes
@@ -29,7 +29,7 @@ automaton A {
 
 def sampled(text, seed=1):
     network = loads_network(COIN)
-    return sample(network, query_on(network, text), seed=seed)
+    return sample(network, asked_on(network, text)[1], seed=seed)
 
 
 def test_estimates_have_bounds():
@@ -169,12 +169,12 @@ def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
 def test_both_ways_to_write_how_many_runs(text):
     """Before the brackets, as UPPAAL had it once, and in them; one if nothing is said."""
     network = loads_network(COIN)
-    assert len(trajectories(network, query_on(network, text))) == 3
-    assert len(trajectories(network, query_on(network, "simulate[<=2]{n}"))) == 1
+    assert len(trajectories(network, asked_on(network, text)[1])) == 3
+    assert len(trajectories(network, asked_on(network, "simulate[<=2]{n}")[1])) == 1
     with pytest.raises(ModelError, match="no decision"):
         verify(network, text)
     with pytest.raises(ModelError, match="asks for no runs"):
-        trajectories(network, query_on(network, "E<> n > 0"))
+        trajectories(network, asked_on(network, "E<> n > 0")[1])
 
 
 STOPPED = """
@@ -206,13 +206,13 @@ automaton A {
 def test_clocks_stop_and_run_at_other_rates(query, share):
     """Simulated exactly: 4 units stopped, then 6 at a rate of 2."""
     network = loads_network(STOPPED)
-    assert sample(network, query_on(network, query)).value == share
+    assert sample(network, asked_on(network, query)[1]).value == share
 
 
 def test_a_wait_without_end_has_the_rate_of_its_location():
     """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
     network = loads_network(STOPPED)
-    found = sample(network, query_on(network, "Pr[<=14; 4000](<> left)"))
+    found = sample(network, asked_on(network, "Pr[<=14; 4000](<> left)")[1])
     assert found.low < 0.632 < found.high
 
 
@@ -224,7 +224,7 @@ def test_what_stop_watches_reach_is_not_decided():
         with pytest.raises(ModelError, match="not decidable"):
             verify(network, query)
     with pytest.raises(ModelError, match="not decidable"):
-        list(extremes(network, query_on(network, "sup: cost")))
+        list(extremes(network, asked_on(network, "sup: cost")[1]))
     guarded = loads_network(STOPPED.replace("when x >= 10", "when x >= 10 and used > 3"))
     with pytest.raises(ModelError, match="2 places"):
         verify(guarded, "E<> A.c")
@@ -240,7 +240,7 @@ def test_rates_that_have_no_meaning_are_told(invariant, message):
     text += f"automaton B {{ location l invariant {invariant} start l }}"
     network = loads_network(text.replace("used' == 0", "x <= 10"))
     with pytest.raises(ModelError, match=message):
-        sample(network, query_on(network, "Pr[<=10](<> left)"))
+        sample(network, asked_on(network, "Pr[<=10](<> left)")[1])
 
 
 def test_rates_come_back_from_uppaal():

@@ -7,7 +7,7 @@ import pytest
 from tests.tools.timed_generate import random_model
 
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.outcome import Budget, Policy, Progress
+from rvmon.timed.search.meter import Budget, Policy, Progress
 from rvmon.timed.search.verify import verify
 
 MODEL = Path(__file__).parents[4] / "examples" / "models" / "train_gate.ta"

@@ -7,7 +7,7 @@ from tests.tools.timed_regions import TooManyRegionsError
 from tests.tools.timed_runs import shows
 
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 from rvmon.timed.search.verify import verify
 
 pytestmark = pytest.mark.law

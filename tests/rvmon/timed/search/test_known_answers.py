@@ -6,7 +6,7 @@ import pytest
 from tests.tools.timed_runs import shows
 
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.meter import Policy
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.elaborate import asked_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.runs.run import Window
 from rvmon.timed.runs.statistics import sample
@@ -147,7 +147,7 @@ def test_strict_bounds_are_strict():
 
 def test_weights_below_one_make_the_likeliest_run():
     """The likeliest run avoids an improbable edge even if more steps are needed."""
-    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.meter import Policy
 
     network = loads_network("""
     automaton A {
@@ -206,7 +206,7 @@ def test_a_step_waits_for_those_of_higher_priority(query, answer):
     """What is possible at an instant by guards keeps back what is lower, and only then."""
     network = loads_network(RANKED)
     if query.startswith("Pr"):
-        assert sample(network, query_on(network, query)).value == answer
+        assert sample(network, asked_on(network, query)[1]).value == answer
     else:
         assert verify(network, query).holds is answer
 

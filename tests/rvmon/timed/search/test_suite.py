@@ -6,7 +6,7 @@ import pytest
 
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.runs.concrete import Rules
-from rvmon.timed.search.outcome import Budget
+from rvmon.timed.search.meter import Budget
 from rvmon.timed.search.suite import Criterion, all_items, build_suite, item_text
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
