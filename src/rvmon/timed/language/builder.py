@@ -1,29 +1,20 @@
-"""Networks built from Python, piece by piece; conditions and updates are texts as in a `.ta`."""
+"""Networks built from Python, piece by piece: what is added becomes lines of a `.ta` text."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
-from rvmon.diagnostics import Source, Span
-from rvmon.timed.language import automaton_syntax, syntax
-from rvmon.timed.language.automaton_syntax import Document
-from rvmon.timed.language.elaborate import elaborate
-from rvmon.timed.language.parse import parse_part
+from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import LocationKind
 from rvmon.timed.model.network import Network
-from rvmon.timed.model.rules import model_error
 
 
 @dataclass(slots=True)
 class AutomatonBuilder:
     """An automaton in the making; `NetworkBuilder.automaton` makes one."""
 
-    name: str
-    declarations: tuple[syntax.Declared, ...]
-    locations: list[automaton_syntax.LocationText] = field(default_factory=list)
-    edges: list[automaton_syntax.EdgeText] = field(default_factory=list)
-    initial: syntax.Name | None = None
+    lines: list[str]
+    initial: str = ""
 
     def location(
         self,
@@ -33,16 +24,11 @@ class AutomatonBuilder:
         kind: LocationKind = LocationKind.NORMAL,
         initial: bool = False,
     ) -> AutomatonBuilder:
-        """Add a location; the first one is initial unless another says so.
-
-        Raises:
-            ModelError: the invariant cannot be read.
-        """
-        span = _span(f"location {self.name}.{name}", name)
-        condition = _read("conditions", invariant, f"invariant of {self.name}.{name}", None)
-        self.locations.append(automaton_syntax.LocationText(name, kind, condition, span))
-        if initial or self.initial is None:
-            self.initial = syntax.Name(name, span)
+        """Add a location; the first one is initial unless another says so."""
+        prefix = "" if kind is LocationKind.NORMAL else f"{kind} "
+        self.lines.append(f"  {prefix}location {name}{_clause('invariant', invariant)}")
+        if initial or not self.initial:
+            self.initial = name
         return self
 
     def edge(
@@ -57,29 +43,11 @@ class AutomatonBuilder:
         weight: float = 1.0,
         label: str = "",
     ) -> AutomatonBuilder:
-        """Add an edge.
-
-        Raises:
-            ModelError: one of its texts cannot be read, or the weight is not in (0, 1].
-        """
-        place = f"{self.name}: {source} → {target}"
-        span = _span(place, f"{source} → {target}")
-        if not 0 < weight <= 1:
-            fix = "a weight is a share: above 0, at most 1"
-            raise model_error("TA017", f"weight {weight}", span, fix)
-        self.edges.append(
-            automaton_syntax.EdgeText(
-                syntax.Name(source, _span(place, source)),
-                syntax.Name(target, _span(place, target)),
-                span,
-                _read("selections", select, f"selection of {place}", ()),
-                _read("conditions", guard, f"guard of {place}", None),
-                _read("sync", sync, f"synchronisation of {place}", None),
-                _read("updates", update, f"update of {place}", ()),
-                weight,
-                label,
-            )
-        )
+        """Add an edge; its weight is a share in (0, 1]."""
+        clauses = {"select": select, "when": guard, "on": sync, "do": update}
+        clauses |= {"weight": f"{weight}", "as": f'"{label}"' if label else ""}
+        written = "".join(_clause(word, text) for word, text in clauses.items())
+        self.lines.append(f"  edge {source} -> {target}{written}")
         return self
 
 
@@ -103,82 +71,44 @@ class NetworkBuilder:
     name: str
     title: str = ""
     unit: int | None = None
-    declarations: tuple[syntax.Declared, ...] = ()
+    declarations: list[str] = field(default_factory=list)
     automata: list[AutomatonBuilder] = field(default_factory=list)
-    queries: list[automaton_syntax.QueryText] = field(default_factory=list)
+    queries: list[str] = field(default_factory=list)
 
     def declare(self, text: str) -> NetworkBuilder:
-        """Add constants, clocks, variables, channels or types.
-
-        Raises:
-            ModelError: the text is no declaration.
-        """
-        self.declarations += _read("declarations", text, "declaration", ())
+        """Add constants, clocks, variables, channels or types."""
+        self.declarations.append(text)
         return self
 
     def automaton(self, name: str, declarations: str = "") -> AutomatonBuilder:
-        """Add an automaton, with names of its own.
-
-        Raises:
-            ModelError: the text is no declaration.
-        """
-        own = _read("declarations", declarations, f"declaration of {name}", ())
-        made = AutomatonBuilder(name, own)
-        self.automata.append(made)
-        return made
+        """Add an automaton, with names of its own."""
+        self.automata.append(AutomatonBuilder([f"automaton {name} {{", f"  {declarations}"]))
+        return self.automata[-1]
 
     def query(self, text: str, *, id: str = "", remark: str = "") -> NetworkBuilder:  # noqa: A002 - its name
-        """Add a query.
-
-        Raises:
-            ModelError: the text is no query.
-        """
-        formula = _read("query", text, f"query {id}".strip(), None)
-        self.queries.append(
-            automaton_syntax.QueryText(id, remark, text, formula, _span("query", text))
-        )
+        """Add a query."""
+        named = " ".join(filter(None, ("query", id, f'"{remark}"' if remark else "")))
+        self.queries.append(f"{named}: {text}")
         return self
+
+    @property
+    def text(self) -> str:
+        """What was added so far, as a `.ta` text."""
+        lines = [*self.declarations]
+        for one in self.automata:
+            lines += [*one.lines, f" {_clause('start', one.initial)}", "}"]
+        return "\n".join([*lines, *self.queries])
 
     def build(self) -> Network:
         """The network.
 
         Raises:
-            ModelError: with everything that is wrong with it.
+            ModelError: with everything that is wrong with it, and where that stands in `text`.
         """
-        templates = tuple(
-            automaton_syntax.Template(
-                one.name,
-                (),
-                one.declarations,
-                tuple(one.locations),
-                one.initial,
-                tuple(one.edges),
-                _span("automaton", one.name),
-            )
-            for one in self.automata
-        )
-        return elaborate(
-            Document(
-                Source(self.name, ""),
-                self.name,
-                self.title,
-                self.unit,
-                self.declarations,
-                templates,
-                (),
-                None,
-                tuple(self.queries),
-            )
-        )
+        made = loads_network(self.text, name=self.name)
+        return replace(made, name=self.name, title=self.title, unit=self.unit)
 
 
-def _span(place: str, text: str) -> Span:
-    return Span(Source(place, text), 0, len(text))
-
-
-def _read(rule: str, text: str, place: str, default: Any) -> Any:
-    """A text read by a rule of the grammar; `default` if it is empty."""
-    if not text.strip():
-        return default
-    source = Source(place, text)
-    return parse_part(text, rule, lambda start, end: Span(source, start, end))
+def _clause(word: str, text: str) -> str:
+    """A clause of a line; nothing for an empty text."""
+    return f" {word} {text}" if text.strip() else ""

@@ -9,25 +9,9 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.texts import did_you_mean
-from rvmon.timed.language import syntax
+from rvmon.timed.language import operations, syntax
 from rvmon.timed.language.diagonals import Diagonals, difference, terms_of
 from rvmon.timed.language.foreign import refuse_foreign, type_reason
-from rvmon.timed.language.operations import (
-    COMPARISONS,
-    LINEAR_WORDS,
-    MIRRORED,
-    SAMENESS,
-    binary,
-    clock_number,
-    compare_clock,
-    fitted,
-    fractional_call,
-    joined,
-    linear_of,
-    refuse_clocks,
-    unary,
-    whole_compare,
-)
 from rvmon.timed.language.symbols import (
     INT16,
     INT32,
@@ -112,9 +96,11 @@ class Resolver:
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
                 self.fraction = self.fraction or span
                 numbers = [self.expression(one, scope) for one in given]
-                return fractional_call(name, numbers, span, self.functions)
-            case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
-                return linear_of(name, self.expression(body, scope), span)
+                return operations.fractional_call(name, numbers, span, self.functions)
+            case syntax.Call(name, (body,), span) if (
+                name in operations.LINEAR_WORDS and self.automata
+            ):
+                return operations.linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
                 if (location := self._location(written, scope)) is not None:
                     return location
@@ -123,16 +109,18 @@ class Resolver:
                 fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
                 raise model_error("TA009", "the rate of a clock stands here", span, fix)
             case syntax.Unary(op, operand, span):
-                return unary(op, self.expression(operand, scope), span, self.functions)
+                return operations.unary(op, self.expression(operand, scope), span, self.functions)
             case syntax.Binary(op, left, right, span):
-                if op in COMPARISONS and (clocks := self._clock_compare(written, scope)):
+                if op in operations.COMPARISONS and (clocks := self._clock_compare(written, scope)):
                     return clocks
-                if op in SAMENESS and (whole := self._whole_compare(written, scope)):
+                if op in operations.SAMENESS and (whole := self._whole_compare(written, scope)):
                     return whole
                 first = self.expression(left, scope)
                 if first == Constant(0) and op is BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
-                return binary(op, first, self.expression(right, scope), span, self.functions)
+                return operations.binary(
+                    op, first, self.expression(right, scope), span, self.functions
+                )
             case syntax.Conditional(condition, then, otherwise, _):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
@@ -149,7 +137,7 @@ class Resolver:
                     self.expression(body, scope.inner({name: ConstantSymbol(value)}))
                     for value in values
                 ]
-                return joined(op, parts, span, self.functions)
+                return operations.joined(op, parts, span, self.functions)
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
@@ -188,7 +176,7 @@ class Resolver:
             ModelError: it does, or it has none.
         """
         value = self.expression(written, scope)
-        value = fitted(value, real, self.functions, written.span)
+        value = operations.fitted(value, real, self.functions, written.span)
         if not is_fixed(value):
             fix = "use numbers, `const` names, parameters, and functions of them only"
             raise model_error("TA006", "this is not constant", written.span, fix)
@@ -297,7 +285,7 @@ class Resolver:
                 return symbol
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
-                refuse_clocks(position, index.span)
+                operations.refuse_clocks(position, index.span)
                 return element_of(self.symbol(base, scope), position, span)
             case syntax.Member(base, name, span) if whole := self._record(base, scope):
                 if name not in (fields := dict(whole.fields)):
@@ -349,16 +337,16 @@ class Resolver:
                 part in (written.left, written.right) for _, part, its in named if its is not None
             ):
                 bound = self.expression(written.right if sign > 0 else written.left, scope)
-                bound = clock_number(bound, self.functions)
-                return compare_clock(clock, op if sign > 0 else MIRRORED[op], bound, span)
+                bound = operations.clock_number(bound, self.functions)
+                turned = op if sign > 0 else operations.MIRRORED[op]
+                return operations.compare_clock(clock, turned, bound, span)
         number = -sum(
             sign * self.constant(part, scope) for sign, part, clock in named if clock is None
         )
         match clocks:
-            case [(1, clock)]:
-                return compare_clock(clock, op, Constant(number), span)
-            case [(-1, clock)]:
-                return compare_clock(clock, MIRRORED[op], Constant(-number), span)
+            case [(sign, clock)]:
+                turned = op if sign > 0 else operations.MIRRORED[op]
+                return operations.compare_clock(clock, turned, Constant(sign * number), span)
             case [(-1, second), (1, first)] if first != second:
                 return difference(self.diagonals, first, second, op, number, span)
             case _:
@@ -370,7 +358,7 @@ class Resolver:
         left, right = self._named(written.left, scope), self._named(written.right, scope)
         if left is None or right is None or not (is_whole(left) and is_whole(right)):
             return None
-        return whole_compare(written.op, left, right, written.span, self.functions)
+        return operations.whole_compare(written.op, left, right, written.span, self.functions)
 
     def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
         """The record that an expression names, if it names one."""

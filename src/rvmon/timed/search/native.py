@@ -58,13 +58,11 @@ class _Step(IntEnum):
     MARK = 2
 
 
-class _End(IntEnum):
-    REACHED = 0
-    DEAD = 1
-    IDLE = 2
-    STUCK = 3
-    LOOP = 4
-    ZENO = 5
+_ENDINGS = (
+    *(Ending.REACHED, Ending.DEADLOCK, Ending.IDLE),
+    *(Ending.TIME_LOCK, Ending.LOOP, Ending.ZENO_LOOP),
+)
+"""By the numbers of `zones.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +121,7 @@ def seek(
             fix = "choose a larger unit of time"
             raise model_error("TA019", "times grow too large in this network", None, fix)
         case _State.FOUND:
-            run = paths.run(path, parts, _End(ending), loop)
+            run = paths.run(path, parts, _ENDINGS[ending], loop)
             return Answer(run, bool(improper), {})
         case _State.ENDED:
             pass
@@ -167,7 +165,7 @@ class _Paths:
         assert start is not None, "the network can start"
         return start
 
-    def run(self, path: bytes, parts: bytes, end: _End, loop: int) -> Run:
+    def run(self, path: bytes, parts: bytes, ending: Ending, loop: int) -> Run:
         """The run along a path, to the first of some parts that it can reach."""
         last, steps = self.walk(path)
         for part in self._parts(parts):
@@ -175,8 +173,10 @@ class _Paths:
             if timing_of([step.timed for step in marked]) is not None:
                 steps = marked
                 break
+        if ending is Ending.DEADLOCK and last.is_time_bounded:
+            ending = Ending.TIME_LOCK
         shown = self._network.original or self._network
-        return make_run(shown, self._start, steps, _ending(end, last), None if loop < 0 else loop)
+        return make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
 
     def fail(self, path: bytes, sought: Sought) -> None:
         """Say what is wrong where a search could not go on.
@@ -267,17 +267,3 @@ def _rounded(constraint: Piece, *, uppers: bool) -> Piece:
         (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)
         for x, y, bound in constraint
     )
-
-
-_ENDINGS = {
-    _End.REACHED: Ending.REACHED,
-    _End.DEAD: Ending.DEADLOCK,
-    _End.IDLE: Ending.IDLE,
-    _End.STUCK: Ending.TIME_LOCK,
-    _End.LOOP: Ending.LOOP,
-    _End.ZENO: Ending.ZENO_LOOP,
-}
-
-
-def _ending(end: _End, last: State) -> Ending:
-    return Ending.TIME_LOCK if end is _End.DEAD and last.is_time_bounded else _ENDINGS[end]

@@ -35,31 +35,14 @@ from rvmon.timed.model.rules import model_error
 
 # The numbers of `plan.h`.
 END, CONST, VARIABLE, INDEX, ROW, ELEMENT, LOOKUP, PLACE, NOT, NEGATE, TRUTH = range(11)
-_JUMPS = {BinaryOp.AND: 11, BinaryOp.OR: 12, BinaryOp.IMPLY: 13}
+_JUMPS = dict(zip([*BinaryOp][:3], (11, 12, 13), strict=True))
 UNLESS, GO = 14, 15
-_BINARY = {
-    BinaryOp.LT: 16,
-    BinaryOp.LE: 17,
-    BinaryOp.EQ: 18,
-    BinaryOp.NE: 19,
-    BinaryOp.GE: 20,
-    BinaryOp.GT: 21,
-    BinaryOp.ADD: 22,
-    BinaryOp.SUB: 23,
-    BinaryOp.MUL: 24,
-    BinaryOp.DIV: 25,
-    BinaryOp.MOD: 26,
-    BinaryOp.BIT_AND: 27,
-    BinaryOp.BIT_OR: 28,
-    BinaryOp.BIT_XOR: 29,
-    BinaryOp.SHIFT_LEFT: 30,
-    BinaryOp.SHIFT_RIGHT: 31,
-    BinaryOp.MINIMUM: 32,
-    BinaryOp.MAXIMUM: 33,
-}
+_BINARY = {op: number for number, op in enumerate([*BinaryOp][3:], start=16)}
 INVERT, SET, STORE, CLOCK, CALL, DROP, HEAD, BACK, FAIL = range(34, 43)
 _UNARY = {UnaryOp.NOT: NOT, UnaryOp.NEGATE: NEGATE, UnaryOp.INVERT: INVERT}
 STACK = 256
+MOST_NEST = 60
+"""Calls in calls."""
 _HALF = 1 << 31
 
 
@@ -72,6 +55,8 @@ class Programs:
         self.table: list[int] = []
         self._slots = slots
         self._starts: dict[int, int] = {}
+        self._nests: dict[int, int] = {}
+        """By function where its program begins, and how deep it calls others."""
         self._added: dict[int, tuple[object, int]] = {}
         """Where what was added begins, by its identity, for as long as it is held."""
         self._ends: list[int] = []
@@ -110,16 +95,23 @@ class Programs:
         self.code += [CONST, slot.first, _BINARY[BinaryOp.ADD]]
         return self._finished(start, 1 + depth)
 
-    def _add_called(self, expressions: Iterable[Expression]) -> None:
-        """Add the functions that expressions call, which must stand before them."""
-        parts = (part for expression in expressions for part in parts_of(expression))
-        for part in parts:
-            if isinstance(part, Invoke) and id(part.function) not in self._starts:
-                self._add_function(part.function)
+    def _add_called(self, expressions: Iterable[Expression]) -> int:
+        """Add the functions that expressions call, which must stand before them; how deep."""
+        nest = 0
+        for part in (part for expression in expressions for part in parts_of(expression)):
+            if isinstance(part, Invoke):
+                if id(part.function) not in self._starts:
+                    self._add_function(part.function)
+                nest = max(nest, 1 + self._nests[id(part.function)])
+        if nest > MOST_NEST:
+            fix = "let functions call each other less deeply"
+            raise model_error("TA019", f"more than {MOST_NEST} calls in calls", None, fix)
+        return nest
 
     def _add_function(self, function: Function) -> None:
         body = function.body
-        self._add_called(e for s in statements_in(body) for e in expressions_of(s))
+        calls = (e for s in statements_in(body) for e in expressions_of(s))
+        self._nests[id(function)] = self._add_called(calls)
         start = len(self.code)
         waiting, self._ends = self._ends, []
         depth, _ = self._statements(body)

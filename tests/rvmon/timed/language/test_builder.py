@@ -50,20 +50,23 @@ def test_it_equals_its_text():
 
 
 @pytest.mark.parametrize(
-    ("change", "place"),
+    ("change", "line"),
     [
-        (lambda net: net.declare("clock"), "declaration"),
-        (lambda net: net.automaton("A").location("a", invariant="x <"), "invariant of A.a"),
-        (lambda net: net.automaton("A").edge("a", "b", guard="1 +"), "guard of A: a → b"),
-        (lambda net: net.automaton("A").edge("a", "b", weight=2), "A: a → b"),
-        (lambda net: net.query("E<>"), "query"),
+        (lambda net: net.declare("clock 1"), "clock 1"),
+        (lambda net: net.automaton("A").location("a", invariant="x <"), "location a invariant x <"),
+        (lambda net: net.automaton("A").edge("a", "b", guard="1 +"), "edge a -> b when 1 +"),
+        (lambda net: net.automaton("A").edge("a", "b", weight=2), "weight 2"),
+        (lambda net: net.query("E<>"), "query: E<>"),
     ],
 )
-def test_a_text_that_cannot_be_read_is_told_at_once(change, place):
-    """The finding names the part that the text was for."""
+def test_a_text_that_cannot_be_read_is_shown(change, line):
+    """The finding shows the line that the text became."""
+    net = NetworkBuilder("n")
+    change(net)
+    assert line in net.text
     with pytest.raises(ModelError) as caught:
-        change(NetworkBuilder("n"))
-    assert caught.value.diagnostics[0].spans[0].span.source.name == place
+        net.build()
+    assert caught.value.diagnostics[0].spans[0].span.source.text == net.text
 
 
 def test_wrong_names_are_told_together():

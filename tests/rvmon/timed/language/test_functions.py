@@ -90,6 +90,12 @@ def test_what_has_no_meaning_is_refused(functions, update, code):
         ("int[0,9] f(int[0,9] n) { return n; }", "v = f(10)", "outside [0, 9]"),
         ("void f() { v = a[v + 3]; }", "f()", "index 3 is outside the array"),
         ("void f() { v = 1 << (v + 40); }", "f()", "a shift by 40 bits"),
+        (
+            "void f0() { v = 1; } "
+            + " ".join(f"void f{k}() {{ f{k - 1}(); }}" for k in range(1, 61)),
+            "f60()",
+            "more than 60 calls in calls",
+        ),
     ],
 )
 def test_what_a_run_cannot_compute_is_told(functions, update, message):
