@@ -37,26 +37,30 @@ class DoesNotCloseError(Exception):
     """The automaton of a formula exceeds its budget; the message names the limit."""
 
 
-def construct(required: Temporal, alphabet: Alphabet, budget: Budget) -> Automaton:
+def construct(
+    required: Temporal, alphabet: Alphabet, budget: Budget, ages: set[int] | None = None
+) -> Automaton:
     """Build the automaton of a formula.
 
     Args:
         required: `X` of what an attempt requires, as it starts before the trigger's position.
         alphabet: the alphabet of that formula.
         budget: when to give up.
+        ages: if given, collects the clock ages (ticks) with which locations were explored.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.
 
     Source: AUTOMATA 2; regions after Alur and Dill 1994.
     """
-    return _Construction(alphabet, budget).run(required)
+    return _Construction(alphabet, budget, set() if ages is None else ages).run(required)
 
 
 class _Construction:
-    def __init__(self, alphabet: Alphabet, budget: Budget) -> None:
+    def __init__(self, alphabet: Alphabet, budget: Budget, ages: set[int]) -> None:
         self.alphabet = alphabet
         self.budget = budget
+        self.ages = ages
         self.locations: list[Location] = []
         self.index: dict[Residual, int] = {}
         self.youngest: list[tuple[int, ...]] = []
@@ -109,6 +113,7 @@ class _Construction:
             if row not in self.rows and len(self.rows) >= self.budget.rows:
                 raise DoesNotCloseError(f"more than {self.budget.rows} regions")
             self.least[row] = ages
+            self.ages.update(ages)
             self.rows[row] = self.diagram(location.residual, ages)
 
     def diagram(self, residual: Residual, ages: tuple[int, ...]) -> Node:

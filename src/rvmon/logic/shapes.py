@@ -1,20 +1,29 @@
-"""Constructs one automaton per shape: formulas that differ in propositions alone share it.
+"""Constructs one automaton per shape: formulas that differ in propositions and bounds share it.
 
 Locations with different residuals stay apart, so that a run can be explained by its location.
+
+An automaton depends on the order of the bounds, and on their distances only where these are small:
+an age that `construct` meets is 0 or a bound, plus one tick per step taken after it. So bounds that
+lie far apart are replaced by evenly spaced ones in the same order, and put back afterwards. Without
+that, hundreds of requirements with deadlines of their own take seven times as long to compile.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, TypeAlias, cast
 
-from rvmon.logic.automaton import Automaton
+from rvmon.logic.automaton import Automaton, Location
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import (
+    And,
     Constant,
     Core,
     Literal,
     Next,
+    Or,
     Release,
     Until,
     looks_back,
@@ -24,18 +33,27 @@ from rvmon.logic.letters import Alphabet
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
 
+_APART = 1 << 10
+"""The least distance in ticks between neighbouring bounds, and from 0, for them to be replaced."""
+
+_STRIDE = 1 << 20
+"""The distance in ticks between the bounds that replace them."""
+
+_Key: TypeAlias = tuple[object, ...]
+
 
 class Shapes:
     """The reduced automata of a specification, constructed once per shape."""
 
     def __init__(self) -> None:
-        self._automata: dict[tuple[object, ...], tuple[Automaton | None, Sequence[Core]]] = {}
+        self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
+        self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
 
     def reduced(self, required: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
         """The automaton of a formula; `None` if the formula looks back or does not close.
 
-        It has the alphabet and residuals of the formula of this shape that came first; `residuals`
-        translates them.
+        Of formulas that differ in propositions only, the automaton has the alphabet and residuals
+        of whichever came first; `residuals` translates them.
 
         Args:
             required: as for `rvmon.logic.construct.construct`.
@@ -62,14 +80,50 @@ class Shapes:
         nodes = _nodes(required)
         if looks_back(required):
             return None, nodes
-        key = (budget, *_description(nodes, alphabet))
+        bounds = sorted({bound for node in nodes for bound in _bounds(node)})
+        stand_ins = _stand_ins(bounds)
+        shape = (budget, *_description(nodes, alphabet, stand_ins))
+        key = (shape, *bounds)
         if key not in self._automata:
-            try:
-                made = reduce(construct(required, alphabet, budget), _itself)
-            except DoesNotCloseError:
-                made = None
+            made = self._made(shape, nodes, stand_ins, alphabet, budget)
             self._automata[key] = made, nodes
         return self._automata[key]
+
+    def _made(
+        self,
+        shape: _Key,
+        nodes: Sequence[Core],
+        stand_ins: Mapping[int, int],
+        alphabet: Alphabet,
+        budget: Budget,
+    ) -> Automaton | None:
+        if shape not in self._shapes:
+            others = _with_bounds(nodes, stand_ins)
+            made, steps = _constructed(others, alphabet, budget)
+            is_same = all(old == new for old, new in stand_ins.items())
+            # Clocks differ in age by a tick each: the oldest may lead by the number of clocks.
+            is_general = is_same or steps + budget.clocks < _APART
+            self._shapes[shape] = (made, others) if is_general else None
+        found = self._shapes[shape]
+        if found is None:  # the distances of its bounds matter after all
+            return _constructed(nodes, alphabet, budget)[0]
+        automaton, others = found
+        if automaton is None:
+            return None
+        own = {id(other): node for other, node in zip(others, nodes, strict=True)}
+        return _put_back(automaton, own, {new: old for old, new in stand_ins.items()})
+
+
+def _constructed(
+    nodes: Sequence[Core], alphabet: Alphabet, budget: Budget
+) -> tuple[Automaton | None, int]:
+    """The reduced automaton of the last node, and the most ticks by which an age passed a bound."""
+    ages: set[int] = set()
+    try:
+        made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages), _itself)
+    except DoesNotCloseError:
+        made = None
+    return made, max((age % _STRIDE for age in ages), default=0)
 
 
 def _itself(residual: Residual) -> Residual:
@@ -95,19 +149,63 @@ def _parts(node: Core) -> Iterator[Core]:
         yield node.opened
 
 
-def _description(nodes: Sequence[Core], alphabet: Alphabet) -> Iterator[object]:
-    """The key of a shape: the formula with numbered propositions."""
+def _bounds(node: Core) -> Iterator[int]:
+    """The ages, other than 0, at which the window of a node opens and is over."""
+    if isinstance(node, Until | Release):
+        if node.low:
+            yield node.low
+        if node.high is not None:
+            yield node.high + 1
+
+
+def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
+    """The replacement of each bound; bounds whose distances matter replace themselves."""
+    if any(high - low < _APART for low, high in pairwise((0, *bounds))):
+        return {bound: bound for bound in bounds}
+    return {bound: _STRIDE * rank for rank, bound in enumerate(bounds, start=1)}
+
+
+def _description(
+    nodes: Sequence[Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
+) -> Iterator[object]:
+    """The key of a shape: the formula with numbered propositions and stand-in bounds."""
     place = {id(node): number for number, node in enumerate(nodes)}
     digits = {state: number for number, state in enumerate(alphabet.propositions)}
     for node in nodes:
-        yield type(node), tuple(place[id(part)] for part in _parts(node))
+        yield type(node)
         match node:
             case Constant(value=value):
                 yield value
             case Literal(proposition=proposition, sense=sense):
                 yield digits[proposition], sense.value
-            case Until(low=low, high=high) | Release(low=low, high=high):
-                yield low, high
+            case Until() | Release():
+                yield tuple(stand_ins[bound] for bound in _bounds(node))
+                yield node.low > 0, tuple(place[id(part)] for part in _parts(node))
+            case _:
+                yield tuple(place[id(part)] for part in _parts(node))
+
+
+def _with_bounds(nodes: Sequence[Core], stand_ins: Mapping[int, int]) -> Sequence[Core]:
+    """The same nodes with other bounds."""
+    made: dict[int, Any] = {}
+    for node in nodes:
+        match node:
+            case And(args=args) | Or(args=args):
+                made[node.id] = replace(node, args=tuple(made[arg.id] for arg in args))
+            case Next(operand=operand):
+                made[node.id] = Next(node.id, made[operand.id])
+            case Until() | Release():
+                made[node.id] = replace(
+                    node,
+                    left=made[node.left.id],
+                    right=made[node.right.id],
+                    low=stand_ins[node.low] if node.low else 0,
+                    high=None if node.high is None else stand_ins[node.high + 1] - 1,
+                    opened=None if node.opened is None else made[node.opened.id],
+                )
+            case _:
+                made[node.id] = node
+    return tuple(made.values())
 
 
 def _renamed(residual: Residual, own: Mapping[int, Any]) -> Residual:
@@ -115,3 +213,15 @@ def _renamed(residual: Residual, own: Mapping[int, Any]) -> Residual:
     return frozenset(
         frozenset((own[id(node)], clock) for node, clock in clause) for clause in residual
     )
+
+
+def _put_back(automaton: Automaton, own: Mapping[int, Any], bounds: Mapping[int, int]) -> Automaton:
+    """An automaton with stand-in nodes and bounds replaced by those of the actual formula."""
+    locations = tuple(
+        Location(
+            _renamed(location.residual, own),
+            tuple(tuple(bounds[cut] for cut in cuts) for cuts in location.cuts),
+        )
+        for location in automaton.locations
+    )
+    return replace(automaton, locations=locations)
