@@ -117,13 +117,14 @@ class Waiting:
                 )
                 if Truth.UNKNOWN in signs:
                     yield from _named(part, self._letters[position].instant - origin)
-        if self._requirement.mode is Mode.WHENEVER or self._in_doubt:
-            # It is required at every position to come, which goes by its name.
-            yield f"`{format_formula(self._requirement.consequent)}`"
         held = any(isinstance(part, Unary) and part.op is UnaryOp.HELD for part in self._parts)
-        if self._simplified or held:
-            # What a part was made into may have no name.
-            yield "`the consequent`"
+        if (
+            self._requirement.mode is Mode.WHENEVER  # required at every position to come
+            or self._in_doubt
+            or self._simplified  # what a part was made into may have no name of its own
+            or held
+        ):
+            yield f"`{format_formula(self._requirement.consequent)}`"
 
 
 def _named(part: Formula, since: int) -> Iterator[str]:

@@ -10,11 +10,10 @@ import numpy as np
 
 from rvmon.analysis.spans import distinct, hold
 from rvmon.analysis.truths import Question, Seen, Truth, look_through
+from rvmon.spec.checked.classify import is_end
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
-    Bound,
-    BoundAtom,
     EventAtom,
     Formula,
     SignalAtom,
@@ -78,7 +77,7 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
     """As `why_not_triggered`, from the truths of its `parts_asked` over a recording."""
     if seen.begin is None:
         return "the recording has no sample"
-    if requirement.for_each is not None or requirement.trigger == BoundAtom(Bound.END):
+    if requirement.for_each is not None or is_end(requirement.trigger):
         return ""
     question = parts_asked(requirement)
     truths = dict(zip(question.formulas, seen.truths(question), strict=True))

@@ -191,7 +191,7 @@ def part_truths_of(
     truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
     parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]
-    if not isinstance(requirement.trigger, BoundAtom) and requirement.trigger != Constant(True):
+    if not isinstance(requirement.trigger, BoundAtom | Constant):
         parts.insert(0, ("trigger", requirement.trigger))
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):

@@ -13,11 +13,10 @@ from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
 from rvmon.readers.held import HeldRecording
+from rvmon.spec.checked.classify import is_end
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
-    Bound,
-    BoundAtom,
     Formula,
     Unary,
     UnaryOp,
@@ -168,7 +167,7 @@ class _Plan:
     ) -> None:
         lowering = Lowering(Factory(), spec.period, False)
         self.cores = {
-            text: None if formula == BoundAtom(Bound.END) else lowering.core(formula, True)
+            text: None if is_end(formula) else lowering.core(formula, True)
             for text, formula in formulas.items()
         }
         self.order = list(dict.fromkeys(core for core in self.cores.values() if core is not None))

@@ -196,7 +196,10 @@ class Lowering:
             return operand  # what is measured is where there surely are positions
         exists = factory.leaf(Elapsed(0))  # true; unknown where there may be no position
         whole = factory.all_of([factory.literal(exists, Sense.TRUE), operand])
-        return factory.any_of([whole, factory.literal(exists, Sense.FALSE)])
+        made = factory.any_of([whole, factory.literal(exists, Sense.FALSE)])
+        if operand in self.origins:
+            self.origins.setdefault(made, self.origins[operand])
+        return made
 
     def _junction_of(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
         """The conjunction or disjunction of two operands with a sign, flattened."""

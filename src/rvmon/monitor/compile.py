@@ -212,7 +212,7 @@ class CompiledRequirement:
     @cached_property
     def words(self) -> Words:
         """Words its parts in explanations."""
-        return Words(self.obligation.origins)
+        return Words(self.obligation.origins, self.requirement.consequent)
 
 
 def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:

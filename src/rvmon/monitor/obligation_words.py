@@ -83,10 +83,16 @@ class _Atom:
 
 
 class Words:
-    """Words the parts of one requirement by their origins in the specification."""
+    """Words the parts of one requirement by their origins in the specification.
 
-    def __init__(self, origins: Mapping[Core, Origin]) -> None:
+    Args:
+        origins: the source of each part.
+        consequent: of the requirement; names the parts that have no source.
+    """
+
+    def __init__(self, origins: Mapping[Core, Origin], consequent: Formula) -> None:
         self._origins = dict(origins)
+        self._consequent = consequent
         self._texts: dict[Core, str] = {}
         for node, origin in origins.items():
             opened = node.opened if isinstance(node, Until | Release) else None
@@ -109,9 +115,7 @@ class Words:
         """A node in the language."""
         found = self._texts.get(node)
         if found is None:
-            formula = self.formula(node)
-            found = "the consequent" if formula is None else format_formula(formula)
-            self._texts[node] = found
+            found = self._texts[node] = format_formula(self.formula(node) or self._consequent)
         return found
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
@@ -195,7 +199,7 @@ class Words:
         return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
 
     def _quoted(self, node: Core) -> str:
-        return "the consequent" if self.formula(node) is None else f"`{self.text(node)}`"
+        return f"`{self.text(node)}`"
 
     def _atom(self, literal: Literal) -> _Atom:
         """The required proposition of a literal."""
@@ -213,8 +217,8 @@ class Words:
     def blame(self, cause: Cause, t: int, start: int, flow: TruthValues) -> Blame:
         """The obligation that failed at `t`, instantiated at `start` (ticks)."""
         node = cause.node
-        formula = self.formula(node)
-        span = None if formula is None else formula.span
+        formula = self.formula(node) or self._consequent
+        span = formula.span
         if span is None and isinstance(formula, Unary):
             span = formula.operand.span
         window: tuple[int, int | None] = (t, t)

@@ -178,3 +178,15 @@ def test_what_a_log_lost_is_known_to_nobody(door, capsys):
     lost = range(row["true"][0][1] + 1, row["true"][1][0])
     assert len(lost) >= second // 4
     assert second + 5 * second // 10 in lost
+
+
+def test_an_attempt_at_the_end_has_no_row_for_its_trigger(tmp_path, capsys):
+    """`end` is no part that would be true at some instants; `true` as a trigger says nothing."""
+    (tmp_path / "a.csv").write_text("t,p\n0,1\n1,0\n")
+    for trigger in ("upon end", "whenever true"):
+        text = f"spec a\nsignal p : bool\nrequirement R\n{trigger} then immediately p\n"
+        (tmp_path / "a.rv").write_text(text)
+        command = ["why", str(tmp_path / "a.rv"), str(tmp_path / "a.csv"), "R", "--format", "json"]
+        assert main(command) == 0
+        rows = json.loads(capsys.readouterr().out)["part_truths"]
+        assert [row["text"] for row in rows] == ["immediately p", "p"][-len(rows) :], trigger

@@ -24,7 +24,7 @@ def built(formula, **more):
     automaton = construct(
         factory.next(obligation.required), alphabet_of(obligation.required), Budget()
     )
-    return automaton, Words(obligation.origins).label
+    return automaton, Words(obligation.origins, formula).label
 
 
 def nothing(_residual) -> None:

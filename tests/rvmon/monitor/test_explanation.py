@@ -283,3 +283,42 @@ def test_what_ended_an_episode_is_named(requirement, over):
     _, (attempt,) = run(requirement, samples, 9)
     assert attempt.verdict is rvmon.Verdict.PASS
     assert attempt.reason == f"{over}; after that no obligation was left"
+
+
+@pytest.mark.parametrize(
+    ("mode", "required", "samples", "reason", "blamed"),
+    [
+        (
+            "upon",
+            "near until slow until[1 s, 2 s] near",
+            [(0, {"near": False, "slow": False}), (1, {}), (4, {})],
+            "`near` was false at 0 s; it had to stay true until `slow until[1 s, 2 s] near`",
+            "near until slow until[1 s, 2 s] near",
+        ),
+        (
+            "upon",
+            "within 1 s always near",
+            [(0, {"near": False}), (1, {}), (4, {})],
+            "`always near` had to come true between 0 s and 1 s, and did not",
+            "within 1 s always near",
+        ),
+        (
+            "whenever",
+            "fall(always[1 s, 3 s] near)",
+            [(0, {"near": True}), (1, {})],
+            "`fall(always[1 s, 3 s] near)` could be fulfilled no more at 0 s",
+            "fall(always[1 s, 3 s] near)",
+        ),
+    ],
+)
+def test_parts_that_samples_decide_are_named_as_they_are_written(
+    mode, required, samples, reason, blamed
+):
+    """Also those that there is no position for, whose place is that of the consequent."""
+    head = HEAD.replace("time held", "time sampled")
+    spec = rvmon.loads(f"{head}requirement R\n{mode} start then {required}\n")
+    (attempt,) = spec.evaluate(samples).attempts
+    assert attempt.verdict is rvmon.Verdict.FAIL
+    assert attempt.reason == reason
+    place = attempt.blame
+    assert place.subformula == spec.checked.source.text[place.start : place.end] == blamed

@@ -30,6 +30,7 @@ from rvmon.spec.check.traps import (
 from rvmon.spec.checked.classify import (
     end_part,
     future_part,
+    is_end,
     is_pulse,
     is_timeless,
     mixed_disjunction,
@@ -38,7 +39,6 @@ from rvmon.spec.checked.classify import (
 )
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import (
-    Bound,
     BoundAtom,
     Captured,
     Compare,
@@ -232,8 +232,7 @@ def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) ->
 
 
 def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
-    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
-    instant = body.mode is Mode.UPON and not at_end and is_timeless(consequent)
+    instant = body.mode is Mode.UPON and not is_end(trigger) and is_timeless(consequent)
     if instant and not on_purpose(body.consequent):
         checker.report(rules.one_instant(body.consequent.span))
     if mixed := mixed_disjunction(trigger):

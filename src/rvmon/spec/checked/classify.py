@@ -93,10 +93,12 @@ def looks_back_at_future(formula: Formula) -> bool:
 
 def end_part(formula: Formula) -> Formula | None:
     """The first `end` in a formula."""
-    for part in subformulas(formula):
-        if isinstance(part, BoundAtom) and part.bound is Bound.END:
-            return part
-    return None
+    return next((part for part in subformulas(formula) if is_end(part)), None)
+
+
+def is_end(formula: Formula) -> bool:
+    """Whether a formula is `end`, wherever it stands."""
+    return isinstance(formula, BoundAtom) and formula.bound is Bound.END
 
 
 def is_timeless(formula: Formula) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from rvmon.spec.checked.classify import windows_of
+from rvmon.spec.checked.classify import is_end, windows_of
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -195,7 +195,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         form=profile.form,
     )
     trigger = _trigger(rng, seen, for_each)
-    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    at_end = is_end(trigger)
     how = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
     required = consequent(rng, shape, rng.randint(1, profile.depth))
     if captures and chance(rng, 70):
