@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.peers.environment import Environment as Peers
 from benchmarks.timing.agreement import Agreement
 from benchmarks.timing.measure import Figure, Result
 from jinja2 import Environment, StrictUndefined
@@ -103,8 +102,7 @@ class Findings:
 
     Attributes:
         command: that prints it.
-        machine: processor, cores, system, interpreter.
-        versions: by name.
+        peers: their versions by name.
         results: all measured workloads.
         agreements: by contender and workload.
         differences: lines of the table of readings.
@@ -114,8 +112,7 @@ class Findings:
     """
 
     command: str
-    machine: str
-    versions: dict[str, str]
+    peers: dict[str, str]
     results: tuple[Result, ...] = ()
     agreements: tuple[Agreement, ...] = ()
     differences: tuple[str, ...] = ()
@@ -150,18 +147,6 @@ def commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def findings_of(
-    command: str,
-    peers: Peers,
-    results: Sequence[Result],
-    agreements: Sequence[Agreement] = (),
-) -> Findings:
-    """What was found, here and now."""
-    versions = {"rvmon": f"{version('rvmon')} ({commit()})", **peers.versions}
-    absent = dict(peers.missing)
-    return Findings(command, machine(), versions, tuple(results), tuple(agreements), absent=absent)
-
-
 def render(findings: Findings) -> str:
     """The page, Markdown."""
     environment = Environment(  # noqa: S701 - it is no page of HTML
@@ -170,6 +155,8 @@ def render(findings: Findings) -> str:
     compared = [entry for entry in findings.agreements if entry.compared]
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         found=findings,
+        machine=machine(),
+        versions={"rvmon": f"{version('rvmon')} ({commit()})", **findings.peers},
         goals=list(_goals(findings)),
         sections=list(_sections(findings.results)),
         agreed=list(_agreed(compared)),

@@ -11,74 +11,86 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from benchmarks.growth import cliffs
-from benchmarks.page import TITLES, Findings, findings_of, render
+from benchmarks.page import TITLES, Findings, render
 from benchmarks.peers import differences
 from benchmarks.peers.environment import prepare
-from benchmarks.peers.native import build
+from benchmarks.timing import files, race
 from benchmarks.timing.measure import QUICK, Size
 
-from benchmarks import online, recordings
-
 OUT = Path(__file__).with_name("RESULTS.md")
-SECTIONS = (*online.SECTIONS, *recordings.SECTIONS, "cliffs", "differences")
+RECORDINGS = ("batch", "process", "files")
+SECTIONS = (*race.ONLINE, *RECORDINGS, "cliffs", "differences")
 
 
 def run(size: Size, sections: Sequence[str], command: str, r2u2: Path | None) -> Findings:
     """Measure all chosen sections."""
     began = time.monotonic()
     environment = prepare()
-    native = build(environment)
-    own = [one for one in sections if one in online.SECTIONS]
-    results, agreements = online.run(size, own, environment, native, r2u2)
-    own = [one for one in sections if one in recordings.SECTIONS]
-    more, agreed, files = recordings.run(size, own, environment, native)
-    tables = [("Whole files, on all cores", files)] if files else []
+    results, agreements = race.run(size, sections, environment, r2u2)
+    if "process" in sections:
+        more, agreed = files.processes(size, environment)
+        results, agreements = [*results, *more], [*agreements, *agreed]
+    tables = []
+    if "files" in sections:
+        race.say("whole files")
+        tables.append(("Whole files, on all cores", files.table(size, environment)))
     if "cliffs" in sections:
-        online.say("cliffs")
+        race.say("cliffs")
         table = tuple(cliffs.table(2 * size.rows // 5, size.repeats))
         tables.append(("Hard streams beside their quiet neighbours", table))
     other: Sequence[str] = ()
     if "differences" in sections:
-        online.say("where the peers read otherwise")
+        race.say("where the peers read otherwise")
         other = differences.table(environment)
-    found = findings_of(command, environment, [*results, *more], [*agreements, *agreed])
-    absent = dict(found.absent)
+    absent = dict(environment.missing)
     if r2u2 is None:
         absent["R2U2"] = "the package index has none; `--r2u2` with a clone of its repository"
-    if native.binary is None:
-        absent["reelay C++"] = native.reason
     left = [TITLES.get(one, one) for one in SECTIONS if one not in sections]
     if left:
         absent["sections"] = "; ".join(left)
-    minutes = (time.monotonic() - began) / 60
-    return replace(
-        found,
-        minutes=round(minutes),
-        differences=tuple(other),
-        tables=tuple(tables),
-        absent=absent,
+    return Findings(
+        command,
+        environment.versions,
+        tuple(results),
+        tuple(agreements),
+        tuple(other),
+        tuple(tables),
+        absent,
+        round((time.monotonic() - began) / 60),
     )
+
+
+def parser_of(about: str | None, sections: Sequence[str]) -> argparse.ArgumentParser:
+    """The options of a program that measures some sections."""
+    parser = argparse.ArgumentParser(description=(about or "").splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="a few minutes, for a first look")
+    parser.add_argument("--only", nargs="+", choices=sections, default=sections, metavar="SECTION")
+    parser.add_argument("--r2u2", type=Path, help="a clone of its repository", metavar="FOLDER")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write the page there")
+    return parser
+
+
+def show(program: str, argv: Sequence[str], options: argparse.Namespace) -> int:
+    """Measure, and write the page, or print it."""
+    shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
+    command = " ".join([f"python -m benchmarks.{program}", *shown])
+    page = render(run(QUICK if options.quick else Size(), options.only, command, options.r2u2))
+    if options.out is None:
+        print(page)
+        return 0
+    options.out.write_text(page, encoding="utf-8")
+    race.say(f"wrote {options.out}")
+    return 0
 
 
 def main(argv: Sequence[str]) -> int:
     """Measure and write the page."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="a few minutes, for a first look")
-    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, metavar="SECTION")
-    parser.add_argument("--r2u2", type=Path, help="a clone of its repository", metavar="FOLDER")
-    parser.add_argument("--out", type=Path, default=OUT, metavar="FILE")
-    options = parser.parse_args(argv)
-    shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
-    command = " ".join(["python -m benchmarks.results", *shown])
-    size = QUICK if options.quick else Size()
-    findings = run(size, options.only, command, options.r2u2)
-    options.out.write_text(render(findings), encoding="utf-8")
-    online.say(f"wrote {options.out}")
-    return 0
+    parser = parser_of(__doc__, SECTIONS)
+    parser.set_defaults(out=OUT)
+    return show("results", argv, parser.parse_args(argv))
 
 
 if __name__ == "__main__":

@@ -4,41 +4,44 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.contest import CONTESTS, Contest, ask_peer, random_question, shrink
-from benchmarks.peers.dialects import spelling, translate
+from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
-from benchmarks.peers.positions import Judge, Question, answers, ask_monitor, ask_oracle
-from benchmarks.peers.ways import WAYS, Way
+from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monitor, ask_oracle
+from tests.tools.common_fragment import UntranslatableError, names_in
+from tests.tools.shrink import smaller_formulas
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
     Binary,
-    BinaryOp,
     Bound,
     BoundAtom,
     Compare,
     CompareOp,
+    Constant,
     Formula,
-    Interval,
     Literal,
+    SignalAtom,
     SignalValue,
     Unary,
-    UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
 from rvmon.spec.print import format_formula
+from rvmon.testing.generate import NUMBERS, chance, pick
+from rvmon.testing.generate.formula import formula
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "monitor": ask_monitor}
-Values = list[bool | None] | list[float | None]
+ORDERS = (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT)
+Values = Sequence[float | None]
+Ask = Callable[[Question], tuple[Values, Values]]
+"""What we and the peer say at every tick."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +49,11 @@ class Verdicts:
     """Settings of `peers`.
 
     Attributes:
-        ways: in which they are asked, with commas; empty: all.
+        ways: in which they are asked, with commas.
         against: `oracle` or `monitor`.
     """
 
-    ways: str = ",".join(CONTESTS)
+    ways: str = ",".join(WAYS)
     against: str = "oracle"
 
 
@@ -61,51 +64,98 @@ class Robustness:
     ways: str = "rtamt-discrete,rtamt-dense,sentil"
 
 
-def _asked(ways: str, counts: Counter[str]) -> Iterator[tuple[Way, Peer]]:
-    """Each way with the process of its peer; those that are missing are counted."""
+def judge_verdicts(seed: int, own: Verdicts, numbers: range) -> Found:
+    """The peer's verdict wherever it has one and ours is decided by the trace."""
+
+    def asked(way: Way, peer: Peer) -> Ask:
+        return lambda one: (answers(one, JUDGES[own.against]), way.truths(peer, one))
+
+    return _judge(f"{seed}", own.ways, numbers, 50, asked)
+
+
+def judge_robustness(seed: int, own: Robustness, numbers: range) -> Found:
+    """Robustness, number for number, wherever ours is one: no window reaches beyond the end."""
+
+    def asked(way: Way, peer: Peer) -> Ask:
+        return lambda one: (_robustness(one), way.says(peer, one))
+
+    return _judge(f"robustness {seed}", own.ways, numbers, 100, asked)
+
+
+def _judge(
+    seed: str, ways: str, numbers: range, compared: int, asked: Callable[[Way, Peer], Ask]
+) -> Found:
+    """Both on random questions, of whose propositions so many per cent are comparisons."""
+    counts, texts = Counter[str](), list[str]()
     environment = prepare()
     for name in ways.split(","):
         way = WAYS[name]
         if way.package in environment.missing:
             counts[f"{name}: left out, {way.package} is missing"] += 1
             continue
-        with Peer(environment.python, way.worker) as peer:
-            yield way, peer
-
-
-def judge_verdicts(seed: int, own: Verdicts, numbers: range) -> Found:
-    """The peer's verdict wherever it has one and ours is decided by the trace."""
-    counts, texts = Counter[str](), list[str]()
-    judge = JUDGES[own.against]
-    for way, peer in _asked(own.ways, counts):
-        contest = CONTESTS[way.name]
-        for number in numbers:
-            rng = random.Random(f"{seed}/{way.name}/{number}")
-            question, _ = random_question(rng, contest)
-            if question is None:
-                counts[f"{way.name}: not to be said to it"] += 1
-                continue
-            try:
-                theirs = ask_peer(contest, peer, question)
-                ours = answers(question, judge)
-            except (PeerError, RvmonError) as error:
-                counts[f"{way.name}: no answer, {str(error)[:60]}"] += 1
-                continue
-            counts[f"{way.name}: pairs"] += 1
-            for value, other in zip(ours, theirs, strict=True):
-                counts[f"{way.name}: ticks, {_word(value)} / {_word(other)}"] += 1
-            if _disagree(ours, theirs):
-                small = shrink(question, partial(_differs, contest, peer, judge))
-                values = answers(small, judge), ask_peer(contest, peer, small)
-                texts.append(f"{way.name}, number {number}\n{_show(contest, small, *values)}")
+        with Peer(environment.python, way.adapter) as peer:
+            ask = asked(way, peer)
+            for number in numbers:
+                question = random_question(random.Random(f"{seed}/{name}/{number}"), way, compared)
+                try:
+                    ours, theirs = ask(question)
+                except UntranslatableError:
+                    counts[f"{name}: not to be said to it"] += 1
+                    continue
+                except (PeerError, RvmonError) as error:
+                    counts[f"{name}: no answer, {str(error)[:60]}"] += 1
+                    continue
+                counts[f"{name}: pairs"] += 1
+                for pair in zip(ours, theirs, strict=True):
+                    counts[f"{name}: ticks, {' / '.join(map(_word, pair))}"] += 1
+                if _disagree(ours, theirs):
+                    small = shrink(question, ask)
+                    texts.append(f"{name}, number {number}\n{_show(way, small, *ask(small))}")
     return counts, texts
 
 
-def _differs(contest: Contest, peer: Peer, judge: Judge, question: Question) -> bool:
-    try:
-        return _disagree(answers(question, judge), ask_peer(contest, peer, question))
-    except (PeerError, RvmonError, ValueError):
-        return False
+def random_question(rng: random.Random, way: Way, compared: int) -> Question:
+    """A formula, and a trace of values that are held for a while."""
+    asked = _with_numbers(rng, formula(rng, way.shape, rng.randint(1, 3)), compared)
+    ticks = rng.randint(2, 24)
+    columns: dict[str, list[bool | float]] = {}
+    for name in sorted(names_in(asked) or {"p"}):
+        column = columns[name] = []
+        while len(column) < ticks:
+            if not column or chance(rng, 40):
+                is_number = name in NUMBERS
+                column.append(float(rng.randint(-2, 3)) if is_number else chance(rng, 50))
+            else:
+                column.append(column[-1])
+    return Question(asked, columns, way.time)
+
+
+def _with_numbers(rng: random.Random, asked: Formula, compared: int) -> Formula:
+    """Some of the propositions replaced by comparisons that no value meets exactly."""
+    match asked:
+        case SignalAtom() | Constant() | BoundAtom() if chance(rng, compared):
+            bound = Literal(rng.randint(-1, 2) + 0.5)
+            return Compare(pick(rng, ORDERS), SignalValue(pick(rng, NUMBERS)), bound)
+        case Unary():
+            return replace(asked, operand=_with_numbers(rng, asked.operand, compared))
+        case Binary():
+            left = _with_numbers(rng, asked.left, compared)
+            return replace(asked, left=left, right=_with_numbers(rng, asked.right, compared))
+        case _:
+            return asked
+
+
+def _robustness(question: Question) -> Values:
+    """Ours at every tick; `None` where it depends on what comes after the trace, or is infinite."""
+    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), question.formula)
+    signals = {name: Signal(name, Type(Kind.REAL)) for name in question.columns}
+    spec = CheckedSpec("robustness", "", question.time, signals, {}, {"R": requirement})
+    rows = enumerate(zip(*question.columns.values(), strict=True))
+    samples = [Sample(t, dict(zip(question.columns, row, strict=True))) for t, row in rows]
+    trace = Trace(tuple(samples), frozenset(question.columns))
+    stream = Spec(spec).robustness(trace).streams["R"]
+    found = [one.low if one.low == one.high else None for _, one in stream]
+    return [None if value is None or abs(value) == float("inf") else value for value in found]
 
 
 def _disagree(ours: Values, theirs: Values) -> bool:
@@ -113,12 +163,14 @@ def _disagree(ours: Values, theirs: Values) -> bool:
     return any(None not in pair and pair[0] != pair[1] for pair in pairs)
 
 
-def _word(value: bool | None) -> str:
-    return {True: "true", False: "false", None: "open"}[value]
+def _word(value: float | None) -> str:
+    if not isinstance(value, bool):
+        return "open" if value is None else "a number"
+    return str(value).lower()
 
 
-def _show(contest: Contest, question: Question, ours: Values, theirs: Values) -> str:
-    asked = translate(question.formula, contest.way.dialect)
+def _show(way: Way, question: Question, ours: Values, theirs: Values) -> str:
+    asked = translate(question.formula, way.dialect)
     lines = [f"{format_formula(question.formula)}   as   {asked}"]
     for name, column in {**question.columns, "ours": ours, "theirs": theirs}.items():
         cells = ["." if value is None else f"{value:g}" for value in column]
@@ -126,67 +178,35 @@ def _show(contest: Contest, question: Question, ours: Values, theirs: Values) ->
     return "\n".join(lines)
 
 
-NAMES = ("x", "y")
-TICKS = 24
-ORDERS = (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT)
-UNARY = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY)
+def shrink(question: Question, ask: Ask) -> Question:
+    """A smaller question on which both still disagree; greedy."""
+    found: Question | None = question
+    while found is not None:
+        question = found
+        found = next((one for one in _smaller(question) if _differs(ask, one)), None)
+    return question
 
 
-def judge_margins(seed: int, own: Robustness, numbers: range) -> Found:
-    """Robustness, number for number, wherever ours is one: no window reaches beyond the end."""
-    counts, texts = Counter[str](), list[str]()
-    for way, peer in _asked(own.ways, counts):
-        for number in numbers:
-            rng = random.Random(f"{seed}/{way.name}/{number}")
-            formula = random_formula(rng, rng.randint(1, 3))
-            columns = {name: [float(rng.randint(-4, 4))] for name in NAMES}
-            for column in columns.values():
-                while len(column) < TICKS:
-                    same = rng.random() < 0.5
-                    column.append(column[-1] if same else float(rng.randint(-4, 4)))
-            try:
-                text = translate(formula, way.dialect)
-                named = {spelling(name): column for name, column in columns.items()}
-                used = {name: column for name, column in named.items() if name in text}
-                theirs = peer.ask("judge", formula=text, kind=way.kind, columns=used)["values"]
-            except (ValueError, PeerError):
-                counts[f"{way.name}: not to be said to it"] += 1
-                continue
-            ours = _robustness(formula, columns, way)
-            counts[f"{way.name}: pairs"] += 1
-            counts[f"{way.name}: figures"] += sum(value is not None for value in ours)
-            if _disagree(ours, theirs):
-                shown = f"{format_formula(formula)}   as   {text}"
-                texts.append(f"{way.name}, number {number}: {shown}\n{columns}\n{ours}\n{theirs}")
-    return counts, texts
+def _differs(ask: Ask, question: Question) -> bool:
+    try:
+        return _disagree(*ask(question))
+    except (PeerError, RvmonError, ValueError):
+        return False
 
 
-def random_formula(rng: random.Random, depth: int) -> Formula:
-    """A formula over comparisons of numbers, with bounded operators that all peers have."""
-    if depth == 0:
-        bound = Literal(rng.randint(-3, 3))
-        return Compare(rng.choice(ORDERS), SignalValue(rng.choice(NAMES)), bound)
-    kind, low = rng.random(), rng.choice((0, 0, rng.randint(1, 3)))
-    window, operand = Interval(low, low + rng.randint(1, 4)), random_formula(rng, depth - 1)
-    if kind < 0.15:
-        return Unary(UnaryOp.NOT, operand)
-    if kind < 0.6:
-        return Unary(rng.choice(UNARY), operand, window)
-    left = random_formula(rng, rng.randint(0, depth - 1))
-    if kind < 0.8:
-        return Binary(rng.choice((BinaryOp.AND, BinaryOp.OR)), left, operand)
-    return Binary(rng.choice((BinaryOp.UNTIL, BinaryOp.SINCE)), left, operand, window)
-
-
-def _robustness(formula: Formula, columns: dict[str, list[float]], way: Way) -> Values:
-    """Ours at every tick; `None` where it depends on what comes after the trace, or is infinite."""
-    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), formula)
-    signals = {name: Signal(name, Type(Kind.REAL)) for name in columns}
-    spec = CheckedSpec("robustness", "", way.time, signals, {}, {"R": requirement})
-    samples = [Sample(t, {n: column[t] for n, column in columns.items()}) for t in range(TICKS)]
-    stream = Spec(spec).robustness(Trace(tuple(samples), frozenset(columns))).streams["R"]
-    found = (one.low if one.low == one.high else None for _, one in stream)
-    return [None if value is None or abs(value) == float("inf") else value for value in found]
+def _smaller(question: Question) -> Iterator[Question]:
+    for smaller in smaller_formulas(question.formula):
+        yield replace(question, formula=smaller)
+    if question.ticks > 1:
+        for cut in (slice(0, -1), slice(1, None)):
+            columns = {name: column[cut] for name, column in question.columns.items()}
+            yield replace(question, columns=columns)
+    for name, column in question.columns.items():
+        for tick in range(question.ticks):
+            if column[tick]:
+                quiet = 0.0 if isinstance(column[tick], float) else False
+                changed = [*column[:tick], quiet, *column[tick + 1 :]]
+                yield replace(question, columns={**question.columns, name: changed})
 
 
 COMPARISONS = {
@@ -199,7 +219,7 @@ COMPARISONS = {
     ),
     "peers-robustness": Comparison(
         "rtamt and SENTIL: robustness at every tick",
-        judge_margins,
+        judge_robustness,
         "formulas for each way to ask",
         (Robustness(),),
         250,

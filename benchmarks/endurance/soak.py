@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from benchmarks.peers.with_faults import resident_kib
+from benchmarks.peers.adapters import resident_kib
 
 import rvmon
 from rvmon.core import amalgamate

@@ -6,9 +6,9 @@
     python -m benchmarks.growth coverage [--tests 10000] [--items 1000] [--share 0.2]
     python -m benchmarks.growth automata --formulas 600 --depth 3
 
-`cliffs` has streams beside their quiet neighbours. `large` has inputs that are wide, nested,
-endless or all decided at once; a process that needs longer than the limit is stopped, and none may
-take more than 6 GiB. `scale` multiplies the number of recordings, requirements and tests by ten, up
+`cliffs` has streams beside their quiet neighbours. `large` has inputs that are wide, long, or all
+decided at once; a process that needs longer than the limit is stopped, and none may take more than
+6 GiB. `scale` multiplies the number of recordings, requirements and tests by ten, up
 to those given: what one of them costs more than at a tenth of them. `coverage` records tests that
 hit a random share of the items, with random counts and instants (real ones repeat, and take less
 room), and looks at the database. `automata` draws formulas with so many temporal operators nested:

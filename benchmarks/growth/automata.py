@@ -9,12 +9,12 @@ than the budget of `--most` seconds.
 from __future__ import annotations
 
 import argparse
+import itertools
 import random
 import statistics
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from tests.tools.build import p, requirement, start
 
@@ -27,24 +27,17 @@ from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
+from rvmon.spec.checked.specification import Requirement
 from rvmon.spec.print import format_formula
 from rvmon.testing.generate.formula import Shape, formula
 
 SHAPE = Shape(mixed=False, past=False)
+SIZES = ("locations", "clocks", "rows")
+"""Of an automaton; its rows are its locations times their regions of age."""
 
 
-@dataclass(frozen=True, slots=True)
-class Size:
-    """How large an automaton is."""
-
-    locations: int
-    clocks: int
-    rows: int
-
-    @classmethod
-    def of(cls, automaton: Automaton) -> Size:
-        """Of one automaton; its rows are its locations times their regions of age."""
-        return cls(len(automaton.locations), automaton.clocks, len(automaton.time_values))
+def _size(automaton: Automaton) -> tuple[int, int, int]:
+    return len(automaton.locations), automaton.clocks, len(automaton.time_values)
 
 
 def nesting(part: Formula) -> int:
@@ -61,28 +54,40 @@ def nesting(part: Formula) -> int:
 def measure(options: argparse.Namespace) -> int:
     """Draw, build, measure, print."""
     seconds: list[tuple[float, str]] = []
-    sizes: list[tuple[Size, Size]] = []
-    refused: Counter[str] = Counter()
+    automata: list[tuple[Automaton, Automaton]] = []
     forecasts: list[tuple[float, str]] = []
-    drawn = 0
-    while len(seconds) < options.formulas:
+    refused: Counter[str] = Counter()
+    for drawn in itertools.count():
+        if len(seconds) == options.formulas:
+            break
         rng = random.Random(f"{options.seed}/{drawn}")
-        drawn += 1
         required = formula(rng, SHAPE, options.depth)
         if nesting(required) < options.depth:
             continue
-        mode = {"upon": start} if len(seconds) % 2 else {"whenever": p}
+        upon, whenever = (start, None) if len(seconds) % 2 else (None, p)
+        shown = format_formula(required)
         began = time.process_time()
-        found: Automaton | None = None
         try:
-            found, own = _built(required, mode)
-            sizes.append(own)
+            made = _built(requirement(required, upon=upon, whenever=whenever))
         except DoesNotCloseError as error:
             refused[str(error)] += 1
-        seconds.append((time.process_time() - began, format_formula(required)))
-        if found is not None:
-            forecasts += [(spent, format_formula(required)) for spent in _forecast(found, rng)]
-    _print(options, sizes, refused, seconds)
+            seconds.append((time.process_time() - began, shown))
+            continue
+        seconds.append((time.process_time() - began, shown))
+        automata.append(made)
+        forecasts += [(spent, shown) for spent in _forecast(made[1], rng)]
+    count = len(seconds)
+    print(f"{count} formulas, {options.depth} temporal operators nested, seed {options.seed}")
+    share = 100 * len(automata) / count
+    print(f"  automata {len(automata)} ({share:.0f} %), the rest by the network:")
+    for reason, number in refused.most_common():
+        print(f"    {number} {reason}")
+    names = ("constructed", "reduced")
+    for name, own in zip(names, zip(*automata, strict=True), strict=True):
+        for what, values in zip(SIZES, zip(*map(_size, own), strict=True), strict=True):
+            middle = statistics.median(values)
+            print(f"  {name}: {what} median {middle:g}, largest {max(values)}, sum {sum(values)}")
+    _print_seconds(seconds)
     print(f"  {len(forecasts)} forecasts, of what may be required at the end of a trace")
     _print_seconds(forecasts)
     return int(max(max(seconds), max(forecasts))[0] > options.most)
@@ -99,41 +104,17 @@ def _forecast(automaton: Automaton, rng: random.Random) -> Iterator[float]:
         yield time.process_time() - began
 
 
-def _built(required: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Size, Size]]:
-    """The automaton, and its size as made, and as people are told of it."""
+def _built(required: Requirement) -> tuple[Automaton, Automaton]:
+    """The automaton as it is constructed, and as people are told of it."""
     factory = Factory()
-    obligation = lower(
-        requirement(required, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
-    )
+    obligation = lower(required, factory)
     whole = construct(factory.next(obligation.required), alphabet_of(obligation.required), Budget())
     told = reduce(whole, Words(obligation.origins).label)
-    return told, (Size.of(whole), Size.of(told))
-
-
-def _print(
-    options: argparse.Namespace,
-    sizes: Sequence[tuple[Size, Size]],
-    refused: Counter[str],
-    seconds: Sequence[tuple[float, str]],
-) -> None:
-    count = len(seconds)
-    print(f"{count} formulas, {options.depth} temporal operators nested, seed {options.seed}")
-    print(f"  automata {len(sizes)} ({100 * len(sizes) / count:.0f} %), the rest by the network:")
-    for reason, number in refused.most_common():
-        print(f"    {number} {reason}")
-    for place, name in enumerate(("constructed", "reduced")):
-        own = [size[place] for size in sizes]
-        for what in ("locations", "clocks", "rows"):
-            values = [getattr(size, what) for size in own]
-            middle = statistics.median(values)
-            print(f"  {name}: {what} median {middle:g}, largest {max(values)}, sum {sum(values)}")
-    _print_seconds(seconds)
+    return whole, told
 
 
 def _print_seconds(seconds: Sequence[tuple[float, str]]) -> None:
     ordered, count = sorted(seconds), len(seconds)
-    shown = {
-        f"p{share}": ordered[min(count * share // 100, count - 1)][0] for share in (50, 90, 99)
-    }
-    print("  CPU s:", ", ".join(f"{name} {value:.3f}" for name, value in shown.items()), end="")
+    shares = {f"p{n}": ordered[min(count * n // 100, count - 1)][0] for n in (50, 90, 99)}
+    print("  CPU s:", ", ".join(f"{name} {value:.3f}" for name, value in shares.items()), end="")
     print(f", longest {ordered[-1][0]:.3f}: {ordered[-1][1]}")

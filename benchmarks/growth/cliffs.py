@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from rvmon import loads
 from rvmon.trace.sample import Value
 
-Rows = Sequence[dict[str, Value]]
+Row = dict[str, Value]
+Rows = Sequence[Row]
 SECOND, MILLISECOND = 10**9, 10**6
 HEAD = "signal x, y : real\nevent e\nrequirement R\n  "
 KEYED = """event put(id : int), got(id : int)
@@ -21,7 +22,7 @@ requirement R
   upon put and put.id == k then within 1000 s (got and got.id == k)
   for each k in put.id
 """
-OPEN = "signal x, y : real\nevent e\nrequirement R\n  upon e then within 3600 s x > 11\n"
+OPEN = f"{HEAD}upon e then within 3600 s x > 11\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +45,9 @@ class Stream:
 def values(count: int, unknown: float = 0, events: float = 0) -> Rows:
     """Samples of which all values are new; shares of NaN and of samples with the event."""
     rng = random.Random("cliffs")
-    rows: list[dict[str, Value]] = []
+    rows: list[Row] = []
     for _ in range(count):
-        row: dict[str, Value] = {name: rng.uniform(0, 10) for name in "xy"}
+        row: Row = {name: rng.uniform(0, 10) for name in "xy"}
         if rng.random() < unknown:
             row["xy"[rng.random() < 0.5]] = math.nan
         if rng.random() < events:
@@ -56,55 +57,52 @@ def values(count: int, unknown: float = 0, events: float = 0) -> Rows:
 
 
 def _keys(count: int, live: int) -> Rows:
-    first: Rows = [{"put": {"id": key}} for key in range(live)]
-    return [*first, *({"put": {"id": n + live}, "got": {"id": n}} for n in range(count))]
+    first: list[Row] = [{"put": {"id": key}} for key in range(live)]
+    return first + [{"put": {"id": n + live}, "got": {"id": n}} for n in range(count)]
 
 
 def _open(count: int, attempts: int) -> Rows:
-    quiet = values(count)
-    return [*({"x": 0.0, "y": 0.0, "e": True} for _ in range(attempts)), *quiet]
+    first: list[Row] = [{"x": 0.0, "y": 0.0, "e": True} for _ in range(attempts)]
+    return [*first, *values(count)]
+
+
+FAILING = {
+    "a limit": ("always x < 7", "always x < 11"),
+    "a response": ("always (x > 5 -> within 3 s y < 1.2)", "always (x > 5 -> within 3 s y < 9)"),
+    "for a while": ("always (x > 5 -> for 3 s y < 8.7)", "always (x > 5 -> for 3 s y < 11)"),
+}
+UNKNOWN = {
+    "a response": "always (x > 8 -> within 50 s y < 6)",
+    "a window": "always (x > 9.9 -> for 20 s y < 9.9)",
+    "the past": "always (x > 9 -> once[0 s, 50 s] y > 9)",
+}
+TRIGGERED = {
+    "within 10 s": "within 10 s x > 9.995",
+    "for 10 s": "for 10 s x < 9.999",
+    "until, 10 s": "(y < 9.999) until[0 s, 10 s] x > 9.995",
+    "nested, 10 s": "within 10 s for 1 s x < 9.99",
+}
+LATER = {
+    "F[2 s, 10 s]": ("F[2 s, 10 s] x > 9.995", "within 10 s x > 9.995"),
+    "G[2 s, 10 s]": ("G[2 s, 10 s] x < 9.999", "for 10 s x < 9.999"),
+    "until[2 s, 10 s]": ("(y < 9.999) until[2 s, 10 s] x > 9.995", "within 10 s x > 9.995"),
+}
 
 
 def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
     """What is hard, its quiet neighbour, and the most times that it may cost."""
     plain, every, rare = values(count), values(count, events=1), values(count, events=0.02)
-    for name, failing, holding in (
-        ("a limit", "always x < 7", "always x < 11"),
-        (
-            "a response",
-            "always (x > 5 -> within 3 s y < 1.2)",
-            "always (x > 5 -> within 3 s y < 9)",
-        ),
-        ("for a while", "always (x > 5 -> for 3 s y < 8.7)", "always (x > 5 -> for 3 s y < 11)"),
-    ):
-        yield (
-            f"{name} that fails at 30 % of the rows",
-            Stream(HEAD + failing, plain),
-            "it holds",
-            Stream(HEAD + holding, plain),
-            3,
-        )
-    for name, text in (
-        ("a response", "always (x > 8 -> within 50 s y < 6)"),
-        ("a window", "always (x > 9.9 -> for 20 s y < 9.9)"),
-        ("the past", "always (x > 9 -> once[0 s, 50 s] y > 9)"),
-    ):
+    for name, texts in FAILING.items():
+        hard, quiet = (Stream(HEAD + text, plain) for text in texts)
+        yield f"{name} that fails at 30 % of the rows", hard, "it holds", quiet, 3
+    for name, text in UNKNOWN.items():
         hard, quiet = (Stream(HEAD + text, values(count, share)) for share in (0.01, 0))
         yield f"{name}, 1 % NaN", hard, "no NaN", quiet, 3
-    for name, text in (
-        ("within 10 s", "upon e then within 10 s x > 9.995"),
-        ("for 10 s", "upon e then for 10 s x < 9.999"),
-        ("until, 10 s", "upon e then (y < 9.999) until[0 s, 10 s] x > 9.995"),
-        ("nested, 10 s", "upon e then within 10 s for 1 s x < 9.99"),
-    ):
-        hard, quiet = (Stream(HEAD + text, rows, MILLISECOND) for rows in (every, rare))
+    for name, text in TRIGGERED.items():
+        hard, quiet = (Stream(f"{HEAD}upon e then {text}", n, MILLISECOND) for n in (every, rare))
         yield f"{name} at 1 kHz, each sample a trigger", hard, "2 % are", quiet, 3
-    for name, text, near in (
-        ("F[2 s, 10 s]", "F[2 s, 10 s] x > 9.995", "within 10 s x > 9.995"),
-        ("G[2 s, 10 s]", "G[2 s, 10 s] x < 9.999", "for 10 s x < 9.999"),
-        ("until[2 s, 10 s]", "(y < 9.999) until[2 s, 10 s] x > 9.995", "within 10 s x > 9.995"),
-    ):
-        hard, quiet = (Stream(f"{HEAD}upon e then {o}", every, MILLISECOND) for o in (text, near))
+    for name, texts in LATER.items():
+        hard, quiet = (Stream(f"{HEAD}upon e then {o}", every, MILLISECOND) for o in texts)
         yield f"{name}, each sample a trigger", hard, "the window opens at once", quiet, 3
     hard, quiet = (Stream(KEYED, _keys(count, n), MILLISECOND, n) for n in (1_000, 10))
     yield "1,000 keys", hard, "10 keys", quiet, 3

@@ -4,30 +4,29 @@ from __future__ import annotations
 
 import json
 import subprocess
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 WORKER = Path(__file__).with_name("worker.py")
+ADAPTERS = WORKER.with_name("adapters.py")
 
 
 class PeerError(Exception):
     """The peer refused the request or died of it; the text is its own."""
 
 
-class Peer:
+class Peer(AbstractContextManager["Peer"]):
     """A peer's process, restarted when it dies.
 
     Args:
         python: the interpreter to run it with.
-        module: the file that asks the peer; or the name of a shipped one.
+        adapter: the class that asks the peer.
+        module: the file of that class.
     """
 
-    def __init__(self, python: Path, module: Path | str) -> None:
-        if isinstance(module, str):
-            module = WORKER.with_name(f"with_{module}.py")
-        self._command = [str(python), str(WORKER), str(module)]
+    def __init__(self, python: Path, adapter: str, module: Path = ADAPTERS) -> None:
+        self._command = [str(python), str(WORKER), str(module), adapter]
         self._process: subprocess.Popen[str] | None = None
 
     def ask(self, do: str, **request: Any) -> dict[str, Any]:
@@ -36,15 +35,19 @@ class Peer:
         Raises:
             PeerError: the peer raised, or its process ended.
         """
-        process = self._running()
+        process = self._process
+        if process is None:
+            pipe, nobody = subprocess.PIPE, subprocess.DEVNULL
+            process = self._process = subprocess.Popen(
+                self._command, stdin=pipe, stdout=pipe, stderr=nobody, text=True
+            )
         assert process.stdin is not None
         assert process.stdout is not None
-        try:
+        line = ""
+        with suppress(BrokenPipeError):
             process.stdin.write(json.dumps({"do": do, **request}) + "\n")
             process.stdin.flush()
             line = process.stdout.readline()
-        except BrokenPipeError:
-            line = ""
         if not line:
             self.close()
             raise PeerError(f"its process ended with code {process.returncode}")
@@ -55,34 +58,9 @@ class Peer:
 
     def close(self) -> None:
         """End the process."""
-        if self._process is None:
-            return
         process, self._process = self._process, None
-        if process.stdin is not None:
-            with suppress(BrokenPipeError):  # what a dead process has not read
-                process.stdin.close()
-        process.wait()
-        if process.stdout is not None:
-            process.stdout.close()
+        if process is not None:
+            process.communicate()
 
-    def _running(self) -> subprocess.Popen[str]:
-        if self._process is None:
-            self._process = subprocess.Popen(
-                self._command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                text=True,
-            )
-        return self._process
-
-    def __enter__(self) -> Peer:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()

@@ -1,4 +1,4 @@
-"""What fails of `benchmarks.recordings.SPEC` in a CSV file, by DuckDB: `FILE`; prints instants.
+"""What fails of `benchmarks.timing.files.SPEC` in a CSV file, by DuckDB: `FILE`; prints instants.
 
 Run in the peers' environment. Of the forms that were tried this is the fastest: what no
 requirement looks at is left out before the window is ordered.

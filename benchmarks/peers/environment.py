@@ -1,16 +1,28 @@
-"""The peers' own environment: made once, beside the benchmarks, from the package index."""
+"""The peers' own environment, made once beside the benchmarks from the package index.
+
+In it lies reelay's C++ monitor, too, built from the headers of its source package; that needs g++
+and Boost's headers (apt-get install g++ libboost-dev).
+"""
 
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import subprocess
 import sys
+import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).parent
 HOME = HERE.parent / ".env"
 REQUIREMENTS = HERE / "requirements.txt"
+SOURCE = HERE / "reelay_native"
+BINARY = HOME / "reelay_native"
+LETTERS = "pqrs"
+"""The columns that the C++ monitor knows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +33,13 @@ class Environment:
         python: the interpreter that has the peers.
         versions: of each package that installed, by name.
         missing: for each package that did not install, the reason in one line.
+        reelay: the C++ monitor; `None`: see `missing`.
     """
 
     python: Path
     versions: dict[str, str]
     missing: dict[str, str]
+    reelay: Path | None = None
 
 
 def prepare() -> Environment:
@@ -33,29 +47,63 @@ def prepare() -> Environment:
     stamp = HOME / "peers.json"
     pins = [line for line in REQUIREMENTS.read_text().splitlines() if line and line[0] != "#"]
     python = HOME / "bin" / "python"
-    if stamp.exists():
-        found = json.loads(stamp.read_text())
-        if found["pins"] == pins:
-            return Environment(python, found["versions"], found["missing"])
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", str(HOME)], check=True)
-    versions: dict[str, str] = {}
-    missing: dict[str, str] = {}
-    for pin in pins:
-        name, _, version = pin.partition("==")
-        reason = _install(python, pin)
-        if reason is None:
-            versions[name] = version
-        else:
-            missing[name] = reason
-    stamp.write_text(json.dumps({"pins": pins, "versions": versions, "missing": missing}))
-    return Environment(python, versions, missing)
+    found = json.loads(stamp.read_text()) if stamp.exists() else {}
+    if found.get("pins") != pins:
+        if not python.exists():
+            subprocess.run([sys.executable, "-m", "venv", str(HOME)], check=True)
+        named = {pin: pin.partition("==")[::2] for pin in pins}
+        reasons = {pin: _install(python, pin) for pin in pins}
+        found = {
+            "pins": pins,
+            "versions": dict(named[pin] for pin, reason in reasons.items() if not reason),
+            "missing": {named[pin][0]: reason for pin, reason in reasons.items() if reason},
+        }
+        stamp.write_text(json.dumps(found))
+    versions, missing = found["versions"], found["missing"]
+    reason = _build_reelay(python, versions.get("reelay", ""))
+    if reason:
+        missing["reelay C++"] = reason
+    return Environment(python, versions, missing, None if reason else BINARY)
 
 
-def _install(python: Path, pin: str) -> str | None:
+def _install(python: Path, pin: str) -> str:
+    """Why a package does not install; empty if it does."""
     command = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", pin]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode == 0:
-        return None
     errors = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-    return (errors or done.stderr.splitlines() or ["pip failed"])[-1]
+    return (errors or done.stderr.splitlines() or ["pip failed"])[-1] if done.returncode else ""
+
+
+def _build_reelay(python: Path, version: str) -> str:
+    """Build reelay's C++ monitor unless it is there; why that fails."""
+    source = SOURCE / "monitor.cpp"
+    if BINARY.exists() and BINARY.stat().st_mtime > source.stat().st_mtime:
+        return ""
+    if shutil.which("g++") is None:
+        return "no g++"
+    with tempfile.TemporaryDirectory(dir=HOME) as folder:
+        # pip unpacks the source package before it finds that it cannot build it.
+        command = [str(python), "-m", "pip", "download", "--quiet", "--no-clean", "--no-deps"]
+        command += ["--no-build-isolation", "--no-binary", "reelay", f"reelay=={version}"]
+        where = {**os.environ, "TMPDIR": folder}
+        subprocess.run(command, cwd=folder, env=where, capture_output=True, check=False)
+        include = next(Path(folder).glob("pip-download-*/reelay_*/include"), None)
+        if include is None:
+            return "the source package of reelay cannot be fetched"
+        command = ["g++", "-O3", "-march=native", "-DNDEBUG", "-std=c++17", "-w"]
+        command += ["-I", str(SOURCE), "-I", str(include), str(source), "-o", str(BINARY)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    errors = [line for line in done.stderr.splitlines() if "error" in line] or ["g++ failed"]
+    # Without the place where it was unpacked.
+    return errors[0].rpartition("fatal error: ")[2] if done.returncode else ""
+
+
+def packed(columns: Mapping[str, Sequence[bool | float]]) -> bytes:
+    """Rows for the C++ monitor, a byte for each: bit i is the column of `LETTERS[i]`."""
+    rows = bytearray(len(next(iter(columns.values()))))
+    for name, column in columns.items():
+        bit = 1 << LETTERS.index(name)
+        for row, value in enumerate(column):
+            if value:
+                rows[row] |= bit
+    return bytes(rows)

@@ -13,12 +13,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
+from benchmarks.peers.adapters import resident_kib
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.with_faults import resident_kib
 
 import rvmon
 from rvmon.adapters.json_objects import JsonObjects
@@ -30,16 +29,14 @@ from rvmon.verdict.report import Report
 
 Samples = Sequence[tuple[float, Mapping[str, float]]]
 
-WORKER = Path(__file__).with_name("with_faults.py")
-
 PEERS = {
-    "rtamt, discrete online": ("rtamt", "once[0:1](NAME > 0.5)"),
-    "rtamt, dense online": ("rtamt", "once[0:1](NAME > 0.5)"),
-    "reelay, dense": ("reelay", "once[0:1]{NAME > 0.5}"),
-    "mstlo": ("mstlo-python", "F[0, 1](NAME > 0.5)"),
-    "SENTIL, online": ("sentil", "(once[0,1] (NAME > 0.5))"),
+    "rtamt, discrete online": ("rtamt", "Rtamt", "discrete online", "once[0:1](NAME > 0.5)"),
+    "rtamt, dense online": ("rtamt", "Rtamt", "dense online", "once[0:1](NAME > 0.5)"),
+    "reelay, dense": ("reelay", "Reelay", "dense", "once[0:1]{NAME > 0.5}"),
+    "mstlo": ("mstlo-python", "Mstlo", "DelayedQualitative", "F[0, 1](NAME > 0.5)"),
+    "SENTIL, online": ("sentil", "Sentil", "discrete", "(once[0,1] (NAME > 0.5))"),
 }
-"""Of each way to ask a peer: its package, and the formula."""
+"""Of each way to ask a peer: its package, the class that asks it, the kind, and the formula."""
 
 SPEC = """
 spec faults
@@ -93,14 +90,15 @@ FAULTS = (
 )
 
 
-def answers_of_peer(peer: Peer, way: str, formula: str, samples: Samples) -> str:
+def answers_of_peer(peer: Peer, kind: str, formula: str, fault: Fault) -> str:
     """What a peer says, in one line."""
+    asked = formula.replace("NAME", fault.name)
     try:
-        said = peer.ask("feed", peer=way, formula=formula, samples=samples)["said"]
+        said = peer.ask("feed", formula=asked, kind=kind, samples=fault.samples)["said"]
     except PeerError as error:
         return f"({error})"
-    found = [one for (t, _), own in zip(samples, said, strict=True) for one in _words(t, own)]
-    return _line(found)
+    pairs = zip(fault.samples, said, strict=True)
+    return _line(found for (t, _), own in pairs for found in _words(t, own))
 
 
 def _words(t: float, said: Any) -> Iterator[tuple[float, str]]:
@@ -180,7 +178,7 @@ OURS: Mapping[str, Callable[[Fault], str]] = {
 }
 
 
-def keyed() -> tuple[float, int]:
+def keyed() -> dict[str, float]:
     """CPU seconds and KiB of one requirement `for each` whose keys all get two samples."""
     before, began = resident_kib(), time.process_time()
     monitor = rvmon.loads(KEYED).monitor(keep=100)
@@ -188,38 +186,34 @@ def keyed() -> tuple[float, int]:
         monitor.step_ns(key, {"pick": {"id": key}})
     for key in range(KEYS):
         monitor.step_ns(KEYS + key, {"done": {"id": key}})
-    spent = time.process_time() - began
-    return spent, resident_kib() - before
+    return {"seconds": time.process_time() - began, "kib": resident_kib() - before}
 
 
 def tables(environment: Environment) -> None:
     """Print the tables."""
     logging.disable()  # what `rvmon watch` says of each verdict
-    there = {way: one for way, one in PEERS.items() if one[0] in environment.versions}
+    there = {way: one[1:] for way, one in PEERS.items() if one[0] in environment.versions}
     for fault in FAULTS:
         fed = ", ".join(f"{t:g}: {next(iter(row.values())):g}" for t, row in fault.samples)
         print(f"\n**{fault.title}** (fed {fed})\n\n| monitor | says |\n|---|---|")
         for name, ask in OURS.items():
-            print(f"| {name} | {_cell(ask(fault))} |")
-        for way, (_, formula) in there.items():
-            with Peer(environment.python, WORKER) as peer:
-                said = answers_of_peer(
-                    peer, way, formula.replace("NAME", fault.name), fault.samples
-                )
-            print(f"| {way} | {_cell(said)} |")
+            _print(name, ask(fault))
+        for way, (adapter, kind, formula) in there.items():
+            with Peer(environment.python, adapter) as peer:
+                _print(way, answers_of_peer(peer, kind, formula, fault))
     print(f"\n**{KEYS:,} keys**, two samples each\n\n| monitor | per key |\n|---|---|")
-    seconds, kib = keyed()
-    print(f"| rvmon, one requirement `for each` | {_cost(seconds, kib)} |")
-    for way, (_, formula) in there.items():
-        with Peer(environment.python, WORKER) as peer:
-            peer.ask("many", peer=way, formula=formula.replace("NAME", "v_x"), count=1)  # imports
-            found = peer.ask("many", peer=way, formula=formula.replace("NAME", "v_x"), count=KEYS)
-        print(f"| {way}, a monitor for each | {_cost(found['seconds'], found['kib'])} |")
+    _print("rvmon, one requirement `for each`", _cost(keyed()))
+    for way, (adapter, kind, formula) in there.items():
+        with Peer(environment.python, adapter) as peer:
+            asked = {"formula": formula.replace("NAME", "v_x"), "kind": kind}
+            peer.ask("many", **asked, count=1)  # imports
+            _print(f"{way}, a monitor for each", _cost(peer.ask("many", **asked, count=KEYS)))
 
 
-def _cost(seconds: float, kib: int) -> str:
-    return f"{1e3 * seconds / KEYS:.2f} ms, {kib / KEYS:.1f} KiB"
+def _cost(found: Mapping[str, float]) -> str:
+    return f"{1e3 * found['seconds'] / KEYS:.2f} ms, {found['kib'] / KEYS:.1f} KiB"
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("\n", " ") or "nothing"
+def _print(who: str, text: str) -> None:
+    said = text.replace("|", "\\|").replace("\n", " ") or "nothing"
+    print(f"| {who} | {said} |")

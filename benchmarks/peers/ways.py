@@ -1,22 +1,58 @@
-"""The ways in which peers can be asked for the truth of a formula at every tick."""
+"""The ways in which peers can be asked for the truth of a formula at every tick, and ours."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
 from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.session import Spec
+from rvmon.spec.checked.formula import EventAtom, Formula
+from rvmon.spec.checked.specification import (
+    CheckedSpec,
+    Event,
+    Mode,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.testing.generate.formula import Shape
+from rvmon.testing.oracle import evaluate
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+from rvmon.verdict import Verdict
+from rvmon.verdict.attempt import Decision
+from rvmon.verdict.report import Report
 
 Cell = bool | float | None
 """A value at a tick; `None`: not known."""
 
 Columns = Mapping[str, Sequence[Cell]]
-"""The value of each name at each tick, from tick 0 on; of an event, whether it occurs."""
+"""The value of each name at each tick, from tick 0 on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A formula and a trace.
+
+    Attributes:
+        formula: over the names of the columns.
+        columns: all of one length.
+        time: `held` or `sampled`; the same here, as there is a sample at every tick.
+    """
+
+    formula: Formula
+    columns: Columns
+    time: TimeModel = TimeModel.HELD
+
+    @property
+    def ticks(self) -> int:
+        """The length of the trace."""
+        return len(next(iter(self.columns.values())))
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,74 +60,112 @@ class Way:
     """One way to ask one peer.
 
     Attributes:
-        name: of peer, time model and semantics.
         package: its name in the package index.
-        worker: of the module that asks it.
-        kind: what the worker is given of time and semantics.
+        adapter: the class that asks it.
+        kind: what the adapter is given of time and semantics.
         dialect: the language.
         time: the time model of ours that it stands for.
+        shape: what random formulas hold that it is asked.
         sign: whether it answers with a robustness, whose sign counts; 0 says nothing.
     """
 
-    name: str
     package: str
-    worker: str
+    adapter: str
     kind: str
     dialect: Dialect
     time: TimeModel
+    shape: Shape
     sign: bool = False
+
+    def says(self, peer: Peer, question: Question) -> list[float | None]:
+        """What the peer says at every tick.
+
+        Raises:
+            PeerError: it refuses, or dies.
+            UntranslatableError: it cannot be asked this.
+        """
+        text = translate(question.formula, self.dialect)
+        ticks = question.ticks
+        named = {spelling(name): list(column) for name, column in question.columns.items()}
+        named[spelling("start")] = [tick == 0 for tick in range(ticks)]
+        # Of a robustness, what is true is far from false.
+        named[spelling(ALWAYS_ONE)] = [1e300 if self.sign else True] * ticks
+        used = {name: column for name, column in named.items() if name in text}
+        found: list[float | None]
+        found = peer.ask("judge", formula=text, kind=self.kind, columns=used)["values"]
+        return found
+
+    def truths(self, peer: Peer, question: Question) -> list[bool | None]:
+        """The peer's verdict at every tick; `None` where it has none."""
+        values = self.says(peer, question)
+        nothing = (None, 0) if self.sign else (None,)
+        return [None if value in nothing else (value or 0) > 0 for value in values]
 
 
 _HELD, _SAMPLED = TimeModel.HELD, TimeModel.SAMPLED
-_REELAY = ("reelay", "reelay")
-_RTAMT = ("rtamt", "rtamt")
-_MSTLO = ("mstlo-python", "mstlo")
-_SENTIL = ("sentil", "sentil")
+_FUTURE = Shape(past=False, numbers=False, events=False)
+_BOTH = Shape(numbers=False, events=False)
+_BOTH_STEP = Shape(step=True, numbers=False, events=False)
+_PAST = Shape(future=False, numbers=False, events=False)
+_PAST_STEP = Shape(step=True, future=False, numbers=False, events=False)
+_REELAY, _RTAMT, _MSTLO = ("reelay", "Reelay"), ("rtamt", "Rtamt"), ("mstlo-python", "Mstlo")
 
 WAYS = {
-    way.name: way
-    for way in (
-        Way("reelay-discrete", *_REELAY, "discrete", dialects.REELAY_DISCRETE, _SAMPLED),
-        Way(
-            "reelay-discrete-robustness",
-            *_REELAY,
-            "discrete robustness",
-            dialects.REELAY_ROBUSTNESS,
-            _SAMPLED,
-            sign=True,
-        ),
-        Way("reelay-dense", *_REELAY, "dense", dialects.REELAY_DENSE, _HELD),
-        Way(
-            "reelay-dense-robustness",
-            *_REELAY,
-            "dense robustness",
-            dialects.REELAY_DENSE_ROBUSTNESS,
-            _HELD,
-            sign=True,
-        ),
-        Way("rtamt-discrete", *_RTAMT, "discrete", dialects.RTAMT_DISCRETE, _SAMPLED, sign=True),
-        Way("rtamt-dense", *_RTAMT, "dense", dialects.RTAMT_DENSE, _HELD, sign=True),
-        Way("mstlo-delayed", *_MSTLO, "DelayedQualitative", dialects.MSTLO, _HELD),
-        Way("mstlo-robustness", *_MSTLO, "DelayedQuantitative", dialects.MSTLO, _HELD, sign=True),
-        Way("sentil", *_SENTIL, "discrete", dialects.SENTIL, _SAMPLED, sign=True),
-    )
+    "reelay-discrete": Way(*_REELAY, "discrete", dialects.REELAY_DISCRETE, _SAMPLED, _PAST_STEP),
+    "reelay-discrete-robustness": Way(
+        *_REELAY, "discrete robustness", dialects.REELAY_ROBUSTNESS, _SAMPLED, _PAST_STEP, True
+    ),
+    "reelay-dense": Way(*_REELAY, "dense", dialects.REELAY_DENSE, _HELD, _PAST),
+    "reelay-dense-robustness": Way(
+        *_REELAY, "dense robustness", dialects.REELAY_DENSE_ROBUSTNESS, _HELD, _PAST, True
+    ),
+    "rtamt-discrete": Way(*_RTAMT, "discrete", dialects.RTAMT_DISCRETE, _SAMPLED, _BOTH_STEP, True),
+    "rtamt-dense": Way(*_RTAMT, "dense", dialects.RTAMT_DENSE, _HELD, _BOTH, True),
+    "mstlo-delayed": Way(*_MSTLO, "DelayedQualitative", dialects.MSTLO, _HELD, _FUTURE),
+    "mstlo-robustness": Way(*_MSTLO, "DelayedQuantitative", dialects.MSTLO, _HELD, _FUTURE, True),
+    "sentil": Way("sentil", "Sentil", "discrete", dialects.SENTIL, _SAMPLED, _BOTH_STEP, True),
 }
 
+RTAMT_STEPPED = Way(*_RTAMT, "discrete online", dialects.RTAMT_DISCRETE, _SAMPLED, _PAST_STEP, True)
+"""Row by row, as it is timed. Random formulas are not put to it: what stands twice in one it steps
+twice a row."""
 
-def truths(way: Way, peer: Peer, formula: Formula, columns: Columns) -> list[bool | None]:
-    """The peer's verdict at every tick; `None` where it has none.
 
-    Raises:
-        PeerError: it refuses, or dies.
-        UntranslatableError: it cannot be asked this.
-    """
-    text = translate(formula, way.dialect)
-    ticks = len(next(iter(columns.values())))
-    named: dict[str, list[Cell]] = {spelling(n): list(column) for n, column in columns.items()}
-    named[spelling("start")] = [tick == 0 for tick in range(ticks)]
-    named[spelling(ALWAYS_ONE)] = [True] * ticks
-    used = {name: column for name, column in named.items() if name in text}
-    values = peer.ask("judge", formula=text, kind=way.kind, columns=used)["values"]
-    if way.sign:
-        return [None if value is None or value == 0 else value > 0 for value in values]
-    return [None if value is None else bool(value) for value in values]
+Judge = Callable[[CheckedSpec, Sequence[Sample], int], Report]
+"""Judges a spec on samples, with an `advance` to the given tick at the end."""
+
+
+def ask_oracle(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
+    """Judge by the reference oracle."""
+    return evaluate(spec, samples, advances=(end,))
+
+
+def ask_monitor(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
+    """Judge by a monitor."""
+    monitor = Spec(spec).monitor()
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
+    monitor.advance_ns(end)
+    return monitor.finish_ns(None)
+
+
+def answers(question: Question, judge: Judge) -> list[bool | None]:
+    """Ours at every tick, an attempt for each: TRUE, FALSE, or `None` (the trace decides not)."""
+    signals = {
+        name: Signal(name, Type(Kind.REAL if float in map(type, column) else Kind.BOOL))
+        for name, column in question.columns.items()
+    }
+    requirement = Requirement("R", Mode.UPON, EventAtom("row"), question.formula, pulse=True)
+    events = {"row": Event("row")}
+    spec = CheckedSpec("question", "", question.time, signals, events, {"R": requirement})
+    rows = zip(*question.columns.values(), strict=True)
+    samples = [
+        Sample(tick, {"row": True, **dict(zip(question.columns, row, strict=True))})
+        for tick, row in enumerate(rows)
+    ]
+    attempts = judge(spec, samples, question.ticks).attempts
+    assert len(attempts) == question.ticks, f"{len(attempts)} attempts for {question.ticks} ticks"
+    return [
+        one.verdict is Verdict.PASS if one.decision is Decision.PREFIX else None
+        for one in sorted(attempts, key=lambda one: one.triggered)
+    ]

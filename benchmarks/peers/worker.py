@@ -1,15 +1,10 @@
 """A peer in a process of its own: one JSON request per line in, one JSON answer per line out.
 
-It may run in an environment of the peer's own, and so imports nothing of this package.
+    python worker.py MODULE.py CLASS
 
-    python worker.py MODULE.py                  where MODULE.py has a class `Peer`
-
-    {"do": "judge", "formula": …, "kind": …, "columns": {name: [value per tick]}}
-                                                -> {"values": [verdict or robustness per tick]}
-    {"do": "load", "formulas": […], "kind": …, "columns": {…}, "rows": n}  -> {"rows": n}
-    {"do": "run"}                               -> {"cpu_ns": …, "violated": [first row or null]}
-
-An error of the peer is an answer, too: {"error": …}. What the peer prints goes to stderr.
+It imports nothing of this package, as it may run in an environment of the peer's own. A request
+names a method of the class and its arguments; an error of the peer is an answer, too:
+{"error": …}. What the peer prints goes to stderr.
 """
 
 from __future__ import annotations
@@ -21,12 +16,12 @@ import sys
 from typing import Any
 
 
-def main(path: str) -> None:
+def main(path: str, name: str) -> None:
     """Answer until the input ends."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
     sys.path.pop(0)  # this folder: its names are not meant for the peers
-    peer = runpy.run_path(path)["Peer"]()
+    peer = runpy.run_path(path)[name]()
     for line in sys.stdin:
         request: dict[str, Any] = json.loads(line)
         handler = getattr(peer, request.pop("do"))
@@ -38,4 +33,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -16,31 +16,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.contest import CONTESTS, RTAMT_STEPPED, Contest, ask_peer
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.positions import Question, answers, ask_monitor
-from benchmarks.peers.ways import Cell
+from benchmarks.peers.ways import RTAMT_STEPPED, Cell, Question, Way, answers, ask_monitor
+from benchmarks.timing.contenders import PEERS
 from benchmarks.timing.measure import Figure
 from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon import loads
 from rvmon.errors import RvmonError
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.law.syntax import intervals
 from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
 
-CONTEST_OF = {
-    "reelay": "reelay-discrete",
-    "rtamt": "rtamt-discrete",
-    "mstlo": "mstlo-delayed",
-    "sentil": "sentil",
-}
+WAYS_OF = {entry.label: entry.way for entry in PEERS}
 """Who is asked for the verdicts of which contender; the native reelay is the same program."""
-
-STEPPED = {"rtamt": RTAMT_STEPPED}
-"""Who is asked for the past row by row, as timed; a later row costs as much as an early one."""
 
 RTAMT_BOUND = 300
 """The longest deadline of the future that its offline evaluation judges in reasonable time."""
@@ -74,18 +63,30 @@ class Agreement:
     remark: str = ""
 
 
-@dataclass(frozen=True, slots=True)
 class _Case:
     """A trace and what we say of it: at every row, and the row at which the requirement fails."""
 
-    question: Question
-    answers: Sequence[bool | None]
-    failure: int | None
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        self.answers = answers(question, ask_monitor)
+        self.falses = self.answers.count(False)
+        columns: Mapping[str, Sequence[float]] = question.columns  # type: ignore[assignment]
+        monitor = loads(specification([always_text(question.formula)], columns)).monitor()
+        rows = enumerate(zip(*columns.values(), strict=True))
+        decided = (
+            one
+            for t, row in rows
+            for one in monitor.step_ns(t, dict(zip(columns, row, strict=True)))
+        )
+        failed = (one.decided for one in decided if one.verdict is Verdict.FAIL)
+        self.failure = next(failed, None)
 
-    @property
-    def falses(self) -> int:
-        """The rows at which ours is FALSE."""
-        return sum(answer is False for answer in self.answers)
+    def shortened(self, rows: int) -> _Case:
+        """So many rows of a trace: the first or the last, where ours is FALSE more often."""
+        if rows >= self.question.ticks:
+            return self
+        ends = (_part(self.question, slice(rows)), _part(self.question, slice(-rows, None)))
+        return max(map(_Case, ends), key=lambda part: part.falses)
 
 
 class Referee:
@@ -125,128 +126,91 @@ class Referee:
         except RvmonError as error:
             remark = str(error).splitlines()[0]
             return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
+        costs = {figure.label: figure.median for figure in timed}
         found: list[Agreement] = []
+        form, bound = workload.form, _bound(workload)
         for label, peer in self._peers.items():
-            if workload.form == "past" and label in STEPPED:
-                costs = [figure.median for figure in timed if figure.label == label]
-                found += [self._step(workload, label, peer, cases, cost) for cost in costs]
-            elif label == "rtamt" and _bound(workload) > RTAMT_BOUND:
+            about, way, asked, remark = (label, workload.name, form), WAYS_OF[label], cases, ""
+            if label == "rtamt" and form == "future" and bound > RTAMT_BOUND:
                 remark = f"future: its offline evaluation takes too long above {RTAMT_BOUND} rows"
-                found.append(Agreement(label, workload.name, workload.form, remark=remark))
+            elif label == "rtamt" and form == "past":
+                if label not in costs:
+                    continue
+                way, asked = RTAMT_STEPPED, self._fitting(bound, cases, costs[label])
+                if not asked:
+                    seconds = f"{self._seconds:g} s"
+                    remark = f"past: no bound fails on the rows that it steps in {seconds}"
+            if remark:
+                found.append(Agreement(*about, remark=remark))
             else:
-                contest = CONTESTS[CONTEST_OF[label]]
-                found.append(_compare(workload, label, contest, peer, cases))
+                found.append(_compared(about, way, peer, asked))
         return found
 
-    def _step(
-        self, workload: Workload, label: str, peer: Peer, cases: Sequence[_Case], cost: float
-    ) -> Agreement:
-        """Compare on as many rows as fit into the time, beginning where ours is FALSE most often.
+    def _fitting(self, bound: int, cases: Sequence[_Case], cost: float) -> list[_Case]:
+        """As many rows as fit into the time at a cost, those first where ours is FALSE most often.
 
-        Args:
-            workload: of the past.
-            label: the peer's.
-            peer: its process.
-            cases: of which a part is taken where there is no time for all.
-            cost: CPU ns of a row.
+        A trace has to be longer than the formula's bound.
         """
-        rows = int(self._seconds * 1e9 / cost)
-        asked: list[_Case] = []
+        rows, asked = int(self._seconds * 1e9 / cost), list[_Case]()
         for case in sorted(cases, key=lambda case: case.falses, reverse=True):
-            if min(rows, case.question.ticks) > _bound(workload):
-                asked.append(_shortened(case, rows))
+            if min(rows, case.question.ticks) > bound:
+                asked.append(case.shortened(rows))
                 rows -= asked[-1].question.ticks
-        if not asked:
-            remark = f"past: no bound fails on the rows that it steps in {self._seconds:g} s"
-            return Agreement(label, workload.name, workload.form, remark=remark)
         ticks = sum(case.question.ticks for case in asked)
         if ticks * cost > 1e9:
-            self._say(f"  {label} steps {ticks:,} rows, {ticks * cost / 1e9:.0f} s")
-        return _compare(workload, label, STEPPED[label], peer, asked)
+            self._say(f"  rtamt steps {ticks:,} rows, {ticks * cost / 1e9:.0f} s")
+        return asked
 
 
 def peers_in(environment: Environment) -> dict[str, Peer]:
     """Who can be asked, by the label under which it is timed."""
     return {
-        label: Peer(environment.python, CONTESTS[name].way.worker)
-        for label, name in CONTEST_OF.items()
-        if CONTESTS[name].way.package in environment.versions
+        label: Peer(environment.python, way.adapter)
+        for label, way in WAYS_OF.items()
+        if way.package in environment.versions
     }
 
 
-def _compare(
-    workload: Workload, label: str, contest: Contest, peer: Peer, cases: Sequence[_Case]
+def _compared(
+    about: tuple[str, str, str], way: Way, peer: Peer, cases: Sequence[_Case]
 ) -> Agreement:
     count: Counter[str] = Counter()
     for case in cases:
         try:
-            theirs = ask_peer(contest, peer, case.question)
+            theirs = way.truths(peer, case.question)
         except (PeerError, UntranslatableError) as error:
-            return Agreement(label, workload.name, workload.form, remark=str(error))
+            return Agreement(*about, remark=str(error))
         for own, other in zip(case.answers, theirs, strict=True):
             if own is not None and other is not None:
-                count["compared"] += 1
-                count["equal"] += own is other
-                count["false"] += not own
-        if workload.form == "past":
+                count.update(compared=1, equal=own is other, false=not own)
+        if about[-1] == "past":
             first = theirs.index(False) if False in theirs else None
-            count["compared"] += 1
-            count["equal"] += first == case.failure
-    return Agreement(
-        label, workload.name, workload.form, count["equal"], count["compared"], count["false"]
-    )
+            count.update(compared=1, equal=first == case.failure)
+    return Agreement(*about, count["equal"], count["compared"], count["false"])
 
 
 def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
     """So many damaged traces, the first further one on which ours is FALSE, and the last rows."""
+    formula = workload.formulas[0]
+    columns = {
+        name: workload.columns[name] for name in workload.columns if name in names_in(formula)
+    }
+    whole = Question(formula, columns)
+    rows = min(max(300, 3 * _bound(workload)), MOST_ROWS, workload.rows)
     seen = False
     for seed in range(MOST_DAMAGED):
         if seed >= traces and seen:
             break
-        case = _case(_damaged(workload, seed))
+        case = _Case(_damaged(_part(whole, slice(rows)), f"{workload.name}/{seed}"))
         seen = seen or case.falses > 0
         if seed < traces or seen:
             yield case
-    yield _case(_part(_question(workload), slice(-_rows_judged(workload), None)))
-
-
-def _case(question: Question) -> _Case:
-    return _Case(question, answers(question, ask_monitor), _first_failure(question))
-
-
-def _first_failure(question: Question) -> int | None:
-    """The row at which the requirement `always φ` fails, as it is timed."""
-    decided = (attempt for row in _stepped(question) for attempt in row)
-    return next((one.decided for one in decided if one.verdict is Verdict.FAIL), None)
-
-
-def _stepped(question: Question) -> Iterator[Sequence[Attempt]]:
-    """What each row decides of the requirement `always φ`."""
-    columns = {
-        name: [cell for cell in column if cell is not None]
-        for name, column in question.columns.items()
-    }
-    spec = loads(specification([always_text(question.formula)], columns))
-    monitor = spec.monitor()
-    for row in range(question.ticks):
-        yield monitor.step_ns(row, {name: column[row] for name, column in columns.items()})
+    yield _Case(_part(whole, slice(-rows, None)))
 
 
 def _bound(workload: Workload) -> int:
     found = (max(i.low, i.high or 0) for f in workload.formulas[:1] for i in intervals(f))
     return max(found, default=0)
-
-
-def _rows_judged(workload: Workload) -> int:
-    return min(max(300, 3 * _bound(workload)), MOST_ROWS, workload.rows)
-
-
-def _question(workload: Workload) -> Question:
-    """The first formula on the whole trace."""
-    formula = workload.formulas[0]
-    names = names_in(formula)
-    columns = {name: column for name, column in workload.columns.items() if name in names}
-    return Question(formula, columns, frozenset(), TimeModel.HELD)
 
 
 def _part(question: Question, rows: slice) -> Question:
@@ -255,22 +219,10 @@ def _part(question: Question, rows: slice) -> Question:
     return replace(question, columns=columns)
 
 
-def _shortened(case: _Case, rows: int) -> _Case:
-    """So many rows of a trace: the first or the last, where ours is FALSE more often."""
-    if rows >= case.question.ticks:
-        return case
-    ends = [_part(case.question, slice(rows)), _part(case.question, slice(-rows, None))]
-    return max(map(_case, ends), key=lambda part: part.falses)
-
-
-def _damaged(workload: Workload, seed: int) -> Question:
-    """The first rows, with single cells turned over and stretches of a column held."""
-    rng = random.Random(f"{workload.name}/{seed}")
-    rows = _rows_judged(workload)
-    whole = _question(workload)
-    columns: dict[str, list[Cell]] = {
-        name: list(column[:rows]) for name, column in whole.columns.items()
-    }
+def _damaged(question: Question, seed: str) -> Question:
+    """The rows with single cells turned over and stretches of a column held."""
+    rng, rows = random.Random(seed), question.ticks
+    columns: dict[str, list[Cell]] = {n: list(column) for n, column in question.columns.items()}
     for column in columns.values():
         flips = rng.choice((0.0, 0.002, 0.02))
         for row in range(rows):
@@ -281,4 +233,4 @@ def _damaged(workload: Workload, seed: int) -> Question:
             start = rng.randrange(rows)
             length = min(rng.randint(1, rows // 2), rows - start)
             column[start : start + length] = [column[start]] * length
-    return replace(whole, columns=columns)
+    return replace(question, columns=columns)

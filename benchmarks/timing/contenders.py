@@ -5,21 +5,21 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
 from benchmarks.peers import dialects
-from benchmarks.peers.client import Peer
-from benchmarks.peers.dialects import Dialect, spelling, translate
-from benchmarks.peers.environment import HOME, Environment
-from benchmarks.peers.native import LETTERS, Native, packed
-from benchmarks.timing.workload import Workload, always_text, specification, text
+from benchmarks.peers.client import ADAPTERS, Peer
+from benchmarks.peers.dialects import spelling, translate
+from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
+from benchmarks.peers.ways import WAYS, Way
+from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
 
-OURS = Path(__file__).parents[1] / "peers" / "with_rvmon.py"
-"""The module that asks our own monitors."""
+from rvmon.spec.print import format_formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ Request = Callable[[Workload, int], dict[str, Any]]
 
 @dataclass(slots=True)
 class Worker:
-    """A contender behind the protocol of the peers."""
+    """A contender in a process of its own, which holds the rows and measures itself."""
 
     label: str
     peer: Peer
@@ -61,12 +61,12 @@ class Worker:
         self.peer.ask("load", **self.request(workload, rows))
 
     def run(self) -> Pass:
-        """One pass in the worker's process; it measures itself."""
+        """One pass."""
         answer = self.peer.ask("run")
         return Pass(answer["cpu_ns"], tuple(answer["violated"]))
 
     def close(self) -> None:
-        """End the process: it holds the rows."""
+        """End the process."""
         self.peer.close()
 
 
@@ -85,7 +85,10 @@ class NativeReelay:
         path = HOME / "rows.bin"
         columns = {name: column[:rows] for name, column in workload.columns.items()}
         path.write_bytes(packed(columns))
-        patterns = [f"historically({p})" for p in _translated(workload, dialects.REELAY_DISCRETE)]
+        patterns = [
+            f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
+            for formula in workload.formulas
+        ]
         self.command = [str(self.binary), "memory", str(path), *patterns, "1"]
 
     def run(self) -> Pass:
@@ -98,106 +101,85 @@ class NativeReelay:
         """Nothing is held."""
 
 
-STEPS = (("rvmon step", "step"), ("rvmon step, changes", "changes"))
-COLUMNS = (("rvmon evaluate", "evaluate"),)
-MARGINS = (
-    ("rvmon, each sample", "stream"),
-    ("rvmon, one attempt", "attempt"),
-    ("rvmon offline", "offline"),
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A peer that takes part.
+
+    Attributes:
+        label: as it stands in the tables.
+        way: how it is asked.
+        form: the only form of formulas that is measured; empty: both.
+        required: how a formula is demanded at every row.
+        most: with more formulas, passing over a few rows, or making the monitors, takes too long.
+    """
+
+    label: str
+    way: Way
+    form: str = ""
+    required: str = "{}"
+    most: int = 1_000
+
+    def request(self, workload: Workload, rows: int) -> dict[str, Any]:
+        """What its process is asked to load."""
+        if self.form not in ("", workload.form):
+            raise UntranslatableError(f"only {self.form} forms are measured")
+        formulas = [translate(formula, self.way.dialect) for formula in workload.formulas]
+        if len(formulas) > self.most:
+            text = f"too slow to be measured with more than {self.most} formulas"
+            raise UntranslatableError(text)
+        columns = {spelling(name): list(one[:rows]) for name, one in workload.columns.items()}
+        required = [self.required.format(one) for one in formulas]
+        return {"formulas": required, "kind": self.way.kind, "columns": columns, "rows": rows}
+
+
+PEERS = (
+    Entry("reelay", WAYS["reelay-discrete"], "past", "historically({})", 100),
+    Entry("rtamt", WAYS["rtamt-discrete"], "past", "historically({})", 10),
+    Entry("mstlo", WAYS["mstlo-delayed"], "future", most=100),
+    Entry("sentil", WAYS["sentil"], required="always[0, inf]({})"),
 )
-"""Robustness: of each sample, of what is required from the first one on, and of columns."""
+MEASURED = (
+    Entry("sentil", WAYS["sentil"]),
+    Entry("sentil offline", replace(WAYS["sentil"], kind="discrete offline")),
+)
+"""Of robustness."""
+
+OURS = {
+    "batch": {"rvmon evaluate": "evaluate"},
+    "margins": {
+        "rvmon, each sample": "stream",
+        "rvmon, one attempt": "attempt",
+        "rvmon offline": "offline",
+    },
+}
+"""By section; robustness of each sample, of what is required from the first on, of columns."""
+
+STEPPED = {"rvmon step": "step", "rvmon step, changes": "changes"}
 
 
-def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
+def contenders(environment: Environment, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
-    forms = {"batch": COLUMNS, "margins": MARGINS}.get(section, STEPS)
-    for label, kind in forms:
-        yield Worker(label, Peer(Path(sys.executable), OURS), _ours(kind))
-    if section == "margins":
-        for kind in ("", " offline") if "sentil" in environment.versions else ():
-            yield Worker(f"sentil{kind}", Peer(environment.python, "sentil"), _margins(kind))
-        return
-    peers: tuple[tuple[str, str, str, Request], ...] = (
-        ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
-        ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
-        ("mstlo", "mstlo-python", "mstlo", _up_to(100, _future_of_mstlo)),
-        ("sentil", "sentil", "sentil", _of_sentil),
-    )
-    for label, package, worker, request in peers:
-        if package in environment.versions:
-            yield Worker(label, Peer(environment.python, worker), request)
-    if native.binary is not None and section == "batch":
-        yield NativeReelay(native.binary)
+    own = ADAPTERS.with_name("ours.py")
+    for label, kind in OURS.get(section, STEPPED).items():
+        yield Worker(label, Peer(Path(sys.executable), "Rvmon", own), partial(_ours, kind))
+    for entry in MEASURED if section == "margins" else PEERS:
+        if entry.way.package in environment.versions:
+            yield Worker(entry.label, Peer(environment.python, entry.way.adapter), entry.request)
+    if environment.reelay is not None and section == "batch":
+        yield NativeReelay(environment.reelay)
 
 
-def _ours(kind: str) -> Request:
-    def request(workload: Workload, rows: int) -> dict[str, Any]:
-        columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
-        if workload.section == "margins":
-            spec = margin_text(workload)
-        else:
-            texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
-            spec = specification(texts, columns)
-        period = 1 if workload.section == "margins" else workload.period
-        return {"spec": spec, "kind": kind, "columns": columns, "rows": rows, "period": period}
-
-    return request
+def _ours(kind: str, workload: Workload, rows: int) -> dict[str, Any]:
+    columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
+    if workload.section == "margins":
+        return {"spec": margin_text(workload), "kind": kind, "columns": columns, "rows": rows}
+    texts = [always_text(scaled(formula, workload.period)) for formula in workload.formulas]
+    spec = specification(texts, columns)
+    period = workload.period
+    return {"spec": spec, "kind": kind, "columns": columns, "rows": rows, "period": period}
 
 
 def margin_text(workload: Workload) -> str:
     """A formula as it is required from the first sample on, a tick between two samples."""
-    required = f"upon start\n  then {text(workload.formulas[0])}"
+    required = f"upon start\n  then {format_formula(workload.formulas[0])}"
     return specification([required], workload.columns).replace("time held", "time sampled")
-
-
-def _margins(kind: str) -> Request:
-    def request(workload: Workload, rows: int) -> dict[str, Any]:
-        formulas = _translated(workload, dialects.SENTIL)
-        return _rows(workload, rows, formulas, f"discrete{kind}")
-
-    return request
-
-
-def _past(dialect: Dialect) -> Request:
-    def request(workload: Workload, rows: int) -> dict[str, Any]:
-        if workload.form != "past":
-            raise UntranslatableError("only past forms are measured")
-        formulas = [f"historically({f})" for f in _translated(workload, dialect)]
-        return _rows(workload, rows, formulas, "discrete")
-
-    return request
-
-
-def _up_to(most: int, request: Request) -> Request:
-    """Refuse more formulas: passing over a few rows, or making the monitors, takes too long."""
-
-    def limited(workload: Workload, rows: int) -> dict[str, Any]:
-        if len(workload.formulas) > most:
-            raise UntranslatableError(f"too slow to be measured with more than {most} formulas")
-        return request(workload, rows)
-
-    return limited
-
-
-def _future_of_mstlo(workload: Workload, rows: int) -> dict[str, Any]:
-    return _rows(workload, rows, _future(workload, dialects.MSTLO), "DelayedQualitative")
-
-
-def _of_sentil(workload: Workload, rows: int) -> dict[str, Any]:
-    formulas = [f"always[0, inf]({f})" for f in _translated(workload, dialects.SENTIL)]
-    return _rows(workload, rows, formulas, "discrete")
-
-
-def _future(workload: Workload, dialect: Dialect) -> list[str]:
-    if workload.form != "future":
-        raise UntranslatableError("only future forms are measured")
-    return _translated(workload, dialect)
-
-
-def _translated(workload: Workload, dialect: Dialect) -> list[str]:
-    return [translate(formula, dialect) for formula in workload.formulas]
-
-
-def _rows(workload: Workload, rows: int, formulas: list[str], kind: str) -> dict[str, Any]:
-    columns = {spelling(name): list(column[:rows]) for name, column in workload.columns.items()}
-    return {"formulas": formulas, "kind": kind, "columns": columns, "rows": rows}

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from benchmarks.peers.client import PeerError
-from benchmarks.timing.contenders import Contender
+from benchmarks.timing.contenders import Contender, Pass
 from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
@@ -17,19 +17,6 @@ FEWEST_ROWS = 50
 
 SLOW = 10
 """Who needs so many times the time of a pass, with what it makes for it, passes twice only."""
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """How long to measure.
-
-    Attributes:
-        repeats: passes of each contender.
-        seconds: what one pass may take; slow contenders get fewer rows.
-    """
-
-    repeats: int = 5
-    seconds: float = 2.0
 
 
 LONGER = {"batch": 10, "many": 5}
@@ -70,9 +57,9 @@ class Size:
     files: int = 1_000
     pass_seconds: float = 0.1
 
-    def plan_of(self, section: str) -> Plan:
-        """Repeats and time of a pass."""
-        return Plan(self.repeats, self.pass_seconds * LONGER.get(section, 1))
+    def seconds_of(self, section: str) -> float:
+        """What one pass may take; slow contenders get fewer rows."""
+        return self.pass_seconds * LONGER.get(section, 1)
 
 
 QUICK = Size(
@@ -121,7 +108,6 @@ class Result:
         section: the table.
         name: the line.
         form: `past` or `future`.
-        formulas: how many.
         rows: of the whole trace.
         changing: the share of rows at which something changes.
         figures: of the contenders that took part.
@@ -131,26 +117,33 @@ class Result:
     section: str
     name: str
     form: str
-    formulas: int
     rows: int
     changing: float
     figures: tuple[Figure, ...]
     refusals: tuple[tuple[str, str], ...] = ()
 
 
-def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> Result:
-    """Give the workload to all contenders and let them pass over it in turn; they stay open."""
+def measure(
+    workload: Workload, contenders: Sequence[Contender], repeats: int, seconds: float
+) -> Result:
+    """Give the workload to all contenders and let them pass over it in turn; they stay open.
+
+    Args:
+        workload: given to all.
+        contenders: who passes.
+        repeats: passes of each.
+        seconds: what one may take.
+    """
     ready: list[tuple[Contender, int]] = []
     refusals: list[tuple[str, str]] = []
     for contender in contenders:
         try:
-            ready.append((contender, _prepare(contender, workload, plan.seconds)))
+            ready.append((contender, _prepare(contender, workload, seconds)))
         except (UntranslatableError, PeerError) as error:
             refusals.append((contender.label, str(error).splitlines()[0]))
-    spent: dict[str, list[float]] = {contender.label: [] for contender, _ in ready}
-    violated: dict[str, tuple[int | None, ...]] = {}
+    passes: dict[str, list[Pass]] = {contender.label: [] for contender, _ in ready}
     slow: list[tuple[Contender, int]] = []
-    for number in range(plan.repeats):
+    for number in range(repeats):
         turn = number % max(len(ready), 1)
         for contender, rows in [*ready[turn:], *ready[:turn]]:
             began = time.monotonic()
@@ -160,33 +153,38 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
                 refusals.append((contender.label, str(error).splitlines()[0]))
                 ready.remove((contender, rows))
                 continue
-            spent[contender.label].append(done.cpu_ns / rows)
-            violated[contender.label] = done.violated
+            passes[contender.label].append(done)
             whole = max(time.monotonic() - began, done.cpu_ns / 1e9)
-            if whole > SLOW * plan.seconds and number == 1:
+            if whole > SLOW * seconds and number == 1:
                 ready.remove((contender, rows))
                 slow.append((contender, rows))
     figures = tuple(
-        Figure(
+        figure_of(
             contender.label,
             rows,
-            statistics.median(spent[contender.label]),
-            min(spent[contender.label]),
-            max(spent[contender.label]),
-            violated[contender.label],
+            [one.cpu_ns for one in passes[contender.label]],
+            passes[contender.label][-1].violated,
         )
         for contender, rows in [*ready, *slow]
     )
-    return Result(
-        workload.section,
-        workload.name,
-        workload.form,
-        len(workload.formulas),
-        workload.rows,
-        workload.changing,
-        figures,
-        tuple(refusals),
-    )
+    return result_of(workload, figures, refusals)
+
+
+def figure_of(
+    label: str, rows: int, cpu_ns: Sequence[float], violated: tuple[int | None, ...]
+) -> Figure:
+    """Of the CPU nanoseconds of some passes."""
+    least, middle, most = min(cpu_ns), statistics.median(cpu_ns), max(cpu_ns)
+    return Figure(label, rows, middle / rows, least / rows, most / rows, violated)
+
+
+def result_of(
+    workload: Workload, figures: Sequence[Figure], refusals: Sequence[tuple[str, str]]
+) -> Result:
+    """The figures with what tells the workload, but not its rows."""
+    one = workload
+    about = one.section, one.name, one.form, one.rows, one.changing
+    return Result(*about, tuple(figures), tuple(refusals))
 
 
 def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:

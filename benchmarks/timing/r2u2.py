@@ -15,29 +15,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.peers.client import PeerError
-from benchmarks.peers.dialects import Dialect, spelling, translate
-from benchmarks.peers.positions import Question, answers, ask_monitor
+from benchmarks.peers.dialects import C2PO, spelling, translate
+from benchmarks.peers.ways import Question, answers, ask_monitor
 from benchmarks.timing.agreement import Agreement
 from benchmarks.timing.contenders import Pass
 from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
-from rvmon.spec.checked.formula import BinaryOp, UnaryOp
-from rvmon.spec.checked.specification import TimeModel
-
 LOOP = Path(__file__).parents[1] / "peers" / "r2u2_native" / "loop.c"
 COMPARED_ROWS = 2_000
-
-C2PO = Dialect(
-    "c2po",
-    lambda name: name,
-    None,
-    ("(!({0}))", "(({0}) && ({1}))", "(({0}) || ({1}))"),
-    {UnaryOp.EVENTUALLY: "(F{bound}({0}))", UnaryOp.ALWAYS: "(G{bound}({0}))"},
-    {BinaryOp.UNTIL: "(({0}) U{bound} ({1}))"},
-    lambda low, high: f"[{low},{high}]",
-    ever=False,
-)
 
 
 @dataclass(slots=True)
@@ -101,14 +87,11 @@ class R2u2:
             own += [truth == "T"] * (int(row) + 1 - len(own))
         equal = count = false = 0
         for formula, other in zip(workload.formulas, theirs, strict=True):
-            question = Question(formula, columns, frozenset(), TimeModel.HELD)
+            question = Question(formula, columns)
             for answer, verdict in zip(answers(question, ask_monitor), other, strict=False):
-                if answer is not None:
-                    count, equal, false = (
-                        count + 1,
-                        equal + (answer is verdict),
-                        false + (not answer),
-                    )
+                count += answer is not None
+                equal += answer is verdict
+                false += answer is False
         return Agreement("R2U2", workload.name, workload.form, equal, count, false)
 
     def _build(self, workload: Workload) -> None:

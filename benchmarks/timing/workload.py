@@ -4,21 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import assert_never
 
-from rvmon.spec.checked.formula import (
-    Binary,
-    BoundAtom,
-    Compare,
-    Constant,
-    EventAtom,
-    Formula,
-    Interval,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-)
+from rvmon.spec.checked.formula import Formula
 from rvmon.spec.print import format_formula
 
 Column = Sequence[bool | float]
@@ -59,12 +46,7 @@ class Workload:
         return changed / max(self.rows - 1, 1)
 
 
-_CALLED = (UnaryOp.RISE, UnaryOp.FALL, UnaryOp.HELD)
-
-
-def specification(
-    requirements: Sequence[str], columns: Mapping[str, Sequence[bool | float]]
-) -> str:
+def specification(requirements: Sequence[str], columns: Mapping[str, Column]) -> str:
     """A specification with one requirement per text, in held time.
 
     The rows are as many ticks apart as the bounds are scaled by, so that a value held from row to
@@ -82,40 +64,11 @@ def specification(
     return "\n".join(lines) + "\n"
 
 
-def text(formula: Formula) -> str:
-    """A formula in our language, every operand in brackets.
-
-    >>> from tests.tools.build import eventually, p, q, two
-    >>> text(two(p, "->", eventually(q, 0, 3)))
-    '((p) -> (F[0 ns, 3 ns] (q)))'
-    """
-    match formula:
-        case Unary(op=op) if op in _CALLED:
-            return format_formula(formula)
-        case Unary(op=op, operand=operand, interval=interval):
-            return f"({op.value}{_window(interval)} {text(operand)})"
-        case Binary(op=op, left=left, right=right, interval=interval):
-            return f"({text(left)} {op.value}{_window(interval)} {text(right)})"
-        case Constant() | SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
-            return f"({format_formula(formula)})"
-        case _:
-            assert_never(formula)
-
-
-def _window(interval: Interval | None) -> str:
-    if interval is None or interval == Interval():
-        return ""
-    if interval.high is None:
-        return f"[{interval.low} ns, inf)"
-    return f"[{interval.low} ns, {interval.high} ns]"
-
-
 def always_text(formula: Formula) -> str:
-    """The bare formula that it holds at every position, as people write it.
+    """That a formula holds at every position, as people write it.
 
     >>> from tests.tools.build import eventually, p, q, two
     >>> always_text(two(p, "->", eventually(q, 0, 3)))
-    'always ((p) -> (F[0 ns, 3 ns] (q)))'
+    'always (p -> within 3 ns q)'
     """
-    inner = text(formula)
-    return f"always {inner}" if inner.startswith("(") else f"always ({inner})"
+    return f"always ({format_formula(formula)})"

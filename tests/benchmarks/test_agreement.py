@@ -22,7 +22,7 @@ class Played(Peer):
     """Answers `once` in bounded time as rtamt does: a robustness at every row."""
 
     def __init__(self, *, blind: bool = False) -> None:
-        super().__init__(Path("nobody"), "rtamt")
+        super().__init__(Path("nobody"), "Rtamt")
         self.kinds: list[str] = []
         self.rows = 0
         self._blind = blind

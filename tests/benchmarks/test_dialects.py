@@ -13,7 +13,7 @@ from benchmarks.peers.dialects import (
     Dialect,
     translate,
 )
-from benchmarks.peers.positions import Question, answers, ask_oracle
+from benchmarks.peers.ways import Question, answers, ask_oracle
 from tests.tools.build import (
     compared,
     eventually,
@@ -97,7 +97,7 @@ def test_core(formula: Formula) -> None:
     }
 
     def judged(asked: Formula) -> list[bool | None]:
-        return answers(Question(asked, columns, frozenset(), TimeModel.SAMPLED), ask_oracle)
+        return answers(Question(asked, columns, TimeModel.SAMPLED), ask_oracle)
 
     assert judged(to_core(formula)) == judged(formula)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from benchmarks.peers.client import PeerError
 from benchmarks.timing.contenders import Pass
-from benchmarks.timing.measure import Plan, measure
+from benchmarks.timing.measure import measure
 from benchmarks.timing.workload import Workload
 from tests.tools.build import p
 from tests.tools.common_fragment import UntranslatableError
@@ -40,7 +40,7 @@ def test_turns() -> None:
     """Contenders pass in turn, and each leads once."""
     calls: list[str] = []
     contenders = [Fake("a", 10, calls), Fake("b", 20, calls)]
-    result = measure(WORKLOAD, contenders, Plan(2, 1.0))
+    result = measure(WORKLOAD, contenders, 2, 1.0)
     probes = ["a", "a", "b", "b"]
     assert calls == [*probes, "a", "b", "b", "a"]
     assert [(figure.label, figure.median, figure.rows) for figure in result.figures] == [
@@ -52,15 +52,15 @@ def test_turns() -> None:
 
 def test_slow_contender_gets_fewer_rows() -> None:
     """Who is slow gets as many rows as fit into the time, and never less than a few."""
-    result = measure(WORKLOAD, [Fake("a", 10_000_000, [])], Plan(1, 1.0))
+    result = measure(WORKLOAD, [Fake("a", 10_000_000, [])], 1, 1.0)
     assert result.figures[0].rows == 100
-    result = measure(WORKLOAD, [Fake("a", 1_000_000_000, [])], Plan(1, 1.0))
+    result = measure(WORKLOAD, [Fake("a", 1_000_000_000, [])], 1, 1.0)
     assert result.figures[0].rows == 50
 
 
 def test_refusal() -> None:
     """Who cannot take part is named with the reason."""
-    result = measure(WORKLOAD, [Fake("a", 10, [], "no past")], Plan(1, 1.0))
+    result = measure(WORKLOAD, [Fake("a", 10, [], "no past")], 1, 1.0)
     assert result.figures == ()
     assert result.refusals == (("a", "no past"),)
 
@@ -81,7 +81,7 @@ class Dying(Fake):
 
 def test_death() -> None:
     """Who dies is left out with the reason; the others are measured on."""
-    result = measure(WORKLOAD, [Dying("a", 10, []), Fake("b", 20, [])], Plan(3, 1.0))
+    result = measure(WORKLOAD, [Dying("a", 10, []), Fake("b", 20, [])], 3, 1.0)
     assert [figure.label for figure in result.figures] == ["b"]
     assert result.refusals == (("a", "its process ended"),)
 
@@ -89,6 +89,6 @@ def test_death() -> None:
 def test_very_slow_contender_passes_twice() -> None:
     """Who takes far too long is measured twice, and still has its figure."""
     calls: list[str] = []
-    result = measure(WORKLOAD, [Fake("a", 10**9, calls), Fake("b", 10, calls)], Plan(5, 1.0))
+    result = measure(WORKLOAD, [Fake("a", 10**9, calls), Fake("b", 10, calls)], 5, 1.0)
     assert {figure.label for figure in result.figures} == {"a", "b"}
     assert calls.count("a") == 1 + 2

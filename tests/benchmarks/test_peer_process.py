@@ -13,7 +13,7 @@ pytestmark = pytest.mark.process
 MODULE = """
 import os
 
-class Peer:
+class Shy:
     def judge(self, values):
         print("noise on standard output")
         return {"values": [not value for value in values]}
@@ -29,9 +29,9 @@ class Peer:
 @pytest.fixture
 def peer(tmp_path: Path):
     """A peer with an answer, an error and an accident."""
-    module = tmp_path / "with_test.py"
+    module = tmp_path / "shy.py"
     module.write_text(MODULE)
-    with Peer(Path(sys.executable), module) as asked:
+    with Peer(Path(sys.executable), "Shy", module) as asked:
         yield asked
 
 

@@ -8,7 +8,6 @@ import sys
 import pytest
 from benchmarks.__main__ import BENCHMARKS, main
 from benchmarks.growth import cliffs
-from benchmarks.growth.large import inputs
 
 
 def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -39,9 +38,3 @@ def test_hard_streams_have_neighbours() -> None:
     lines = list(cliffs.table(60, 1))
     assert len(lines) == 2 + 15
     assert all(line.count("|") == 8 for line in lines[2:])
-
-
-def test_inputs_have_names_of_their_own(tmp_path: object) -> None:
-    """`--only` can pick each."""
-    names = [name for name, _ in inputs(tmp_path)]  # type: ignore[arg-type]
-    assert len(names) == len(set(names)) > 20

@@ -8,18 +8,17 @@ from pathlib import Path
 
 import pytest
 from benchmarks.peers.environment import Environment
+from benchmarks.timing import files
 from benchmarks.timing.measure import QUICK
-
-from benchmarks import recordings
 
 
 @pytest.mark.process
 def test_all_ways_find_the_same_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each way has a line, with a ratio as its failures are the first's; who is absent is named."""
-    monkeypatch.setattr(recordings, "SMALL", 3)
+    monkeypatch.setattr(files, "SMALL", 3)
     absent = Environment(Path(sys.executable), {}, {"duckdb": "not on this index"})
     size = replace(QUICK, file_rows=30_000, files=2, processes=1)
-    lines = list(recordings.files(size, absent, tmp_path))
+    lines = list(files.rows(size, absent, tmp_path))
     assert lines[-1] == "Not measured: DuckDB, 30,000 rows: not on this index."
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[2:-2]]
     assert len(cells) == 17

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from benchmarks.peers.positions import Question, answers, ask_oracle
+from benchmarks.peers.ways import Question, answers, ask_oracle
 from benchmarks.timing.timescales import FAMILIES, Family, low_bound, trace
 
 from rvmon.spec.checked.specification import TimeModel
@@ -16,7 +16,7 @@ def test_past_form(family: Family) -> None:
     """The past form holds at every row of a trace but the last."""
     columns = trace(family, HIGH, 60)
     formula = family.past(low_bound(HIGH), HIGH)
-    found = answers(Question(formula, columns, frozenset(), TimeModel.SAMPLED), ask_oracle)
+    found = answers(Question(formula, columns, TimeModel.SAMPLED), ask_oracle)
     assert found[:-1] == [True] * (len(found) - 1)
     assert found[-1] is False
 
@@ -26,7 +26,7 @@ def test_future_form(family: Family) -> None:
     """The future form is false nowhere before the violation at the end."""
     columns = trace(family, HIGH, 60)
     formula = family.future(low_bound(HIGH), HIGH)
-    found = answers(Question(formula, columns, frozenset(), TimeModel.SAMPLED), ask_oracle)
+    found = answers(Question(formula, columns, TimeModel.SAMPLED), ask_oracle)
     assert False not in found[: -2 * HIGH]
     assert True in found
 

@@ -1,0 +1,336 @@
+"""How each peer is asked: a class for each, in a process of its own.
+
+A class says how it judges a formula at every tick (`judge`), what it says at each sample
+(`online`), and how it passes over rows that are laid out as it takes them (`ready`). It runs in an
+environment of the peers' own, and so imports nothing of this package.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import resource
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+Columns = Mapping[str, list[Any]]
+Row = Mapping[str, float]
+Update = Callable[[float, Row], Any]
+Pass = Callable[[], float | None]
+"""A pass over all rows: the first at which the formula was false."""
+
+
+class Adapter(ABC):
+    """What is the same for all peers."""
+
+    def __init__(self, package: str) -> None:
+        logging.disable(logging.WARNING)  # rtamt warns of every variable
+        self.peer: Any = import_module(package)
+        self._loaded: tuple[list[str], str, Any] = [], "", None
+
+    @abstractmethod
+    def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
+        """The verdict or the robustness at every tick."""
+
+    @abstractmethod
+    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
+        """A monitor that is told a sample, and answers."""
+
+    @abstractmethod
+    def laid(self, columns: Columns) -> Any:
+        """The rows as this peer takes them."""
+
+    @abstractmethod
+    def ready(self, formula: str, kind: str, laid: Any) -> Pass:
+        """A monitor that is to pass over rows."""
+
+    def load(self, formulas: list[str], kind: str, columns: Columns, rows: int) -> dict[str, Any]:
+        """Keep what is to be passed over."""
+        self._loaded = formulas, kind, self.laid(columns)
+        return {"rows": rows}
+
+    def run(self) -> dict[str, Any]:
+        """One pass over the rows for each formula; of the loops alone the time is taken."""
+        formulas, kind, laid = self._loaded
+        spent, violated = 0, list[float | None]()
+        for formula in formulas:
+            passed = self.ready(formula, kind, laid)
+            began = time.process_time_ns()
+            violated.append(passed())
+            spent += time.process_time_ns() - began
+        return {"cpu_ns": spent, "violated": violated}
+
+    def feed(self, formula: str, kind: str, samples: list[tuple[float, Row]]) -> dict[str, Any]:
+        """What the peer says at each sample, or the error that it raises."""
+        update = self.online(formula, kind, {name for _, row in samples for name in row})
+        said = []
+        for t, row in samples:
+            try:
+                said.append(update(t, row))
+            except Exception as error:  # noqa: BLE001 - whatever a peer raises is its answer
+                said.append(f"{type(error).__name__}: {error}".splitlines()[0][:160])
+        return {"said": said}
+
+    def many(self, formula: str, kind: str, count: int) -> dict[str, Any]:
+        """What so many monitors cost, each told of two samples."""
+        before, began, kept = resident_kib(), time.process_time(), []
+        for _ in range(count):
+            update = self.online(formula, kind, ["v_x"])
+            update(0.0, {"v_x": 1.0})
+            update(1.0, {"v_x": 0.0})
+            kept.append(update)
+        return {"seconds": time.process_time() - began, "kib": resident_kib() - before}
+
+
+def resident_kib() -> int:
+    """The memory of this process that is in use, now; Linux says so."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() // 1024
+
+
+def rows_of(columns: Columns, number: Callable[[Any], Any] = lambda cell: cell) -> list[Any]:
+    """The rows of columns, by name."""
+    cells = zip(*columns.values(), strict=True)
+    return [dict(zip(columns, map(number, row), strict=True)) for row in cells]
+
+
+def per_tick(changes: Iterable[Sequence[Any]], ticks: int) -> list[Any]:
+    """Spread changes, each of which holds until the next, over ticks; before them is nothing."""
+    values: list[Any] = [None] * ticks
+    for instant, value in changes:
+        for tick in range(ticks):
+            if tick >= instant:
+                values[tick] = value
+    return values
+
+
+class Reelay(Adapter):
+    """reelay's Python package: past formulas; discrete (a position per update) and dense time."""
+
+    def __init__(self) -> None:
+        super().__init__("reelay")
+
+    def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
+        """The verdict, or with `robustness` in the kind that; `dense sparse` gives changes only."""
+        model, _, semantics = kind.partition(" ")
+        how = {"pattern": formula, "semantics": semantics.replace("sparse", "") or "boolean"}
+        rows = rows_of(columns, float) if semantics == "robustness" else rows_of(columns)
+        if model == "discrete":
+            monitor = self.peer.discrete_timed_monitor(condense=False, **how)
+            return {"values": [monitor.update(row)["value"] for row in rows]}
+        monitor, changes, ticks = self.peer.dense_timed_monitor(**how), [], len(rows)
+        # Every tick, also without a change: of a longer stretch that starts and ends true, with
+        # false at its beginning, the Python package does not print the changes.
+        for tick, row in enumerate([*rows, rows[-1]]):
+            if semantics != "sparse" or row != rows[tick - 1] or tick in (0, ticks):
+                changes += monitor.update({"time": tick, **row})
+        return {"values": per_tick(((one["time"], one["value"]) for one in changes), ticks)}
+
+    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
+        """In dense time: the changes."""
+        monitor = self.peer.dense_timed_monitor(pattern=formula)
+        return lambda t, row: [
+            [one["time"], one["value"]] for one in monitor.update({"time": t, **row})
+        ]
+
+    def laid(self, columns: Columns) -> list[Any]:
+        """Rows by name."""
+        return rows_of(columns)
+
+    def ready(self, formula: str, kind: str, laid: list[Any]) -> Pass:
+        """In discrete time."""
+        update = self.peer.discrete_timed_monitor(pattern=formula, condense=False).update
+
+        def passed() -> float | None:
+            first = None
+            for row in laid:
+                if not update(row)["value"] and first is None:
+                    first = row
+            return next((number for number, row in enumerate(laid) if row is first), None)
+
+        return passed
+
+
+class Rtamt(Adapter):
+    """rtamt: discrete (a position per sample) and dense time; the robustness's sign is the verdict.
+
+    Online, it answers for an instant that lies its horizon back.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("rtamt")
+
+    def _specified(self, which: str, formula: str, names: Iterable[str]) -> Any:
+        spec = getattr(self.peer, f"Stl{which}Specification")()
+        for name in sorted({*names, *re.findall(r"v_\w+", formula)}):
+            spec.declare_var(name, "float")
+        spec.spec = formula
+        spec.parse()
+        if which.endswith("Online"):
+            spec.pastify()
+        return spec
+
+    def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
+        """The robustness at every tick; offline, or sample by sample."""
+        ticks = len(next(iter(columns.values())))
+        if kind.endswith("online"):
+            update = self.online(formula, kind, columns)
+            said = [update(tick, row) for tick, row in enumerate(rows_of(columns, float))]
+            if kind.startswith("dense"):
+                said = per_tick([one for changes in said for one in changes], ticks)
+            return {"values": said}
+        if kind == "discrete":
+            spec = self._specified("DiscreteTime", formula, columns)
+            numbers = {name: [*map(float, column)] for name, column in columns.items()}
+            answer = spec.evaluate({"time": list(range(ticks)), **numbers})
+            return {"values": [value for _, value in answer]}
+        spec = self._specified("DenseTime", formula, columns)
+        changes = [
+            [name, [
+                [tick, float(value)]
+                for tick, value in enumerate(column)
+                if tick in (0, ticks - 1) or value != column[tick - 1]
+            ]]
+            for name, column in columns.items()
+        ]  # fmt: skip
+        return {"values": per_tick(spec.evaluate(*changes), ticks)}
+
+    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
+        """A number in discrete time, changes in dense time."""
+        if kind == "discrete online":
+            spec = self._specified("DiscreteTimeOnline", formula, names)
+            return lambda t, row: spec.update(t, list(row.items()))
+        spec = self._specified("DenseTimeOnline", formula, names)
+        return lambda t, row: spec.update(*([name, [[t, value]]] for name, value in row.items()))
+
+    def laid(self, columns: Columns) -> list[Any]:
+        """Rows with their number, as pairs."""
+        return [(t, list(row.items())) for t, row in enumerate(rows_of(columns, float))]
+
+    def ready(self, formula: str, kind: str, laid: list[Any]) -> Pass:
+        """In discrete time, online."""
+        names = [name for name, _ in laid[0][1]]
+        update = self._specified("DiscreteTimeOnline", formula, names).update
+
+        def passed() -> float | None:
+            first = None
+            for t, row in laid:
+                if update(t, row) < 0 and first is None:
+                    first = t
+            return first
+
+        return passed
+
+
+class Mstlo(Adapter):
+    """mstlo: bounded future formulas over dense time, signals held between their samples."""
+
+    def __init__(self) -> None:
+        super().__init__("mstlo_python")
+
+    def _monitor(self, formula: str, kind: str) -> Any:
+        return self.peer.Monitor(self.peer.parse_formula(formula), semantics=kind)
+
+    def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
+        """The verdict at every tick up to the last one, in the semantics that `kind` names."""
+        update, rows = self.online(formula, kind, columns), rows_of(columns)
+        verdicts: dict[float, Any] = {}
+        for tick, row in enumerate(rows):
+            is_whole = tick in (0, len(rows) - 1)
+            new = {n: v for n, v in row.items() if is_whole or v != rows[tick - 1][n]}
+            verdicts.update(update(tick, new))
+        last = int(max(verdicts, default=-1)) + 1
+        return {"values": per_tick(sorted(verdicts.items()), last) + [None] * (len(rows) - last)}
+
+    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
+        """Instants with their verdicts."""
+        monitor = self._monitor(formula, kind)
+        known = monitor.get_signal_identifiers()
+        return lambda t, row: [
+            list(one)
+            for name, value in row.items()
+            if name in known
+            for one in monitor.update(name, float(value), float(t)).verdicts()
+        ]
+
+    def laid(self, columns: Columns) -> list[Any]:
+        """One call for each signal and row."""
+        rows = enumerate(rows_of(columns, float))
+        return [(name, value, float(t)) for t, row in rows for name, value in row.items()]
+
+    def ready(self, formula: str, kind: str, laid: list[Any]) -> Pass:
+        """In the semantics that `kind` names."""
+        monitor = self._monitor(formula, kind)
+        update, known = monitor.update, monitor.get_signal_identifiers()
+        calls = [call for call in laid if call[0] in known]
+
+        def passed() -> float | None:
+            first = None
+            for name, value, t in calls:
+                for instant, verdict in update(name, value, t).verdicts():
+                    if not verdict and (first is None or instant < first):
+                        first = instant
+            return first
+
+        return passed
+
+
+class Sentil(Adapter):
+    """SENTIL: formulas over samples a tick apart, judged by their robustness."""
+
+    def __init__(self) -> None:
+        super().__init__("sentil")
+
+    def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
+        """The robustness at every tick; a window that the trace cuts short counts as it is."""
+        trace = self._trace(columns)
+        return {"values": list(self.peer.parse(formula).robustness_signal(trace))}
+
+    def _trace(self, columns: Columns) -> Any:
+        ticks = range(len(next(iter(columns.values()))))
+        named = {name: [*map(float, column)] for name, column in columns.items()}
+        return self.peer.Trace([*map(float, ticks)], named)
+
+    def _monitor(self, formula: str) -> tuple[Any, list[str]]:
+        """A monitor, and the names that it reads in its order."""
+        monitor = self.peer.OnlineMonitor(self.peer.parse(formula))
+        named = {monitor.symbol_index(name): name for name in set(re.findall(r"v_\w+", formula))}
+        return monitor.update_packed, [named[k] for k in range(monitor.variable_count)]
+
+    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
+        """The least and the greatest that the robustness can be."""
+        update, order = self._monitor(formula)
+
+        def told(t: float, row: Row) -> dict[str, float]:
+            found = update(t, [row[name] for name in order])
+            return {"from": found.lower, "to": found.upper}
+
+        return told
+
+    def laid(self, columns: Columns) -> Columns:
+        """The columns."""
+        return columns
+
+    def ready(self, formula: str, kind: str, laid: Columns) -> Pass:
+        """Online; or, if the kind says so, offline: then of violations nothing is said."""
+        if kind.endswith("offline"):
+            signal, trace = self.peer.parse(formula).robustness_signal, self._trace(laid)
+            # What the first call makes ready is not measured.
+            signal(self._trace({name: column[:1] for name, column in laid.items()}))
+            return lambda: signal(trace) and None
+        update, order = self._monitor(formula)
+        cells = zip(*(map(float, laid[name]) for name in order), strict=True)
+        rows = [(float(t), list(row)) for t, row in enumerate(cells)]
+
+        def passed() -> float | None:
+            first = None
+            for t, row in rows:
+                if update(t, row).upper < 0 and first is None:
+                    first = t
+            return first
+
+        return passed

@@ -1,0 +1,87 @@
+"""What a program costs, in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+POLL_S = 0.005
+"""Between two looks at a process; what it is told to have used includes who began it."""
+
+
+class Cost(NamedTuple):
+    """What a process cost, and how it ended.
+
+    Attributes:
+        seconds: by the clock.
+        cpu: seconds, with those of all processes that it began and waited for.
+        mebibytes: the largest resident memory of the first process, as far as it was seen.
+        code: how it ended, below 0 by which signal.
+        output: what it printed.
+        said: the last line that it said, if need be among what it printed.
+    """
+
+    seconds: float
+    cpu: float
+    mebibytes: float
+    code: int
+    output: str
+    said: str
+
+
+def measured(
+    command: Sequence[str],
+    limit: float = 3600.0,
+    *,
+    memory: int | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Cost:
+    """Run a program, at most so many seconds, in at most so many bytes."""
+
+    def bounded() -> None:
+        if memory is not None:
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+
+    began = time.monotonic()
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen(
+            command,
+            stdout=output,
+            stderr=errors,
+            env=environment,
+            preexec_fn=bounded,
+            start_new_session=True,
+        )
+        ended, peak = 0, 0.0
+        while not ended:
+            peak = max(peak, _mebibytes(process.pid))
+            if time.monotonic() > began + limit:
+                os.killpg(process.pid, signal.SIGKILL)
+            time.sleep(POLL_S)
+            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        seconds = time.monotonic() - began
+        process.returncode = os.waitstatus_to_exitcode(status)
+        texts = []
+        for file in (output, errors):
+            file.seek(0)
+            texts.append(file.read().decode(errors="replace"))
+    lines = (texts[1].strip() or texts[0].strip()).splitlines()
+    cpu, said = usage.ru_utime + usage.ru_stime, lines[-1] if lines else ""
+    return Cost(seconds, cpu, peak, process.returncode, texts[0], said)
+
+
+def _mebibytes(pid: int) -> float:
+    """The largest resident memory of a process since it began; 0 if it has ended."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{pid}/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    return 0.0
