@@ -1,11 +1,15 @@
 """The model checker: what textbook networks and the handover cost, and whose models it reads.
 
     python -m benchmarks.models cost [--seconds 60] [--repeat 3]
+    python -m benchmarks.models tchecker PATH/TO/tck-reach MODEL…
     python -m benchmarks.models originals FOLDER [--seconds 2] [--most 200]
 
 `cost` prints symbolic states visited and stored, seconds of CPU (the least of some searches) and
-bytes of memory for each stored state, each network in a process of its own. How that compares with
-TChecker, `python -m benchmarks.tchecker` prints.
+bytes of memory for each stored state, each network in a process of its own.
+
+`tchecker` searches the same models, edge by edge, by TChecker (`aLU-covreach`), too: a MODEL is a
+file of TChecker's, as the scripts of its examples write them. Its memory is that of its whole
+process, ours what the search added.
 
 For `originals`, FOLDER holds clones of the repositories of `uppaal_originals.txt`, which has a line
 for each repository (its name, and the commit that was looked at) and below it one for each model:
@@ -21,16 +25,20 @@ import hashlib
 import json
 import re
 import resource
-import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+from benchmarks.process import measured
+from benchmarks.tchecker import asked, translated
 
 from handover.model import handover_network
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import asked_on
-from rvmon.timed.language.load import load_network
+from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
 from rvmon.timed.runs.statistics import sample, trajectories
 from rvmon.timed.search.extremes import extremes
@@ -47,6 +55,9 @@ _WORDS = re.compile(r" \(\d+ places\)|`[^`]*`|\d+")
 COLLISION = "E<> Station(1).Transm and Station(2).Transm and Bus.Idle"
 """Of CSMA/CD, as TChecker asks it: the model's own query compares clocks."""
 
+SEARCH = ("-a", "aLU-covreach", "-s", "bfs")
+"""Of TChecker."""
+
 SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "fddi": (5, 8, 10)}
 
 
@@ -59,18 +70,30 @@ def cost(options: argparse.Namespace) -> None:
         return
     print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}")
     for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
-        words = [sys.executable, "-m", "benchmarks.models", "cost", "--only", name, str(size)]
-        words += ["--repeat", str(options.repeat), "--seconds", str(options.seconds)]
-        told = subprocess.run(words, check=True, capture_output=True, text=True).stdout
-        for line in told.splitlines():
-            _print(name, size, json.loads(line))
+        for told in _told(name, size, options):
+            label = f"{name} {size}" if size else f"{name} {told['query']}"
+            held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
+            figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
+            unknown = "" if told["holds"] is not None else "   not decided"
+            print(f"{label:22} {figures}{unknown}".rstrip(), flush=True)
+
+
+def _told(name: str, size: int, options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """What the queries of a network cost, in a process of its own."""
+    words = [sys.executable, "-m", "benchmarks.models", "cost", "--only", name, str(size)]
+    words += ["--repeat", str(options.repeat), "--seconds", str(options.seconds)]
+    done = measured(words)
+    assert done.code == 0, done.said
+    yield from map(json.loads, done.output.splitlines())
 
 
 def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
     if name == "handover":
         network = handover_network()
         return [(network, query) for query in network.queries]
-    if name == "fddi":
+    if Path(name).is_file():
+        network = loads_network(translated(Path(name).read_text("utf-8")), name=Path(name).name)
+    elif name == "fddi":
         network = load_network(HERE / "fddi.ta", constants={"N": size})
     else:
         suffix = ".xml" if name == "csma_cd" else ".ta"
@@ -101,12 +124,21 @@ def _measure(network: Network, query: Query, repeat: int, limit: float) -> None:
     print(json.dumps(told))
 
 
-def _print(name: str, size: int, told: dict[str, float]) -> None:
-    label = f"{name} {size}" if size else f"{name} {told['query']}"
-    held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
-    figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
-    unknown = "" if told["holds"] is not None else "   not decided"
-    print(f"{label:22} {figures}{unknown}".rstrip(), flush=True)
+def tchecker(options: argparse.Namespace) -> None:
+    """Search by both, and print a table."""
+    print(f"{'model':20} {'stored':>10} {'seconds':>8} {'B/state':>8}   TChecker: the same, times")
+    for model in options.models:
+        [told] = _told(str(model), 0, options)
+        labels = asked(model.read_text("utf-8"))
+        words = [options.program, *SEARCH, *(["-l", ",".join(labels)] if labels else [])]
+        done = measured([*words, str(model)])
+        found = re.search(r"STORED_STATES (\d+)", done.output)
+        assert found is not None, done.said
+        stored, seconds = told["stored"], told["seconds"]
+        print(f"{model.stem:20} {stored:10,} {seconds:8.3f} {told['bytes']:8.0f}", end="   ")
+        their, used = int(found[1]), done.mebibytes * 2**20
+        times = done.cpu / max(seconds, 1e-3)
+        print(f"{their:10,} {done.cpu:8.2f} {used / their:8.0f} {times:6.1f}", flush=True)
 
 
 def known() -> dict[str, str]:
@@ -138,7 +170,7 @@ def _end(network: Network, query: Query, budget: Budget) -> str:
 def originals(options: argparse.Namespace) -> None:
     """Read, decide, count and print."""
     models, seen = known(), set[str]()
-    read, reasons, queries = 0, Counter[str](), Counter[str]()
+    read, reasons, queries = 0, Counter[tuple[str, str]](), Counter[str]()
     for path in sorted(options.folder.rglob("*.xml")):
         if not path.is_file() or (options.most and len(seen) >= options.most):
             continue
@@ -166,16 +198,19 @@ def main() -> None:
     """Measure, or read; and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="what", required=True)
-    own = commands.add_parser("cost")
-    own.add_argument("--repeat", type=int, default=3, help="searches of each, the best counts")
-    own.add_argument("--seconds", type=float, default=60.0, help="a search gives up after these")
+    own, beside = commands.add_parser("cost"), commands.add_parser("tchecker")
+    for one in (own, beside):
+        one.add_argument("--repeat", type=int, default=3, help="searches of each, the best counts")
+        one.add_argument("--seconds", type=float, default=60.0, help="a search gives up after these")
     own.add_argument("--only", nargs=2, metavar=("MODEL", "SIZE"), help=argparse.SUPPRESS)
+    beside.add_argument("program", help="tck-reach")
+    beside.add_argument("models", nargs="+", type=Path, metavar="MODEL")
     theirs = commands.add_parser("originals")
     theirs.add_argument("folder", type=Path)
     theirs.add_argument("--seconds", type=float, default=2.0, help="for each query")
     theirs.add_argument("--most", type=int, help="models to look at")
     options = parser.parse_args()
-    (cost if options.what == "cost" else originals)(options)
+    {"cost": cost, "tchecker": tchecker, "originals": originals}[options.what](options)
 
 
 if __name__ == "__main__":
