@@ -257,8 +257,8 @@ def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
         for found in re.finditer(pattern, line):
             index = words.index(found[1])
             yield kind, found.start(1), found.end(1), words[index ^ 1]
-    if found := _NEGATED.match(line):
-        yield "negated condition", found.start(1), found.end(1), f"(!{found[1]})"
+    if whole := _NEGATED.match(line):
+        yield "negated condition", whole.start(1), whole.end(1), f"(!{whole[1]})"
     for kind, pattern in _DROPS:
         for found in re.finditer(pattern, line):
             text = ";" if kind == "dropped statement" else ""

@@ -85,6 +85,7 @@ def asammdf(path: Path, folder: Path, ours: MessageFile) -> Iterator[Record]:
     if databases_beside(path):
         yield from cantools(path, folder, ours)
         return
+    file: Any
     with MDF(path, use_display_names=False) as file:
         full = [one for one, group in enumerate(file.groups) if group.channel_group.cycles_nr]
         file.export(

@@ -201,7 +201,9 @@ def main() -> None:
     own, beside = commands.add_parser("cost"), commands.add_parser("tchecker")
     for one in (own, beside):
         one.add_argument("--repeat", type=int, default=3, help="searches of each, the best counts")
-        one.add_argument("--seconds", type=float, default=60.0, help="a search gives up after these")
+        one.add_argument(
+            "--seconds", type=float, default=60.0, help="a search gives up after these"
+        )
     own.add_argument("--only", nargs=2, metavar=("MODEL", "SIZE"), help=argparse.SUPPRESS)
     beside.add_argument("program", help="tck-reach")
     beside.add_argument("models", nargs="+", type=Path, metavar="MODEL")

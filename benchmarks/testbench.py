@@ -33,7 +33,7 @@ import resource
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, islice
 from pathlib import Path
@@ -143,18 +143,16 @@ def _mutant(name: str) -> Mutant:
 
 def _place(source: str, line: int) -> str:
     """The qualified name of the function that a line is in; else that of its constant."""
-    for part in ast.parse(source).body:
-        for inner in part.body if isinstance(part, ast.ClassDef) else ():
-            is_function = isinstance(inner, ast.FunctionDef)
-            if is_function and inner.lineno <= line <= (inner.end_lineno or 0):
-                return f"{HandoverRobot.__name__}.{inner.name}"
+    for part in ast.walk(ast.parse(source)):
+        if isinstance(part, ast.FunctionDef) and part.lineno <= line <= (part.end_lineno or 0):
+            return f"{HandoverRobot.__name__}.{part.name}"
     return source.splitlines()[line - 1].split()[0]
 
 
 def closing(options: argparse.Namespace) -> int:
     """Close both campaigns for some seeds, that of the handover also without written tests."""
     sys.path.insert(0, str(EXAMPLE))
-    from campaign import campaign as people
+    from campaign import campaign as people  # type: ignore[import-not-found]
 
     closed = None
     handover = handover_campaign(("correct",))
@@ -205,7 +203,7 @@ def _look_at(path: str, closed: Closed) -> None:
     goals |= {goal for goal in closed.open if goal[0] != EDGES}
     coverage = read([path])
     met: set[tuple[str, str]] = set()
-    for number, place in enumerate(_in_turn([*Answers(coverage).strategies.values()]), 1):
+    for number, place in enumerate(_in_turn(Answers(coverage).strategies.values()), 1):
         row = coverage.entries[place].row
         met |= goals & {coverage.items[item] for item in row.items.tolist()}
         if number in LOOKED_AT:
@@ -215,7 +213,7 @@ def _look_at(path: str, closed: Closed) -> None:
     print("never met:", ", ".join(f"{group}: {item}" for group, item in sorted(goals - met)))
 
 
-def _in_turn(several: list[list[int]]) -> Iterator[int]:
+def _in_turn(several: Iterable[Sequence[int]]) -> Iterator[int]:
     return chain.from_iterable(zip(*several, strict=False))
 
 

@@ -91,9 +91,13 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
     rng = random.Random(str(seed))
     made = 0
     while made < most:
-        limits = {"captures": False, "for_each": False} if made % 8 > 5 else {}
+        is_bins = made % 8 > 5
         profile = Profile(
-            requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10, **limits
+            requirements=1 if limit else 3,
+            depth=rng.randint(1, 3),
+            wide=10,
+            captures=not is_bins,
+            for_each=not is_bins,
         )
         try:
             plan = _plan(rng, profile, made % 8)
@@ -154,23 +158,18 @@ def begun_with(folder: Path, target: str) -> None:
             (folder / "in" / str(number)).write_bytes(data)
         return
     if target == "models":
-        for number, plan in enumerate(search_plans(range(12))):
-            (folder / "in" / str(number)).write_bytes(plan.numbers)
+        for number, searched in enumerate(search_plans(range(12))):
+            (folder / "in" / str(number)).write_bytes(searched.numbers)
         return
     if target == "snapshots":
-        held = []
-        for number, (plan, data) in enumerate(snapshots(PLANS)):
-            held.append(plan)
-            (folder / "in" / str(number)).write_bytes(bytes([number]) + data)
+        pairs = [*snapshots(PLANS)]
     else:
-        held = [*plans("samples", most=PLANS)]
-    sized = b"".join(struct.pack("<q", len(data)) + data for data in held)
+        rng = random.Random("samples")
+        pairs = [(plan, rng.randbytes(120)) for plan in plans("samples", most=PLANS)]
+    for number, (_, data) in enumerate(pairs):
+        (folder / "in" / str(number)).write_bytes(bytes([number]) + data)
+    sized = b"".join(struct.pack("<q", len(plan)) + plan for plan, _ in pairs)
     (folder / "held").write_bytes(sized)
-    if target == "snapshots":
-        return
-    rng = random.Random("samples")
-    for number in range(PLANS):
-        (folder / "in" / str(number)).write_bytes(bytes([number]) + rng.randbytes(120))
 
 
 def fuzz(target: str, folder: Path, seconds: int) -> Found:
@@ -199,7 +198,8 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
         )
     out = folder / "out" / "default"
     lines = (out / "fuzzer_stats").read_text().splitlines()
-    counted = dict(map(str.strip, line.split(":", 1)) for line in lines)  # type: ignore[misc]
+    pairs = (line.partition(":") for line in lines)
+    counted = {name.strip(): value.strip() for name, _, value in pairs}
     bad = [*out.glob("crashes/id*"), *out.glob("hangs/id*")]
     return Found(counted, tuple(sorted(bad)))
 

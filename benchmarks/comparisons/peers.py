@@ -164,9 +164,7 @@ def _disagree(ours: Values, theirs: Values) -> bool:
 
 
 def _word(value: float | None) -> str:
-    if not isinstance(value, bool):
-        return "open" if value is None else "a number"
-    return str(value).lower()
+    return "open" if value is None else str(value).lower() if value in (True, False) else "a number"
 
 
 def _show(way: Way, question: Question, ours: Values, theirs: Values) -> str:

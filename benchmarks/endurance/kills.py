@@ -294,7 +294,7 @@ def _kept_watch(kind: str, folder: Path, kills: int, seed: int) -> Counter[str]:
     """Verdicts of lines, told by lives that are killed, beside those of one that is not."""
     killed_watch.written(folder, seed, 40 * kills)
     expected = killed_watch.whole(folder)
-    run = partial(cli.main, killed_watch.WATCH.split(" "))
+    run: Callable[[], object] = partial(cli.main, killed_watch.WATCH.split(" "))
     if kind != WATCH:
         run = partial(killed_watch.program, folder)
     found, done = killed_watch.killed(folder, kills, seed, run)

@@ -33,6 +33,7 @@ from rvmon.core import amalgamate
 from rvmon.errors import TraceError
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.trace.time import TIME_LIMIT
+from rvmon.verdict import Verdict
 
 SPEC = """
 spec soak
@@ -108,7 +109,7 @@ class Lived:
 
     taken: int
     resident: Sequence[int]
-    counts: Mapping[str, tuple[int, int, int]]
+    counts: Mapping[str, Sequence[int]]
     bins: Sequence[tuple[int, int]]
     longest: int
 
@@ -117,7 +118,8 @@ def live_in_python(seconds: int, first: int, only: Sequence[str]) -> tuple[Lived
     """Feed a monitor of Python; also what it said where it refused a sample."""
     spec = rvmon.loads(SPEC)
     monitor = spec.monitor(keep=100, only=only)
-    rows, quiet, step, clock = pattern(), [{}] * TAIL, monitor.step_ns, time.perf_counter_ns
+    rows, step, clock = pattern(), monitor.step_ns, time.perf_counter_ns
+    quiet: list[dict[str, Any]] = [{}] * TAIL
     bins = np.zeros(BINS, dtype=np.int64)
     resident, longest, t, said = [resident_kib()], 0, first, ""
     marks = {seconds * tenth // 10 for tenth in range(1, 11)}
@@ -136,7 +138,8 @@ def live_in_python(seconds: int, first: int, only: Sequence[str]) -> tuple[Lived
     except TraceError as error:
         said = str(error)
     report = monitor.finish()
-    counts = {name: (one["P"], one["F"], one["I"]) for name, one in report.counts.items()}
+    told = Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE
+    counts = {name: [own[one] for one in told] for name, own in report.counts.items()}
     found = [(int(one), int(bins[one])) for one in bins.nonzero()[0]]
     return Lived((t - first) // STEP_NS, resident, counts, found, longest), said
 
@@ -198,7 +201,7 @@ def live_in_c(path: Path, seconds: int, first: int, names: Sequence[str]) -> tup
     words = [str(path), str(seconds), str(first), str(TAIL)]
     told = json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
     counts = {
-        name: (passed, failed, undecided)
+        name: [passed, failed, undecided]
         for name, (failed, passed, undecided) in zip(names, told["counts"], strict=True)
     }
     lived = Lived(told["taken"], told["resident"], counts, told["bins"], told["longest"])
@@ -206,10 +209,10 @@ def live_in_c(path: Path, seconds: int, first: int, names: Sequence[str]) -> tup
     return lived, "" if whole else "rv_step returned no RV_OK"
 
 
-def expected(name: str, seconds: int) -> tuple[int, ...]:
+def expected(name: str, seconds: int) -> list[int]:
     """How the attempts of a requirement end in so many seconds."""
     passed, failed, undecided = (seconds * one for one in KNOWN[name])
-    return passed, failed, undecided + (name == "R2")  # it goes on, and was unknown
+    return [passed, failed, undecided + (name == "R2")]  # it goes on, and was unknown
 
 
 def quantile(bins: Sequence[tuple[int, int]], share: float) -> int:
@@ -257,8 +260,8 @@ def main(words: Sequence[str]) -> int:
         mark = "as known" if found == known else f"WRONG, it is {known}"
         print(f"{name}: {found[0]:,} P, {found[1]:,} F, {found[2]:,} I: {mark}")
     # One second and a half to the end: the samples before it are judged, the one behind is refused.
-    found = last.counts.get("R1", (90, 58, 2))
-    whole = last.taken == 1500 and found == (90, 58, 2) and bool(said)
+    found = last.counts.get("R1", [90, 58, 2])
+    whole = last.taken == 1500 and found == [90, 58, 2] and bool(said)
     print(f"the end of time: {last.taken:,} samples are taken, then: {said}")
     print(f"  R1 {found}: {'as known' if whole else 'WRONG'}")
     return 1 if wrong or not whole else 0

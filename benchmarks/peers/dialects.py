@@ -139,22 +139,24 @@ def _opened(formula: Unary | Binary, window: Interval) -> Formula:
     return both(Unary(always, formula.left, before), Unary(eventually, inner, at))
 
 
-_WORDS = {
+Operators = Mapping[UnaryOp | BinaryOp, str]
+
+_WORDS: Operators = {
     UnaryOp.NOT: "(not({0}))",
     BinaryOp.AND: "(({0}) and ({1}))",
     BinaryOp.OR: "(({0}) or ({1}))",
 }
-_PAST = {
+_PAST: Operators = {
     UnaryOp.ONCE: "(once{bound}({0}))",
     UnaryOp.HISTORICALLY: "(historically{bound}({0}))",
     BinaryOp.SINCE: "(({0}) since{bound} ({1}))",
 }
-_FUTURE = {
+_FUTURE: Operators = {
     UnaryOp.EVENTUALLY: "(eventually{bound}({0}))",
     UnaryOp.ALWAYS: "(always{bound}({0}))",
     BinaryOp.UNTIL: "(({0}) until{bound} ({1}))",
 }
-_BY_LETTERS = {
+_BY_LETTERS: Operators = {
     UnaryOp.NOT: "(!({0}))",
     UnaryOp.EVENTUALLY: "(F{bound}({0}))",
     UnaryOp.ALWAYS: "(G{bound}({0}))",

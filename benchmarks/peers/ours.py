@@ -40,10 +40,10 @@ class Rvmon:
             import numpy as np
 
             times = np.arange(rows, dtype=np.int64) * period
-            whole = {"t_ns": times, **{name: np.array(one) for name, one in columns.items()}}
-            self._laid = {name: column[:2] for name, column in whole.items()}
+            own = {"t_ns": times, **{name: np.array(one) for name, one in columns.items()}}
+            self._laid = {name: column[:2] for name, column in own.items()}
             self._ready()()
-            self._laid = whole
+            self._laid = own
             return {"rows": rows}
         cells = zip(*columns.values(), strict=True)
         whole = [dict(zip(columns, row, strict=True)) for row in cells]
@@ -74,7 +74,7 @@ class Rvmon:
         """What passes over the rows and gives attempts; of robustness none, but it is there."""
         spec, laid, kind = self._spec, self._laid, self._kind
         if kind == "evaluate":
-            return lambda: spec.evaluate(laid, time="t_ns").attempts  # type: ignore[no-any-return]
+            return lambda: spec.evaluate(laid, time="t_ns").attempts
         if kind == "offline":
             return lambda: [] if len(spec.robustness(laid, time="t_ns").streams["R1"]) else [None]
         if kind in ("stream", "attempt"):

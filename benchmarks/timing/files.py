@@ -228,11 +228,11 @@ def rows(size: Size, environment: Environment, folder: Path) -> Iterator[str]:
 
 def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]:
     rows, spec = size.file_rows, folder / "files.rv"
-    spec.write_text(SPEC)
-    run = (*RVMON, "run", str(spec), "--format", "json")
 
-    def judged(what: str, *words: str, who: str = "rvmon run") -> Task:
-        return Task(what, who, (*run, *words), _failures)
+    def judged(what: str, *words: str, who: str = "rvmon run", text: str = SPEC) -> Task:
+        own = spec if text == SPEC else folder / f"{who.split()[-1]}.rv"
+        own.write_text(text)
+        return Task(what, who, (*RVMON, "run", str(own), "--format", "json", *words), _failures)
 
     large = str(written(folder / "large.csv", rows, 0))
     duckdb = "" if "duckdb" in environment.versions else environment.missing.get("duckdb", "none")
@@ -245,17 +245,12 @@ def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]
     yield judged(what, str(plain))
     for name, path in _odd(plain).items():
         yield judged(what, str(path), who=f"rvmon run, {name}")
-    labelled = folder / "labels.rv"
-    labelled.write_text(SPEC.replace("event stop", "signal mode : {idle, busy}\nevent stop"))
-    words = (*RVMON, "run", str(labelled), "--format", "json", str(_with_labels(plain)))
-    yield Task(what, "rvmon run, a column of labels", words, _failures)
+    text = SPEC.replace("event stop", "signal mode : {idle, busy}\nevent stop")
+    labelled = str(_with_labels(plain))
+    yield judged(what, labelled, who="rvmon run, a column of labels", text=text)
     yield judged(what, "--report", str(folder / "page"), str(plain), who="rvmon run --report")
-    database = str(folder / "hits.cov")
-    covered = folder / "covered.rv"
-    covered.write_text(SPEC + COVERED)
-    hits = ("--coverage", database, str(plain))
-    words = (*RVMON, "run", str(covered), "--format", "json")
-    yield Task(what, "rvmon run --coverage", (*words, *hits), _failures)
+    hits = ("--coverage", str(folder / "hits.cov"), str(plain))
+    yield judged(what, *hits, who="rvmon run --coverage", text=SPEC + COVERED)
     many = [str(written(folder / f"file{n:04}.csv", EACH, n)) for n in range(size.files)]
     what = f"{size.files:,} files of {EACH:,} rows"
     yield judged(what, *many)

@@ -30,7 +30,8 @@ PASSES = 3
 PUBLISHED = Path(__file__).parents[1] / "published"
 _COMPARED = re.compile(r"[<>=]=? (\d+(?:\.\d+)?)(?! m?s)")
 
-Rows = Sequence[dict[str, Value]]
+Row = dict[str, Value]
+Rows = Sequence[Row]
 
 KINDS = {
     "respond": "x > 5 -> within 100 s x < 5",
@@ -91,9 +92,9 @@ requirement R
 def rows_of(count: int, unknown: float) -> Rows:
     """Samples in which all values change, and now and then an event occurs."""
     rng = random.Random("kinds")
-    rows: list[dict[str, Value]] = []
+    rows: list[Row] = []
     for _ in range(count):
-        row: dict[str, Value] = {
+        row: Row = {
             name: math.nan if rng.random() * 100 < unknown else rng.uniform(0, 10) for name in "xy"
         }
         if rng.random() < 0.05:
@@ -105,7 +106,7 @@ def rows_of(count: int, unknown: float) -> Rows:
 def keyed_rows(count: int, keys: int = 1000) -> Rows:
     """So many are asked; then one after the other is answered, and asked again at once."""
     rng = random.Random("keys")
-    rows: list[dict[str, Value]] = [{"ask": {"id": key}} for key in range(keys)]
+    rows: list[Row] = [{"ask": {"id": key}} for key in range(keys)]
     for _ in range(count):
         payload = {"id": rng.randrange(keys)}
         rows += [{"done": payload}, {"ask": payload}]
@@ -116,9 +117,9 @@ def published_rows(spec: Spec, text: str, count: int) -> Rows:
     """Samples whose numbers lie on both sides of those that a text compares with."""
     rng = random.Random("published")
     near = [float(number) for number in _COMPARED.findall(text)] or [1.0]
-    rows: list[dict[str, Value]] = []
+    rows: list[Row] = []
     for _ in range(count):
-        row: dict[str, Value] = {}
+        row: Row = {}
         for name, signal in spec.checked.signals.items():
             if signal.type.kind is not Kind.BOOL:
                 row[name] = rng.choice(near) + rng.choice((-1, 0, 1)) * rng.random()
@@ -162,7 +163,7 @@ def lines(
     amounts = head.replace("event e\n", "event e\nsignal a : bool\n")
     for name, form in AMOUNTS.items():
         for window in (10, 1_000, 100_000):
-            changing = [
+            changing: list[Row] = [
                 {"a": n % 2 == 0, "x": float(n % 7), "e": n % 3 == 0} for n in range(window + count)
             ]
             spec = loads(f"{amounts}{form.format(d=window)}\n")
