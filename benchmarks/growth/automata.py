@@ -109,7 +109,7 @@ def _built(required: Requirement) -> tuple[Automaton, Automaton]:
     factory = Factory()
     obligation = lower(required, factory)
     whole = construct(factory.next(obligation.required), alphabet_of(obligation.required), Budget())
-    told = reduce(whole, Words(obligation.origins).label)
+    told = reduce(whole, Words(obligation.origins, required.consequent).label)
     return whole, told
 
 
