@@ -30,11 +30,8 @@ _LOOKED_AT = 1 << 13
 _MOST_ABOVE = 30
 """Lines above a header, at most."""
 
-_SOME = 10
-"""Rows that have to agree."""
-
-_TOGETHER = 4096
-"""Lines that are taken at once."""
+_SOME, _TOGETHER = 10, 4096
+"""Rows that have to agree; lines that are taken at once."""
 
 _SEPARATORS: tuple[str, ...] = (",", ";", "\t", "|", "")
 """The empty one stands for blanks, as many as there are."""
@@ -189,11 +186,10 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
     made: Callable[[list[str]], list[str]] | None = None
     written: list[str] = []
     writer = csv.writer(SimpleNamespace(write=written.append), lineterminator="\n")
-    lines = taken = 0
+    lines = taken = again = 0
     source = _Lines(text)
     for counted, row in _rows(source, dialect):
         number = counted + taken
-        is_header = made is None
         if made is None:
             row, made = _stamp_maker(row, stamps)
         else:
@@ -209,14 +205,15 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
         missing = number - lines - plain.count("\n") if lines else 0
         lines += missing + plain.count("\n")
         yield "\n" * missing + (plain if source.is_ended else plain[:-1])
-        if is_header and made is _unchanged and dialect.separator:
+        if number >= again and made is _unchanged and dialect.separator:
             yield "\n" * (number - lines)
             lines = number
-            while (many := source.ahead()) and (found := _as_plain("".join(many), dialect)):
+            while (many := source.ahead()) and (found := _as_plain(many, dialect)):
                 source.take()
                 taken += len(many)
                 lines += len(many)
                 yield found
+            again = lines + _TOGETHER
 
 
 class _Lines:
@@ -249,23 +246,40 @@ class _Lines:
         self._seen.clear()
 
 
-def _as_plain(text: str, dialect: Dialect) -> str | None:
+def _as_plain(lines: Sequence[str], dialect: Dialect) -> str | None:
     """Some lines as plain CSV has them; `None`: one has to be looked at by itself."""
-    separator = dialect.separator
-    if '"' in text or (dialect.above and _COMMENT.search(text)):
+    separator, text = dialect.separator, "".join(lines)
+    if dialect.above and _COMMENT.search(text):
         return None
-    found = f"\n{text}"
-    if f"\n{separator}" in found:  # perhaps there is nothing in its cells
-        return None
+    found, apart = f"\n{text}", re.escape(separator)
+    no_cells = rf"\n\s*{apart}[{apart}\s]*(?:[\r\n]|\Z)"
+    if '"' in text or re.search(no_cells, found):
+        return _rewritten(lines, dialect)
     if dialect.has_commas:
-        end = re.escape(separator) + r"\r\n"
+        end = rf"{apart}\r\n"
         comma = rf"([{end}][+-]?\d*),(?=\d+(?:[eE][+-]?\d+)?(?![^{end}]))"
         parts = re.split(comma, found, flags=re.ASCII)
         parts[1::2] = [f"{whole}." for whole in parts[1::2]]
         found = "".join(parts)
     if separator != "," and "," in found:
-        return None
+        return _rewritten(lines, dialect)
     return found[1:].replace(separator, ",")
+
+
+def _rewritten(lines: Sequence[str], dialect: Dialect) -> str | None:
+    """The same where each line is a row, split and written again."""
+    split = csv.reader(lines, delimiter=dialect.separator, strict=True)
+    written = io.StringIO()
+    writer = csv.writer(written, lineterminator="\n")
+    try:
+        rows = [[*map(str.strip, row)] for row in split]
+        if dialect.has_commas:
+            rows = [[_with_point(one) if "," in one else one for one in row] for row in rows]
+        writer.writerows(row if any(row) else () for row in rows)
+    except csv.Error:
+        return None
+    found = written.getvalue()
+    return (found if lines[-1][-1] in "\r\n" else found[:-1]) if len(rows) == len(lines) else None
 
 
 def _unchanged(row: list[str]) -> list[str]:

@@ -189,6 +189,7 @@ def test_lines_that_are_taken_together_say_the_same(seed, tmp_path, monkeypatch)
     remark = rng.choice(["", "# by a tool\n"])
     lines = [f"{remark}t;speed;mode;stop\n"]
     odd = ['{};"1,5";busy;\n', "{};1,5;b,usy;\n", "\n", ";;;\n", "# {}\n", "{};x;;\n", "{};1,5;\n"]
+    odd += [' ; "";;\n', '"{}";"-1,5";" busy ";"1"\n', '{};"1,\n5";busy;1\n']
     for t in range(60):
         line = rng.choice(odd) if rng.random() < 0.03 else "{},5;-{},25;idle;1\r\n"
         lines.append(line.format(t, t))

@@ -1,7 +1,5 @@
 /* Text to rows of cells. */
-#include "csv.h"
-
-#include <string.h>
+#include "numbers.h"
 
 typedef struct {
     const char *from;
@@ -61,6 +59,12 @@ static int64_t place_of(csv_reader *r, int32_t column, cell c)
     return r->label_count - 1;
 }
 
+static bool is_absent(const csv_reader *r, cell c)
+{
+    return (r->absent != NULL) && (c.to - c.from == r->absent_size)
+           && (memcmp(c.from, r->absent, (size_t)r->absent_size) == 0);
+}
+
 /* Put down what a cell says; false: there is no more room. */
 static bool take_cell(csv_reader *r, int32_t column, cell c)
 {
@@ -70,10 +74,7 @@ static bool take_cell(csv_reader *r, int32_t column, cell c)
     int says;
     c = trimmed(c);
     made->whole = 0;
-    if ((kind < CSV_DATE)
-        && ((c.from == c.to)
-            || ((r->absent != NULL) && (c.to - c.from == r->absent_size)
-                && (memcmp(c.from, r->absent, (size_t)r->absent_size) == 0)))) {
+    if ((kind < CSV_DATE) && ((c.from == c.to) || is_absent(r, c))) {
         says = CSV_NO_UPDATE;
     } else if (kind == CSV_LABEL) {
         says = CSV_YES;
@@ -98,20 +99,6 @@ static bool take_cell(csv_reader *r, int32_t column, cell c)
         r->odd_count++;
     }
     return true;
-}
-
-/* Put down the number that a cell of a row begins with and is; gives its end, NULL: look closer. */
-static const char *take_number(csv_reader *r, int32_t column, const char *at)
-{
-    const int64_t place = (int64_t)column * r->room + r->rows;
-    const char *end = (r->absent != NULL)
-                          ? NULL
-                          : csv_number_at(r, r->kinds[column], at, &r->numbers[place]);
-    if ((end == NULL) || (end - at > r->longest)) {
-        return NULL;
-    }
-    r->says[place] = CSV_YES;
-    return end;
 }
 
 /* Behind the end of a line that begins here. */
@@ -171,16 +158,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
     for (;; at++) {
         const int32_t column = (place < r->width) ? r->slots[place] : -1;
         cell c = {at, at, false};
-        const char *number = (column >= 0) ? take_number(r, column, at) : NULL;
-        if ((number != NULL) && (*number == ',')) {
-            at = number;
-            place++;
-            continue;
-        }
-        if (number != NULL) {
-            at = number;
-            c.to = at;
-        } else if ((at < end) && (*at == '"')) {
+        if ((at < end) && (*at == '"')) {
             at = quoted(r, at + 1, &c, line);
             if ((at == NULL) || (at == end)) {
                 if (!r->is_last) {
@@ -204,7 +182,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
             return ROW_OPEN;
         }
         is_odd = is_odd || (place >= r->width) || (c.to - c.from > r->longest);
-        if (!is_odd && has_room && (column >= 0) && (number == NULL)) {
+        if (!is_odd && has_room && (column >= 0)) {
             has_room = take_cell(r, column, c);
         }
         place += (place < r->width) ? 1 : 0;
@@ -220,8 +198,84 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
     return has_room ? ROW_READ : ROW_NO_ROOM;
 }
 
+/* Put down the number that a cell begins with, and is; gives its end. NULL: it is something else. */
+static inline const char *take_number(csv_reader *r, int32_t column, const char *from)
+{
+    const int64_t place = (int64_t)column * r->room + r->rows;
+    const int32_t kind = r->kinds[column];
+    const char *end = r->text + r->size;
+    decimal d;
+    cell c = {from, NULL, false};
+    if ((kind == CSV_LABEL) || (kind == CSV_DATE)) {
+        return NULL;
+    }
+    c.to = decimal_at(from, end, &d);
+    if ((c.to == NULL) || (c.to == end) || !csv_ends_cell(*c.to) || is_absent(r, c)
+        || (number_of(r, kind, &d, from, c.to, &r->numbers[place]) != CSV_YES)) {
+        return NULL;
+    }
+    r->says[place] = CSV_YES;
+    return c.to;
+}
+
+/* Behind a cell before the last end of a line; NULL: it takes several lines, or has an odd end. */
+static inline const char *plain_cell(const csv_reader *r, const char *at, cell *c)
+{
+    int64_t lines = 0;
+    if (*at == '"') {
+        at = quoted(r, at + 1, c, &lines);
+        return ((at == NULL) || (lines > 0) || !csv_ends_cell(*at)) ? NULL : at;
+    }
+    while (!csv_ends_cell(*at)) {
+        at++;
+    }
+    c->to = at;
+    return at;
+}
+
+/* Put down a row before the last end of a line, which needs no look at where the text ends; gives
+ * what is behind it. NULL: it is blank, or for `read_row`. */
+static const char *read_plain(csv_reader *r, const char *at)
+{
+    int32_t place;
+    if (is_space(*at)) {
+        return NULL;
+    }
+    for (place = 0; place < r->width; place++) {
+        const int32_t column = r->slots[place];
+        cell c = {at, (column >= 0) ? take_number(r, column, at) : NULL, false};
+        const bool is_number = c.to != NULL;
+        at = is_number ? c.to : plain_cell(r, at, &c);
+        if ((at == NULL) || (c.to - c.from > r->longest)
+            || (!is_number && (column >= 0) && !take_cell(r, column, c))) {
+            return NULL;
+        }
+        if (place + 1 < r->width) {
+            if (*at != ',') {
+                return NULL;
+            }
+            at++;
+        }
+    }
+    if ((*at == '\r') && (at[1] == '\n')) {
+        at++;
+    }
+    return (*at == '\n') ? at + 1 : NULL;
+}
+
+/* Behind the last line of the text that ends. */
+static const char *behind_lines(const csv_reader *r)
+{
+    const char *at = r->text + r->size;
+    while ((at > r->text) && (at[-1] != '\n')) {
+        at--;
+    }
+    return at;
+}
+
 csv_end csv_read(csv_reader *r)
 {
+    const char *lines_end = behind_lines(r);
     while (r->at < r->size) {
         const char *next = NULL;
         const int64_t odd_count = r->odd_count;
@@ -229,6 +283,17 @@ csv_end csv_read(csv_reader *r)
         row_end ended;
         if (r->rows == r->room) {
             return CSV_FULL;
+        }
+        if (r->text + r->at < lines_end) {
+            next = read_plain(r, r->text + r->at);
+            if (next != NULL) {
+                r->line++;
+                r->lines[r->rows] = r->line;
+                r->rows++;
+                r->at = next - r->text;
+                continue;
+            }
+            r->odd_count = odd_count;
         }
         ended = read_row(r, r->text + r->at, &next, &line);
         if (ended != ROW_READ) {

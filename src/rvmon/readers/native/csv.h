@@ -65,9 +65,6 @@ csv_end csv_read(csv_reader *r);
 /* A cell that is trimmed and not empty, as a value of its kind: what it says. */
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made);
 
-/* The number of its kind that a cell begins with, and is: where it ends. NULL: look closer. */
-const char *csv_number_at(const csv_reader *r, int32_t kind, const char *from, csv_number *made);
-
 /* What all digits are above. */
 static inline bool csv_ends_cell(char c)
 {

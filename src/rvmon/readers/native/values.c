@@ -1,100 +1,7 @@
 /* Single cells as numbers, exactly. */
-#include "csv.h"
+#include "numbers.h"
 
 #include <math.h>
-#include <string.h>
-
-/* Powers of ten that are exact doubles. */
-static const double POWERS[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-#define MOST_POWER 22
-
-/* So many digits fit in 64 bits. */
-#define MOST_DIGITS 19
-
-#define EXACT ((uint64_t)1 << 53)
-#define TIME_LIMIT ((uint64_t)1 << 62)
-
-/* The longest number that is read here. */
-#define LONGEST 127
-
-typedef struct {
-    uint64_t mantissa;
-    int32_t behind;   /* digits behind the point */
-    int32_t exponent; /* as written */
-    bool is_negative;
-    bool is_long; /* it has more digits than `mantissa` holds */
-} decimal;
-
-static bool is_digit(char c)
-{
-    return (c >= '0') && (c <= '9');
-}
-
-/* How many digits there are from the first that is not zero on. */
-static int32_t held_digits(const char *at, const char *to)
-{
-    int32_t held = 0;
-    for (; at < to; at++) {
-        held += (is_digit(*at) && ((held > 0) || (*at != '0'))) ? 1 : 0;
-    }
-    return held;
-}
-
-/* Digits and a point, perhaps; gives where they end, NULL if there is no digit. */
-static inline const char *digits_of(const char *from, const char *to, decimal *d)
-{
-    const char *at = from;
-    const char *point = NULL;
-    uint64_t mantissa = 0;
-    int64_t digits;
-    for (; at < to; at++) {
-        const uint32_t digit = (uint32_t)(uint8_t)*at - '0';
-        if (digit <= 9) {
-            mantissa = mantissa * 10 + digit; /* of too many, nobody looks at it */
-        } else if ((*at == '.') && (point == NULL)) {
-            point = at;
-        } else {
-            break;
-        }
-    }
-    digits = (at - from) - ((point != NULL) ? 1 : 0);
-    d->mantissa = mantissa;
-    d->behind = (point != NULL) ? (int32_t)(at - point) - 1 : 0;
-    d->is_long = (digits > MOST_DIGITS) && (held_digits(from, at) > MOST_DIGITS);
-    return (digits > 0) ? at : NULL;
-}
-
-/* The decimal number that begins here, as Python reads one; gives where it ends, NULL if there is
- * none, or a long one. */
-static inline const char *decimal_at(const char *from, const char *to, decimal *d)
-{
-    const char *at = from;
-    (void)memset(d, 0, sizeof *d);
-    if ((at < to) && ((*at == '-') || (*at == '+'))) {
-        d->is_negative = *at == '-';
-        at++;
-    }
-    at = digits_of(at, to, d);
-    if ((at != NULL) && (at < to) && ((*at | 32) == 'e')) {
-        const char *first;
-        bool down = false;
-        at++;
-        if ((at < to) && ((*at == '-') || (*at == '+'))) {
-            down = *at == '-';
-            at++;
-        }
-        for (first = at; (at < to) && (at - first < 5) && is_digit(*at); at++) {
-            d->exponent = d->exponent * 10 + (*at - '0');
-        }
-        if ((at == first) || (at - first > 4)) {
-            return NULL;
-        }
-        d->exponent = down ? -d->exponent : d->exponent;
-    }
-    return ((at == NULL) || (at - from > LONGEST)) ? NULL : at;
-}
 
 /* A whole number of up to 19 digits by an exact power of ten, rounded once; false: it is not sure.
  *
@@ -111,9 +18,8 @@ static bool quotient(uint64_t mantissa, double power, double *made)
     return *made == least;
 }
 
-/* A number that is no exact whole times or through an exact power of ten. */
-static int inexact(const csv_reader *r, const decimal *d, const char *from, const char *to,
-                   csv_number *made)
+int csv_inexact(const csv_reader *r, const decimal *d, const char *from, const char *to,
+                csv_number *made)
 {
     const int32_t power = d->exponent - d->behind;
     char copy[LONGEST + 1];
@@ -127,79 +33,6 @@ static int inexact(const csv_reader *r, const decimal *d, const char *from, cons
     copy[to - from] = '\0';
     made->real = r->slow(r->taken, copy);
     return isfinite(made->real) ? CSV_YES : CSV_ODD;
-}
-
-/* A whole times or through a power of ten, rounded once; false: one of them is no exact double. */
-static inline bool exact_of(const decimal *d, csv_number *made)
-{
-    const int32_t power = d->exponent - d->behind;
-    const double whole = d->is_negative ? -(double)d->mantissa : (double)d->mantissa;
-    if (d->is_long || (d->mantissa > EXACT) || (power > MOST_POWER) || (power < -MOST_POWER)) {
-        return false;
-    }
-    made->real = (power < 0) ? whole / POWERS[-power] : whole * POWERS[power];
-    return true;
-}
-
-static uint64_t power_of_ten(int32_t power)
-{
-    uint64_t made = 1;
-    for (; power > 0; power--) {
-        made *= 10;
-    }
-    return made;
-}
-
-/* A decimal as a whole number, of which no part is behind the point; up to `most`. */
-static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
-{
-    uint64_t whole = d->mantissa;
-    if (d->is_long || (d->exponent != 0) || (d->behind > MOST_DIGITS)) {
-        return CSV_ODD;
-    }
-    if (d->behind > 0) {
-        const uint64_t scale = power_of_ten(d->behind);
-        most = (most > EXACT) ? EXACT : most; /* it is a double first */
-        if (whole % scale != 0) {
-            return CSV_ODD;
-        }
-        whole /= scale;
-    }
-    if (whole > most) {
-        return CSV_ODD;
-    }
-    made->whole = d->is_negative ? -(int64_t)whole : (int64_t)whole;
-    return CSV_YES;
-}
-
-/* A stamp as ticks, of which so many digits are whole; half a tick goes to the even one. */
-static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
-{
-    uint64_t ticks = d->mantissa;
-    if (d->is_long || (d->exponent != 0) || ((places == 0) && (d->behind > 0))) {
-        return CSV_ODD;
-    }
-    if (d->behind <= places) {
-        const uint64_t scale = power_of_ten(places - d->behind);
-        if (ticks > (TIME_LIMIT - 1) / scale) {
-            return CSV_ODD;
-        }
-        ticks *= scale;
-    } else if (d->behind - places > MOST_DIGITS) {
-        return CSV_ODD;
-    } else {
-        const uint64_t scale = power_of_ten(d->behind - places);
-        const uint64_t rest = ticks % scale;
-        ticks /= scale;
-        if ((rest > scale - rest) || ((rest == scale - rest) && (ticks % 2 == 1))) {
-            ticks++;
-        }
-    }
-    if (ticks >= TIME_LIMIT) {
-        return CSV_ODD;
-    }
-    made->whole = d->is_negative ? -(int64_t)ticks : (int64_t)ticks;
-    return CSV_YES;
 }
 
 /* So many digits as a number; -1: one is none. */
@@ -326,17 +159,6 @@ static int truth_of(const char *from, const char *to, csv_number *made)
     return CSV_ODD;
 }
 
-static inline int value_of(const csv_reader *r, int32_t kind, const decimal *d, const char *from,
-                           const char *to, csv_number *made)
-{
-    switch (kind) {
-    case CSV_BOOL: return d->is_negative ? CSV_ODD : whole_of(d, 1, made);
-    case CSV_INT: return whole_of(d, INT64_MAX, made);
-    case CSV_REAL: return exact_of(d, made) ? CSV_YES : inexact(r, d, from, to, made);
-    default: return stamp_of(d, kind - CSV_STAMP, made);
-    }
-}
-
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made)
 {
     decimal d;
@@ -354,16 +176,5 @@ int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *t
     if (kind == CSV_DATE) {
         return date_of(from, to, made);
     }
-    return (decimal_at(from, to, &d) == to) ? value_of(r, kind, &d, from, to, made) : CSV_ODD;
-}
-
-const char *csv_number_at(const csv_reader *r, int32_t kind, const char *from, csv_number *made)
-{
-    const char *end = r->text + r->size;
-    decimal d;
-    const char *to = ((kind == CSV_LABEL) || (kind == CSV_DATE)) ? NULL : decimal_at(from, end, &d);
-    if ((to == NULL) || (to == end) || !csv_ends_cell(*to)) {
-        return NULL;
-    }
-    return (value_of(r, kind, &d, from, to, made) == CSV_YES) ? to : NULL;
+    return (decimal_at(from, to, &d) == to) ? number_of(r, kind, &d, from, to, made) : CSV_ODD;
 }
