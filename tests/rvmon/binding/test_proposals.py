@@ -4,28 +4,13 @@ import math
 import tomllib
 
 import pytest
-from tests.rvmon.binding.more_robots import LAST, LATER
-from tests.rvmon.binding.more_strangers import MORE_STRANGERS
-from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
-from tests.rvmon.binding.strangers import STRANGERS
-from tests.rvmon.binding.traps import FRESH, TRAPS
+from tests.rvmon.binding.robots import ROBOTS, Robot
 from tests.tools.bags import START, write_ros1
 
 import rvmon
 from rvmon.cli import main
 
 pytest.importorskip("rosbags")
-
-ROBOTS = {
-    **REPORTED,
-    **HELD_OUT,
-    **LATER,
-    **LAST,
-    **TRAPS,
-    **FRESH,
-    **STRANGERS,
-    **MORE_STRANGERS,
-}
 
 
 def write(robot, folder):
@@ -80,7 +65,7 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
 def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
     """What the messages hold is shown beside what they should mean."""
     topics = {"/battery": ("sensor_msgs/msg/BatteryState", {"percentage": 75.0})}
-    spec, bag = write(Robot(topics, "signal battery_level : real [%]", {}), tmp_path)
+    spec, bag = write(Robot(topics, "signal battery_level : real [%]"), tmp_path)
     assert main(["init", bag, "--for", spec]) == 0
     told = capsys.readouterr().out
     assert 'value = "percentage"  # always 75\nunit = "1"\n# It looks like per cent' in told
@@ -91,7 +76,7 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
 
 def test_what_is_called_otherwise_is_shown_by_its_unit(tmp_path, capsys):
     """Nothing is filled in; first what shares a word with the name, with its values."""
-    spec, bag = write(MORE_STRANGERS["amr"], tmp_path)
+    spec, bag = write(ROBOTS["amr"], tmp_path)
     assert main(["init", bag, "--for", spec]) == 1
     told = capsys.readouterr().out
     shown = told[told.index("# Nothing is called like `bus_voltage` (real [V]).") :].splitlines()
@@ -116,7 +101,6 @@ def test_turns_of_a_quaternion(tmp_path, turn, value):
         {"/imu": ("sensor_msgs/msg/Imu", {"orientation": turned})},
         "signal angle : real [rad]\nrequirement A1\n"
         f"  always abs(angle - ({value} rad)) < 1e-9 rad",
-        {},
     )
     spec, bag = write(robot, tmp_path)
     binding = tmp_path / "a.toml"
@@ -128,7 +112,7 @@ def test_turns_of_a_quaternion(tmp_path, turn, value):
 
 def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
     """Milliamps that are declared amps are an error, unless the binding says what they are."""
-    spec, bag = write(STRANGERS["create3"], tmp_path)
+    spec, bag = write(ROBOTS["create3"], tmp_path)
     binding = tmp_path / "a.toml"
     place = '[bind.left_wheel_current]\ntopic = "/wheel_status"\nvalue = "current_ma_left"\n'
     binding.write_text(place)
@@ -140,7 +124,7 @@ def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
 
 def test_a_leader_is_a_guess(tmp_path, capsys):
     """That it is the first of several is told where it is proposed."""
-    spec, bag = write(REPORTED["turtle"], tmp_path)
+    spec, bag = write(ROBOTS["turtle"], tmp_path)
     main(["init", bag, "--for", spec])
     told = capsys.readouterr().out
     assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told
