@@ -1,8 +1,8 @@
 """Recordings as robots make them, with what should feed which name; they stand in `recordings`.
 
 The expected places were written down before anything was proposed for them: topic and value,
-several (`|`) where any of them is right, `open` where it may be left open, none where nothing in the
-recording is what the name says.
+several (`|`) where any of them is right, `open` where it may be left open, none where nothing in
+the recording is what the name says.
 """
 
 from __future__ import annotations

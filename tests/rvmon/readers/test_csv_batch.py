@@ -112,6 +112,27 @@ def test_columns_say_what_rows_say(tmp_path, monkeypatch):
         assert read(SPEC.recording(tmp_path / "a.csv")) == expected
 
 
+CELLS = {
+    "t,p\n0,{}\n": "1 0 true FALSE yes 1.0 -0",
+    "t,count\n0,{}\n": "3 -7 +12 007 0x1F 1.0 9223372036854775808 nan 1_000",
+    "t,speed\n0,{}\n1,0.1\n": "0.1 0.30000000000000004 1e-3 +1.5 -0 .5 5. . inf -inf 1e400 "
+    "1e-400 nan nan(1) 1_0 1e",
+    "t,p\n{},1\n": "1 1.5 1e0 1.000000001 1.0000000001 +1 nan inf 1_0 4611686018.427387904",
+    "t_ns,p\n{},1\n": "1 +1 007 0x1F 1.0 1e3 4611686018427387903 4611686018427387904",
+}
+"""Files with a cell to be filled in, and what is."""
+
+
+@pytest.mark.parametrize(
+    "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
+)
+def test_a_cell_is_read_as_in_rows(text, tmp_path):
+    """Whatever is taken for a number, or is not: samples and errors are those of rows."""
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
+
+
 def test_numbers_are_the_nearest(tmp_path):
     """Each decimal is read as Python reads it: short ones, long ones, and halves between two."""
     rng = random.Random(1)

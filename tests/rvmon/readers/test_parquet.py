@@ -56,15 +56,15 @@ def test_numbers_are_truth_values_where_these_are_declared(one, tmp_path):
     assert judged(tmp_path, knock=[zero, one, None], shut=[zero, None, one]) == "F"
 
 
-@pytest.mark.parametrize("part", ["page", "footer"])
+@pytest.mark.parametrize("part", ["page", "footer", "all"])
 def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
-    """One wrong byte, in a page or in the footer, is an error that names the file."""
+    """One wrong byte, in a page or in the footer, or no such file at all: the file is named."""
     judged(tmp_path)
     path = tmp_path / "a.parquet"
     data = bytearray(path.read_bytes())
     footer = len(data) - 8 - int.from_bytes(data[-8:-4], "little")
     data[4 if part == "page" else footer] ^= 0xFF
-    path.write_bytes(data)
+    path.write_bytes(b"t,p\n" if part == "all" else data)
     with pytest.raises(rvmon.TraceError, match=r"a\.parquet: .*Parquet file"):
         rvmon.loads(SPEC).evaluate(path)
 

@@ -8,7 +8,6 @@ import pytest
 from tests.rvmon.readers.csv_reference import samples_of_csv
 
 import rvmon
-from rvmon.readers import parquet as parquet_module
 from rvmon.readers import places
 from rvmon.readers.batch import Batch
 from rvmon.readers.source import Source
@@ -48,9 +47,8 @@ def csv_text(seed: int, rows: int = 1000) -> str:
 
 def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Report:
     """The report of the slow way, on the samples up to an instant."""
-    opened = spec.recording(path)
-    monitor = spec.monitor(sources=opened.names)
-    for sample in samples_of_csv(spec, path) if path.suffix == ".csv" else opened:
+    monitor = spec.monitor(sources=spec.recording(path).names)
+    for sample in samples_of_csv(spec, path):
         if end is None or sample.t <= end:
             monitor.step_ns(sample.t, sample.values)
     return monitor.finish_ns(end)
@@ -82,103 +80,6 @@ def test_columns_say_what_rows_say(end, time, stale, tmp_path, cut_into):
     spec = rvmon.loads(SPEC.format(time=time, stale=stale))
     report = in_columns(spec, tmp_path / "a.csv", round(end * 1e9))
     assert report == by_rows(spec, tmp_path / "a.csv", round(end * 1e9))
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
-def test_gaps_are_filled_where_only_values_matter(time, tmp_path, cut_into):
-    """Empty cells: signals hold, events do not occur; the same as row by row."""
-    cut_into(997)
-    rng = random.Random(5)
-    first, second, *rest = csv_text(4).splitlines()
-    rest = [
-        ",".join(c if n == 0 or rng.random() < 0.3 else "" for n, c in enumerate(row.split(",")))
-        for row in rest
-    ]
-    (tmp_path / "a.csv").write_text("\n".join([first, second, *rest]) + "\n")
-    spec = rvmon.loads(SPEC.format(time=time, stale=""))
-    report = in_columns(spec, tmp_path / "a.csv")
-    assert report == by_rows(spec, tmp_path / "a.csv")
-    assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
-    for other in (
-        SPEC.format(time=time, stale="stale after 300 ms"),
-        SPEC.format(time=time, stale="") + "requirement R4\n  always not updated(stop)\n",
-    ):
-        spec = rvmon.loads(other)
-        assert spec.evaluate(tmp_path / "a.csv") == by_rows(spec, tmp_path / "a.csv")
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
-def test_parquet_says_what_csv_says(time, tmp_path, monkeypatch):
-    """The same recording as Parquet, whole and with gaps."""
-    monkeypatch.setattr(parquet_module, "ROWS", 333)
-    import pyarrow
-    from pyarrow import csv, parquet
-
-    (tmp_path / "a.csv").write_text(csv_text(2))
-    types = {"p": pyarrow.bool_(), "stop": pyarrow.bool_(), "t": pyarrow.float64()}
-    table = csv.read_csv(tmp_path / "a.csv", convert_options=csv.ConvertOptions(column_types=types))
-    parquet.write_table(table, tmp_path / "a.parquet", row_group_size=700)
-    spec = rvmon.loads(SPEC.format(time=time, stale=""))
-    expected = by_rows(spec, tmp_path / "a.csv")
-    assert spec.evaluate(tmp_path / "a.parquet") == expected
-    assert by_rows(spec, tmp_path / "a.parquet") == expected
-
-    rng = random.Random(6)
-    for first in (True, False):
-        gaps = table
-        for place, name in enumerate(table.column_names):
-            if name not in ("t", "ignored"):
-                cells = table.column(name).to_pylist()
-                cells[1:] = [cell if rng.random() < 0.2 else None for cell in cells[1:]]
-                cells[0] = cells[0] if first else None
-                kept = pyarrow.array(cells, table.schema.field(name).type)
-                gaps = gaps.set_column(place, name, kept)
-        parquet.write_table(gaps, tmp_path / "gaps.parquet")
-        expected = by_rows(spec, tmp_path / "gaps.parquet")
-        assert spec.evaluate(tmp_path / "gaps.parquet") == expected
-        assert {"P", "F"} <= {attempt.verdict for attempt in expected.attempts}
-
-
-def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):
-    """The message names the file and what is wrong with it."""
-    (tmp_path / "a.parquet").write_text("t,p\n")
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    with pytest.raises(rvmon.TraceError, match=r"a\.parquet: not a Parquet file"):
-        spec.evaluate(tmp_path / "a.parquet")
-
-
-CELLS = {
-    "t,p\n0,{}\n": "1 0 true FALSE yes 1.0 -0",
-    "t,count\n0,{}\n": "3 -7 +12 007 0x1F 1.0 9223372036854775808 nan 1_000",
-    "t,speed\n0,{}\n1,0.1\n": "0.1 0.30000000000000004 1e-3 +1.5 -0 .5 5. . inf -inf 1e400 "
-    "1e-400 nan nan(1) 1_0 1e",
-    "t,p\n{},1\n": "1 1.5 1e0 1.000000001 1.0000000001 +1 nan inf 1_0 4611686018.427387904",
-    "t_ns,p\n{},1\n": "1 +1 007 0x1F 1.0 1e3 4611686018427387903 4611686018427387904",
-}
-"""Files with a cell to be filled in, and what is."""
-
-
-def told(judge, spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
-    """What is said of a file, or of its fault."""
-    try:
-        return judge(spec, path)
-    except rvmon.TraceError as error:
-        return str(error)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
-)
-def test_a_cell_is_read_as_in_rows(text, tmp_path):
-    """Whatever is taken for a number, or is not: report and errors are those of rows."""
-    path = tmp_path / "a.csv"
-    path.write_text(text)
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    expected = told(by_rows, spec, path)
-    assert told(lambda spec, path: spec.evaluate(path, allow_missing=True), spec, path) == expected
 
 
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
