@@ -73,8 +73,6 @@ def jsonl_samples(
                 ) from None
             cut = "" if line.endswith("\n") else "; the file ends here: was it cut off?"
             raise TraceError(f"line {number}: not a JSON object ({error}){cut}") from None
-        except UnicodeEncodeError:  # standard input may stand in for what it cannot decode
-            raise TraceError(f"line {number}: not UTF-8 text: is this a binary file?") from None
         except (TraceError, RecursionError) as error:
             raise TraceError(f"line {number}: {error}") from None
         yield number, t, values

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
@@ -14,7 +14,7 @@ from itertools import islice
 from math import inf
 from pathlib import Path
 from stat import S_ISFIFO
-from typing import TYPE_CHECKING, BinaryIO, TextIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
@@ -96,10 +96,14 @@ class FileRecording:
         self._joined: Joined | None = None
         self._known: tuple[list[str], Layout] | None = None
         self._unended: frozenset[str] = frozenset()
-        if self._format == "csv" and self.path != "-":
-            with self._text() as text:
-                layout = self._layout(split_lines(bounded_lines(text)))
-            self._take_names(layout)
+        if self._format == "csv":
+            with (
+                named_errors(self.path),
+                opened_as_csv(self.path, schema.stamps) as (plain, _),
+                # The mark that some editors begin a text with would make its first cell odd.
+                TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+            ):
+                self._take_names(self._layout(split_lines(bounded_lines(text))))
         elif self._format == "parquet":
             from rvmon.readers.parquet import parquet_layout
 
@@ -155,17 +159,15 @@ class FileRecording:
 
     def samples(self) -> Iterator[Sample]:
         """The same, of which there may be none; its errors do not name the file."""
-        return self.rows.samples(self._each_row()) if self._joined is None else iter(self._joined)
+        if self._joined is not None:
+            yield from self._joined
+        else:
+            with closing(self._each_row()) as rows:  # also where a row is wrong
+                yield from self.rows.samples(rows)
 
-    def _each_row(self) -> Iterator[Row]:
+    def _each_row(self) -> Generator[Row]:
         if self._messages is not None:
             yield from self._messages.rows(ordered=self._ordered)
-        elif self._format == "jsonl" and not can_be_read_again(self.path):
-            from rvmon.readers.jsonl_rows import jsonl_samples
-
-            with self._text() as text:
-                seen = self._seeing_unit(bounded_lines(text))
-                yield from jsonl_samples(seen, self._schema, self.ignored)
         else:
             for piece in self._batches():
                 yield from piece.numbered() if hasattr(piece, "numbered") else piece
@@ -184,17 +186,21 @@ class FileRecording:
     def parts(self) -> Iterator[Batch | Sample]:
         """The same, of which there may be none; its errors do not name the file."""
         if self._joined is not None:
-            return self._joined.pieces()
-        of_columns = self._messages is None and can_be_read_again(self.path)
-        return self.rows.pieces(self._batches()) if of_columns and self._ordered else self.samples()
+            yield from self._joined.pieces()
+        elif self._messages is None and can_be_read_again(self.path) and self._ordered:
+            with closing(self._batches()) as batches:
+                yield from self.rows.pieces(batches)
+        else:
+            yield from self.samples()
 
-    def _batches(self) -> Iterator[Batch | Iterator[Row]]:
+    def _batches(self) -> Generator[Batch | Iterator[Row]]:
         if self._format == "parquet":
             from rvmon.readers.parquet import parquet_batches_of
 
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
-        with self._opened() as (plain, self._open_file):
+        with self._opened() as (plain, raw):
+            self._open_file = raw if can_be_read_again(self.path) else None
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
@@ -211,13 +217,6 @@ class FileRecording:
 
     def _take_stamps(self, stamps: Stamps) -> None:
         self._stamps = stamps
-
-    def _seeing_unit(self, lines: Iterable[str]) -> Iterator[str]:
-        """The same lines; the first one says what the stamps are, if nobody did."""
-        for number, line in enumerate(lines):
-            if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
-                self._stamps = stamps_of("t_ns")
-            yield line
 
     @property
     def fraction_read(self) -> float:
@@ -281,23 +280,11 @@ class FileRecording:
 
     def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
         """The text, and the file as it lies there."""
+        if self.path == "-":
+            return nullcontext((sys.stdin.buffer, sys.stdin.buffer))
         if self._format == "csv":
             return opened_as_csv(self.path, self._schema.stamps)
         return opened(self.path)
-
-    @contextmanager
-    def _text(self) -> Iterator[TextIO]:
-        """The open text; errors inside are given the file's name."""
-        with named_errors(self.path):
-            if self.path == "-":
-                yield sys.stdin
-            else:
-                # The mark that some editors begin a text with would make its first cell odd.
-                with (
-                    self._opened() as (plain, self._open_file),
-                    TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
-                ):
-                    yield text
 
 
 def messages_of(path: str) -> MessageFile:
