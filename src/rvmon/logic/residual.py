@@ -5,7 +5,8 @@ Source: AUTOMATA 1; reduced DNFs of monotone functions are their prime implicant
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from functools import lru_cache
 
 from rvmon.logic.formula import Literal, Next, Release, Until
 
@@ -27,6 +28,11 @@ FAILS: Residual = frozenset()
 
 _MOST_PAIRS = 1 << 10
 """The most pairs of clauses that `both` reduces under a limit, whatever the limit."""
+
+
+_KEPT = 1 << 12
+"""So many results of `both` and of reduction are kept: building an automaton asks for most of them
+again, in each region and at each letter."""
 
 
 class TooManyClausesError(Exception):
@@ -65,6 +71,8 @@ def either(left: Residual, right: Residual) -> Residual:
     return _reduced(left | right)
 
 
+@lru_cache(_KEPT)
+@lru_cache(_KEPT)
 def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
     """The reduced conjunction.
 
@@ -77,7 +85,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
         return right
     if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
         raise TooManyClausesError
-    made = _reduced({_conjunction(first | second) for first in left for second in right})
+    made = _reduced(frozenset(_conjunction(one | other) for one in left for other in right))
     if limit is not None and len(made) > limit:
         raise TooManyClausesError
     return made
@@ -89,7 +97,8 @@ def _conjunction(clause: Clause) -> Clause:
     return clause.difference(implied) if implied else clause
 
 
-def _reduced(clauses: Iterable[Clause]) -> Residual:
+@lru_cache(_KEPT)
+def _reduced(clauses: Residual) -> Residual:
     """The residual of clauses without implied atoms: clauses that imply another one are dropped."""
     ordered = sorted(clauses, key=len)
     if ordered and not ordered[0]:
@@ -134,8 +143,8 @@ def substitute(
                 made = both(made, values[atom], limit)
         found |= made
         if limit is not None and len(found) > limit:
-            found = set(_reduced(found))
-    return _reduced(found)
+            found = set(_reduced(frozenset(found)))
+    return _reduced(frozenset(found))
 
 
 def _by_number(atom: Atom) -> tuple[int, int]:

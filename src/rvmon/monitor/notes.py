@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from operator import getitem
 from struct import Struct
 from typing import Any, NamedTuple
@@ -184,10 +184,13 @@ class NoteExplainer:
         weights = alphabet.pessimistic if passed else alphabet.optimistic
         return sum(map(getitem, weights, values))
 
-    def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
-        """The explanatory fields of an attempt, by name; see `Attempt`."""
+    def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
+        """The explanatory fields of an attempt, by name; see `Attempt`.
+
+        A forecast takes a search: it waits for who asks for it, unless that is the name.
+        """
         seen: Mapping[str, Any] = {}
-        forecast = None
+        forecast: Callable[[], Verdict | None] | None = None
         if note.kind == _NOTHING:
             why = why_nothing(cut=bool(note.flags & _CUT))
         elif note.kind == _DECIDED:
@@ -197,15 +200,17 @@ class NoteExplainer:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
                 seen = truths_shown(self._texts, self._truth_values(note, attempt.origin)[0])
-        return {
+        found = {
             "reason": why.reason,
             "deadline": why.deadline,
             "at_trigger": truths_shown(self._texts, self._then(note)),
             "at_decision": seen,
             "required": why.required,
             "blame": why.blame,
-            "forecast": forecast,
         }
+        if forecast is None or name == "forecast":
+            return found | {"forecast": forecast and forecast()}
+        return found | {"_details": lambda *_: {"forecast": forecast()}}
 
     def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
         leaves, values, flow = self._truth_values(note, attempt.origin)
@@ -231,14 +236,17 @@ class NoteExplainer:
             self._reasons, token, letter, passed, note.at, attempt.triggered, flow
         ), leaves
 
-    def _open(self, attempt: Attempt, note: Note) -> tuple[Explanation, Verdict | None]:
+    def _open(
+        self, attempt: Attempt, note: Note
+    ) -> tuple[Explanation, Callable[[], Verdict | None] | None]:
+        """Why an attempt is open, and what gives its forecast; none once it was settled."""
         now = note.at
         judged, one = self._undecided(attempt, note)
         why = why_open(judged, one, now, _instant(note.words[5]))
         if attempt.decision is not Decision.OPEN:
             policy = self.compiled.requirement.at_end
             return why._replace(reason=why_settled(attempt.decision, policy)), None
-        return why, forecast_of(judged, one, now)
+        return why, partial(forecast_of, judged, one, now)
 
     def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
@@ -364,9 +372,9 @@ class NotesReader:
             found |= {one.requirement.id: explainers for one in part}
         return found
 
-    def details(self, attempt: Attempt, note: Note) -> Mapping[str, Any]:
-        """The explanatory fields of an attempt, by name; see `Attempt`."""
-        return self._explainers[attempt.requirement][note.judge].details(attempt, note)
+    def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
+        """See `NoteExplainer.details`."""
+        return self._explainers[attempt.requirement][note.judge].details(attempt, note, name)
 
 
 def _is_apart(one: CompiledRequirement) -> bool:

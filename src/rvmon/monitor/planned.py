@@ -198,29 +198,38 @@ class PlannedCore:
         each = None if one.for_each is None else attempt.captured[one.for_each.name]
         return attempt.requirement, attempt.in_doubt, each
 
-    def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
-        """The lazily computed fields of an attempt; called from C."""
-        from rvmon.monitor.notes import note_of
+    def _details(self, attempt: Attempt, noted: Noted, name: str) -> Mapping[str, Any]:
+        """A lazily computed field of an attempt; called from C."""
+        captured, *parts = noted
 
-        captured, *note = noted
-        return self.details(attempt, captured, note_of(*note))
+        def note() -> Note:
+            from rvmon.monitor.notes import note_of
+
+            return note_of(*parts)
+
+        return self.details(attempt, captured, note, name)
 
     def details(
-        self, attempt: Attempt, captured: Sequence[float | None] | None, note: Note
+        self,
+        attempt: Attempt,
+        captured: Sequence[float | None] | None,
+        note: Callable[[], Note],
+        name: str,
     ) -> Mapping[str, Any]:
-        """The lazily computed fields of an attempt.
+        """A lazily computed field of an attempt, and others that come with it.
 
         Args:
             attempt: with its other fields set.
             captured: its captured values; `None` if its requirement captures none.
-            note: the note of the core about it.
+            note: gives the note of the core about it.
+            name: the field that is asked for.
         """
         number = self.packed.numbers[attempt.requirement]
-        return {
-            **self._reader.details(attempt, note),
-            "captured": {} if captured is None else self.captured.of(number, captured),
-            "robustness": None,
-        }
+        values = {} if captured is None else self.captured.of(number, captured)
+        if name == "captured":
+            return {"captured": values}
+        found = self._reader.details(attempt, note(), name)
+        return {**found, "captured": values, "robustness": None, "_noted": None}
 
     @property
     def _reader(self) -> NotesReader:

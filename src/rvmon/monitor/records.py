@@ -18,6 +18,8 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rvmon.monitor.notes import Note
+
 _OPEN = DECISIONS.index(Decision.OPEN)
 
 
@@ -131,14 +133,17 @@ class RecordedAttempts(LazyAttempts):
         return made
 
     def _details(
-        self, attempt: Attempt, noted: tuple[Sequence[float | None] | None, int]
+        self, attempt: Attempt, noted: tuple[Sequence[float | None] | None, int], name: str
     ) -> Mapping[str, Any]:
         """See `PlannedCore.details`."""
-        from rvmon.monitor.notes import note_at
-
         captured, place = noted
-        notes, spans = self._notes
-        return self._planned.details(attempt, captured, note_at(notes, place, spans))
+
+        def note() -> Note:
+            from rvmon.monitor.notes import note_at
+
+            return note_at(self._notes[0], place, self._notes[1])
+
+        return self._planned.details(attempt, captured, note, name)
 
 
 def _number_of(number: Any) -> float | None:

@@ -16,7 +16,7 @@ def memory_of(plan: bytes, attempts: int, /) -> int:
 class Record:
     """The fields of an attempt that the core tells; `Attempt` derives from it and types them."""
 
-    _details: Callable[[Any, Any], Mapping[str, Any]]
+    _details: Callable[[Any, Any, str], Mapping[str, Any]]
     _noted: Any
 
 class Bounds:
@@ -54,7 +54,7 @@ class Monitor:
             tuple[str, ...],
             tuple[Any, ...],
             tuple[Any, ...],
-            Callable[[Attempt, Any], Mapping[str, Any]],
+            Callable[[Attempt, Any, str], Mapping[str, Any]],
             Callable[[Any], Sequence[Attempt]] | None,
         ],
         /,

@@ -100,13 +100,12 @@ class Attempt(Record):
     _repr_html_: ClassVar[Callable[[Attempt], str]]
     """HTML for notebooks; set by `rvmon.session`, as `report` is a layer above this one."""
 
-    def _work_out(self) -> None:
-        """Compute the lazy fields; `Record` calls it on the first access to one of them."""
+    def _work_out(self, name: str) -> None:
+        """Compute a lazy field, and others with it; `Record` calls it on the first access."""
         if not hasattr(self, "_details"):
             raise AttributeError("of this attempt nothing more is known")
-        for name, value in self._details(self, self._noted).items():
-            setattr(self, name, value)
-        del self._details, self._noted
+        for found, value in self._details(self, self._noted, name).items():
+            setattr(self, found, value)
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
         """Copies and pickles have all fields computed."""
@@ -146,8 +145,6 @@ _EARLY = (
 )
 """The fields that every record has from the start; the others may be computed lazily."""
 
-_LATE = tuple(one.name for one in fields(Attempt) if one.name not in (*_EARLY, "robustness"))
-
 
 def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
     """A copy of an attempt with its robustness set; lazy fields stay lazy.
@@ -163,7 +160,7 @@ def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
     for name in _EARLY:
         setattr(made, name, getattr(attempt, name))
     made.robustness = robustness
-    made._details = lambda _, noted: {name: getattr(noted, name) for name in _LATE}
+    made._details = lambda _, noted, name: {name: getattr(noted, name)}
     made._noted = attempt
     return made
 

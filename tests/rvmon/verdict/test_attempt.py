@@ -24,9 +24,9 @@ REST = {
 def decided(calls: list[object] | None = None) -> Attempt:
     """A record whose rest is worked out by whoever looks; the calls for that are noted."""
 
-    def details(attempt: Attempt, noted: object) -> dict[str, object]:
+    def details(attempt: Attempt, noted: object, name: str) -> dict[str, object]:
         if calls is not None:
-            calls.append((attempt.number, noted))
+            calls.append((attempt.number, noted, name))
         return REST
 
     made = Attempt.__new__(Attempt)
@@ -46,7 +46,7 @@ def test_the_rest_is_worked_out_once_and_only_if_someone_looks():
     )
     assert calls == []
     assert (attempt.reason, attempt.deadline, attempt.required) == ("too late", 7, "F a")
-    assert calls == [(3, "noted")]
+    assert calls == [(3, "noted", "reason")]
     assert attempt == Attempt("R1", 3, 0, 5, Verdict.FAIL, **REST)
 
 

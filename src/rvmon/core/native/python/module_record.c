@@ -81,16 +81,19 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     return 0;
 }
 
+/* The late fields, by their places. */
+static const char *const late_names[OBJECTS] = {
+    [REASON] = "reason", [DEADLINE] = "deadline", [AT_TRIGGER] = "at_trigger",
+    [AT_DECISION] = "at_decision", [REQUIRED] = "required", [CAPTURED] = "captured",
+    [BLAME] = "blame", [FORECAST] = "forecast", [ROBUSTNESS] = "robustness",
+};
+
 /* A late field, computed now if it was not. */
 static PyObject *get_late(PyObject *self, void *place)
 {
     PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
     if (*field == NULL) {
-        PyObject *all = PyObject_GetAttrString(self, "_work_out");
-        PyObject *none = PyTuple_New(0);
-        PyObject *done = ((all != NULL) && (none != NULL)) ? PyObject_Call(all, none, NULL) : NULL;
-        Py_XDECREF(all);
-        Py_XDECREF(none);
+        PyObject *done = PyObject_CallMethod(self, "_work_out", "s", late_names[(uintptr_t)place]);
         if (done == NULL) {
             return NULL;
         }
