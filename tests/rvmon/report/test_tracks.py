@@ -212,7 +212,7 @@ def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
     """In rows of a file, too, its values are truth values and no numbers."""
     spec = rvmon.loads("signal p : bool stale after 2 s\nrequirement R always p")
     (tmp_path / "a.csv").write_text("t,p\n0,true\n1,false\n2,true\n8,true\n")
-    held = HeldRecording(spec.recording(tmp_path / "a.csv").pieces(), {}, [])
+    held = HeldRecording(spec.recording(tmp_path / "a.csv").pieces(), [])
     (track,) = tracks_of(spec.checked, spec.requirements["R"], changes_of(spec.checked, held))
     assert [str(value) for _, value in track.changes] == (
         ["True", "False", "True", "None", "True", "None"]
