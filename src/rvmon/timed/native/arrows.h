@@ -8,12 +8,11 @@
 static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t had = h->into_room;
-    uint32_t *at;
     uint32_t target;
     labour(h);
     universe(w->zone, h->dim);
     if (!cut_guards(h, w, w->zone, edges, n)
-        || !cut_invariant(h, w->zone, w->places, w->values)) {
+        || !cut_invariant(h, w->zone, &w->here)) {
         return runs(h) && !h->failed;
     }
     if (!apply(h, w, edges, n)) {
@@ -21,17 +20,11 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
         h->failed = false; /* the search forwards tells it, if it can happen */
         return numbers_fit && runs(h);
     }
-    if (!invariant_data_holds(h, w->target, w->changed)) {
+    if (!invariant_data_holds(h, &w->there)) {
         return !h->failed;
     }
-    pack(h, w->target, w->changed, 0, h->packed);
-    at = find_state(h, h->packed);
-    if ((at == NULL)
-        || ((*at == NONE) && !add_state(h, at, may_delay(h, w->target, w->changed)))) {
-        return false;
-    }
-    target = *at;
-    if (!ROOM(h, h->into, h->into_room, (uint64_t)target + 1)) {
+    target = state_of(h, &w->there, 0);
+    if ((target == NONE) || !ROOM(h, h->into, h->into_room, (uint64_t)target + 1)) {
         return false;
     }
     (void)memset(h->into + had, 0xff, (h->into_room - had) * sizeof *h->into);
@@ -54,15 +47,10 @@ static void find_moves(engine *h)
 {
     walk *w = &h->out;
     uint32_t s;
-    uint32_t *at;
-    pack(h, w->target, w->changed, 0, h->packed);
-    at = find_state(h, h->packed);
-    if ((at == NULL) || !add_state(h, at, may_delay(h, w->target, w->changed))) {
-        return;
-    }
+    (void)state_of(h, &w->there, 0);
     for (s = 0; (s < h->state_count) && runs(h); s++) {
         visit(h);
-        unpack(h, s, w->places, w->values);
+        unpack(h, s, &w->here);
         h->from_node = s;
         if (!ROOM(h, h->out_of, h->out_of_room, (uint64_t)s + 2)) {
             break;

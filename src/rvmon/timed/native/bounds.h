@@ -18,6 +18,17 @@ static inline bound negated(bound b)
     return 1 - b;
 }
 
+static inline cut opposite(cut c)
+{
+    return (cut){c.y, c.x, negated(c.b)};
+}
+
+/* As answers have it. */
+static inline int64_t told_bound(bound b)
+{
+    return (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
+}
+
 static void copy_zone(const engine *h, bound *to, const bound *from)
 {
     (void)memcpy(to, from, h->zone_bytes);
@@ -56,6 +67,11 @@ static bool constrain(bound *z, int d, int x, int y, bound b)
         }
     }
     return true;
+}
+
+static bool cut_by(const engine *h, bound *z, cut c)
+{
+    return constrain(z, h->dim, c.x, c.y, c.b);
 }
 
 static void reset(bound *z, int d, int clock, bound value)

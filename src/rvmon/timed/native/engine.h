@@ -76,12 +76,13 @@ typedef struct {
     uint32_t node, parent, link, flags;
 } step;
 
-/* Clock y less clock x is at most b: what must not hold, or one of several bounds of that. */
+/* Clock y less clock x is at most b. */
 typedef struct {
     int32_t x, y;
     bound b;
-} denied;
+} cut;
 
+/* What must not hold: one of several bounds has to fail. */
 typedef struct {
     uint32_t first, count;
     int32_t rank;
@@ -89,13 +90,18 @@ typedef struct {
 
 typedef struct {
     denial *rows;
-    denied *atoms;
+    cut *atoms;
     uint32_t count, room, atom_count, atom_room;
 } denials;
 
+/* A discrete state: the location of each automaton, counted from its first, and the variables. */
+typedef struct {
+    int32_t *places, *values;
+} spot;
+
 /* Where moves start and where the one at hand leads. */
 typedef struct walk {
-    int32_t *places, *values, *target, *changed;
+    spot here, there;
     bound *source, *zone;
     int32_t *resets; /* clock, value */
     int32_t reset_count;
@@ -103,14 +109,25 @@ typedef struct walk {
     int32_t *together, *watching; /* a move with an edge of the watcher; those that can go along */
     denials skipped, blockers; /* guards of receivers left out; what moves of some priority need */
     uint32_t blocker_count, *against, against_room, against_count, *skip, skip_room;
-    bound *here; /* what the invariant says */
+    bound *limits; /* what the invariant says */
     uint8_t *committed;
     bool delays;
     uint32_t ordinal;
 } walk;
 
+/* Numbers by their hashes, NONE where there is none. */
+typedef struct {
+    uint32_t *at, size;
+} table;
+
+/* Before each block of memory that a search has, by which all are given back at the end. */
+typedef struct held {
+    struct held *next, **back;
+} held;
+
 typedef struct {
     const caller *from;
+    held *memory;
     const int32_t *plan, *variables, *automata, *locations, *edges, *atoms, *code;
     const double *costs;
     int32_t kind, policy, automaton_count, variable_count, edge_count, inside_count, goal_count;
@@ -125,8 +142,8 @@ typedef struct {
     uint64_t bytes, peak, work, visited, stored;
     field *fields;
     /* discrete states */
-    uint32_t *bits, *heads, *table, table_size, state_count, heads_room, delays_room,
-        bits_room;
+    table met;
+    uint32_t *bits, *heads, state_count, heads_room, delays_room, bits_room;
     uint8_t *delays;
     uint32_t *packed;
     /* symbolic states */
@@ -159,13 +176,14 @@ typedef struct {
     int32_t phase; /* 0: before; 1: inside */
     uint8_t *colours, *been;
     bound *between;
-    uint32_t colour_room, *exact, exact_size, exact_count;
+    table exact;
+    uint32_t colour_room, exact_count;
     successor *successors;
     uint32_t successor_count, successor_room;
     frame *frames;
     uint32_t frame_count, frame_room;
     bool improper;
-    uint32_t stem, resume, resume_end;
+    uint32_t stem;
     /* runs that an automaton accepts */
     uint32_t *rank, rank_room, last_rank, *open, open_count, open_room;
     root *roots;
@@ -188,31 +206,50 @@ typedef struct {
 
 /* --- memory ------------------------------------------------------------------------------------ */
 
-/* More room for rows, at least so many; if there is none the old ones stay, and the search ends. */
+/* More room for rows, at least so many; if there is none the old ones stay, and the search ends.
+ * The first ones are zeros. */
 static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size_t each)
 {
     uint64_t more = (uint64_t)*room + *room / 2 + 16;
-    void *made;
+    held *made = NULL;
     if (wanted <= *room) {
         return old;
     }
     more = (more < wanted) ? wanted : more;
-    if ((more >= NONE) || (more > SIZE_MAX / 4 / each)
-        || ((more - *room) * each > h->from->most_bytes - h->bytes)) {
-        h->state = SEARCH_NO_MEMORY;
-        return old;
+    if ((more < NONE) && (more <= SIZE_MAX / 4 / each)
+        && ((more - *room) * each <= h->from->most_bytes - h->bytes)) {
+        const size_t size = sizeof *made + (size_t)more * each;
+        made = (old == NULL) ? calloc(1, size) : realloc((held *)old - 1, size);
     }
-    made = realloc(old, (size_t)more * each);
     if (made == NULL) {
         h->state = SEARCH_NO_MEMORY;
         return old;
     }
-    h->bytes += (more - *room) * each;
-    if (h->bytes > h->peak) {
-        h->peak = h->bytes;
+    if (old == NULL) {
+        *made = (held){h->memory, &h->memory};
     }
+    *made->back = made;
+    if (made->next != NULL) {
+        made->next->back = &made->next;
+    }
+    h->bytes += (more - *room) * each;
+    h->peak = (h->bytes > h->peak) ? h->bytes : h->peak;
     *room = (uint32_t)more;
-    return made;
+    return made + 1;
+}
+
+/* Give rows back before the end. */
+static void give_back(engine *h, void *rows, uint32_t room, size_t each)
+{
+    if (rows != NULL) {
+        held *made = (held *)rows - 1;
+        *made->back = made->next;
+        if (made->next != NULL) {
+            made->next->back = made->back;
+        }
+        free(made);
+        h->bytes -= (uint64_t)room * each;
+    }
 }
 
 #define ROOM(h, rows, room, wanted)                                                              \
@@ -223,20 +260,8 @@ static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size
 /* A block of zeros for as long as the search lasts. */
 static void *block(engine *h, size_t count, size_t each)
 {
-    const uint64_t size = ((uint64_t)count + 1) * each;
-    void *made;
-    if ((size > SIZE_MAX / 4) || (size > h->from->most_bytes - h->bytes)) {
-        h->state = SEARCH_NO_MEMORY;
-        return NULL;
-    }
-    made = calloc((size_t)count + 1, each);
-    if (made == NULL) {
-        h->state = SEARCH_NO_MEMORY;
-        return NULL;
-    }
-    h->bytes += size;
-    h->peak = (h->bytes > h->peak) ? h->bytes : h->peak;
-    return made;
+    uint32_t room = 0;
+    return enlarge(h, NULL, &room, (uint64_t)count + 1, each);
 }
 
 static bool put(engine *h, numbers *to, int32_t number)

@@ -18,38 +18,34 @@ static int piece_of(const engine *h, uint32_t n)
 }
 
 /* Whether a discrete state has a piece: those whose condition holds, or one that is everything. */
-static bool has_piece(engine *h, int k, const int32_t *places, int32_t *values)
+static bool has_piece(engine *h, int k, const spot *here)
 {
     int i;
     for (i = 0; i < h->inside_count; i++) {
         if ((piece_at(h, i)[ROW_ATOMS] == 0)
-            && holds(h, piece_at(h, i)[ROW_CONDITION], places, values)) {
+            && holds(h, piece_at(h, i)[ROW_CONDITION], here)) {
             return (i == k) && !h->failed;
         }
     }
-    return holds(h, piece_at(h, k)[ROW_CONDITION], places, values) && !h->failed;
+    return holds(h, piece_at(h, k)[ROW_CONDITION], here) && !h->failed;
 }
 
 /* A piece as it is, or with the instants at which time leaves it, or behind which it enters it. */
 enum { AS_IS, UNTIL, SINCE };
 
-static bool cut_piece(engine *h, bound *z, int k, int how, const int32_t *places,
-                      int32_t *values)
+static bool cut_piece(engine *h, bound *z, int k, int how, const spot *here)
 {
     const int32_t *piece = piece_at(h, k);
     int32_t i;
     for (i = 0; i < piece[ROW_ATOMS]; i++) {
-        int x;
-        int y;
-        bound b;
-        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i), places, values,
-                     &x, &y, &b)) {
+        cut one;
+        if (!atom_at(h, piece[ROW_ATOM] + i, here, &one)) {
             return false;
         }
-        if ((how == UNTIL) ? (x == 0) : ((how == SINCE) && (y == 0))) {
-            b |= 1;
+        if ((how == UNTIL) ? (one.x == 0) : ((how == SINCE) && (one.y == 0))) {
+            one.b |= 1;
         }
-        if (!constrain(z, h->dim, x, y, b)) {
+        if (!cut_by(h, z, one)) {
             return false;
         }
     }
@@ -59,43 +55,43 @@ static bool cut_piece(engine *h, bound *z, int k, int how, const int32_t *places
 /* What time makes of a zone that leaves piece k for piece m: with the last instant of the one, or
  * with the first of the other, either of which may be missing. */
 static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since,
-                  const int32_t *places, int32_t *values)
+                  const spot *here)
 {
     copy_zone(h, to, z);
     delay(to, h->dim);
-    if (!cut_invariant(h, to, places, values)
-        || !cut_piece(h, to, k, since ? AS_IS : UNTIL, places, values)
-        || !cut_piece(h, to, m, since ? SINCE : AS_IS, places, values)) {
+    if (!cut_invariant(h, to, here)
+        || !cut_piece(h, to, k, since ? AS_IS : UNTIL, here)
+        || !cut_piece(h, to, m, since ? SINCE : AS_IS, here)) {
         return false;
     }
     delay(to, h->dim);
-    return cut_invariant(h, to, places, values) && cut_piece(h, to, m, AS_IS, places, values);
+    return cut_invariant(h, to, here) && cut_piece(h, to, m, AS_IS, here);
 }
 
 /* --- the search for late answers keeps what no other stands for ----------------------------------- */
 
 /* Keep a state whose time counts; found if the bound is over there, or just met while time goes on. */
 static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool delays,
-                      const int32_t *places, int32_t *values)
+                      const spot *here)
 {
     const bound due = 2 * (bound)h->plan[HEAD_BOUND];
-    const uint32_t n = keep(h, state, NONE, z, places);
+    const uint32_t n = keep(h, state, NONE, z, here);
     bool late;
     if (n == NONE) {
         return;
     }
     visit(h);
     copy_zone(h, h->copy, z);
-    late = cut_piece(h, h->copy, k, AS_IS, places, values)
+    late = cut_piece(h, h->copy, k, AS_IS, here)
            && constrain(h->copy, h->dim, h->timer, 0, -due);
     if (!late && (piece_at(h, k)[ROW_ATOMS] > 0) && delays) {
-        const int bounds = invariant_of(h, places, values);
+        const int bounds = invariant_of(h, here);
         int i;
         copy_zone(h, h->copy, z);
         for (i = 0, late = bounds >= 0; late && (i < bounds); i++) {
             late = constrain(h->copy, h->dim, 0, h->tightest[i], h->tightest_bound[i] & ~(bound)1);
         }
-        late = late && cut_piece(h, h->copy, k, AS_IS, places, values)
+        late = late && cut_piece(h, h->copy, k, AS_IS, here)
                && constrain(h->copy, h->dim, h->timer, 0, 1 - due);
     }
     if (late && (h->found == NONE) && runs(h)) {
@@ -112,34 +108,14 @@ static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool del
 /* --- the search for ways to stay distinguishes exactly, since a loop of larger zones need not be a
  * loop of runs ------------------------------------------------------------------------------------- */
 
-static uint32_t hash_node(const engine *h, uint32_t state, const bound *z)
+static uint32_t hash_inside(const engine *h, uint32_t state, const bound *z)
 {
     return hash_of(z, h->zone_bytes / 4) ^ state * 0x9e3779b1U;
 }
 
-static bool widen_exact(engine *h)
+static uint32_t hash_node(const engine *h, uint32_t n)
 {
-    uint32_t size = 0;
-    uint32_t *made = wider_table(h, h->exact_size, &size);
-    uint32_t i;
-    if (made == NULL) {
-        return false;
-    }
-    for (i = 0; i < h->exact_size; i++) {
-        const uint32_t n = h->exact[i];
-        if (n != NONE) {
-            uint32_t at = hash_node(h, h->nodes[n].state, zone_of(h, n)) & (size - 1);
-            while (made[at] != NONE) {
-                at = (at + 1) & (size - 1);
-            }
-            made[at] = n;
-        }
-    }
-    free(h->exact);
-    h->bytes -= (uint64_t)h->exact_size * sizeof *made;
-    h->exact = made;
-    h->exact_size = size;
-    return true;
+    return hash_inside(h, h->nodes[n].state, zone_of(h, n));
 }
 
 /* This symbolic state, new or met before, as a successor of the one at hand. */
@@ -148,13 +124,13 @@ static void succeed(engine *h, uint32_t state, const bound *z)
     const size_t bytes = h->zone_bytes;
     uint32_t at;
     uint32_t n;
-    if ((2 * ((uint64_t)h->exact_count + 1) > h->exact_size) && !widen_exact(h)) {
+    if (!widen(h, &h->exact, h->exact_count, hash_node)) {
         return;
     }
-    at = hash_node(h, state, z) & (h->exact_size - 1);
-    while (((n = h->exact[at]) != NONE)
+    at = hash_inside(h, state, z) & (h->exact.size - 1);
+    while (((n = h->exact.at[at]) != NONE)
            && ((h->nodes[n].state != state) || (memcmp(zone_of(h, n), z, bytes) != 0))) {
-        at = (at + 1) & (h->exact_size - 1);
+        at = (at + 1) & (h->exact.size - 1);
     }
     if (n == NONE) {
         const uint32_t had = h->colour_room;
@@ -163,7 +139,7 @@ static void succeed(engine *h, uint32_t state, const bound *z)
             return;
         }
         (void)memset(h->colours + had, 0, h->colour_room - had);
-        h->exact[at] = n;
+        h->exact.at[at] = n;
         h->exact_count++;
     }
     if (ROOM(h, h->successors, h->successor_room, (uint64_t)h->successor_count + 1)) {
@@ -172,51 +148,49 @@ static void succeed(engine *h, uint32_t state, const bound *z)
 }
 
 /* The invariant, a piece and, if time may pass, all delays in it; false if nothing is left. */
-static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const int32_t *places,
-                            int32_t *values)
+static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const spot *here)
 {
     if (piece_at(h, k)[ROW_ATOMS] == 0) {
-        return settle(h, z, places, values, delays);
+        return settle(h, z, here, delays);
     }
-    if (!cut_piece(h, z, k, AS_IS, places, values) || !cut_invariant(h, z, places, values)) {
+    if (!cut_piece(h, z, k, AS_IS, here) || !cut_invariant(h, z, here)) {
         return false;
     }
     if (!delays) {
         return true;
     }
     delay(z, h->dim); /* a piece is convex: who starts and ends a wait in it never left it */
-    return cut_invariant(h, z, places, values) && cut_piece(h, z, k, AS_IS, places, values);
+    return cut_invariant(h, z, here) && cut_piece(h, z, k, AS_IS, here);
 }
 
 /* A zone just reached, in each piece with the delays that stay in it. */
-static void enter(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static void enter(engine *h, const bound *z, const spot *here)
 {
-    const bool delays = may_delay(h, places, values);
+    const bool delays = may_delay(h, here);
     const bool counts = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
     bound *in = h->inside;
     int k;
     for (k = 0; (k < h->inside_count) && runs(h) && !h->failed; k++) {
-        uint32_t *at;
-        if (!has_piece(h, k, places, values)) {
+        uint32_t state;
+        if (!has_piece(h, k, here)) {
             continue;
         }
         copy_zone(h, in, z);
-        if (!settle_in_piece(h, in, k, delays, places, values)) {
+        if (!settle_in_piece(h, in, k, delays, here)) {
             continue;
         }
         if (!counts) {
-            find_limits(h, places);
+            find_limits(h, here);
             blur(h, in);
         }
-        pack(h, places, values, 1 + (uint32_t)k, h->packed);
-        at = find_state(h, h->packed);
-        if ((at == NULL) || ((*at == NONE) && !add_state(h, at, delays))) {
+        state = state_of(h, here, 1 + (uint32_t)k);
+        if (state == NONE) {
             return;
         }
         if (counts) {
-            keep_late(h, *at, in, k, delays, places, values);
+            keep_late(h, state, in, k, delays, here);
         } else {
-            succeed(h, *at, in);
+            succeed(h, state, in);
         }
     }
 }

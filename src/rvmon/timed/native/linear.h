@@ -23,17 +23,15 @@ static uint32_t flags_of(const engine *h, uint32_t n)
 /* --- successors ------------------------------------------------------------------------------------- */
 
 /* A zone inside a piece, as a successor of the node at hand. */
-static void succeed_in(engine *h, bound *z, int k, bool delays, uint32_t flags,
-                       const int32_t *places, int32_t *values)
+static void succeed_in(engine *h, bound *z, int k, uint32_t flags, const spot *here)
 {
     const uint32_t before = h->successor_count;
-    uint32_t *at;
-    find_limits(h, places);
+    uint32_t state;
+    find_limits(h, here);
     blur(h, z);
-    pack(h, places, values, 1 + (uint32_t)k, h->packed);
-    at = find_state(h, h->packed);
-    if ((at != NULL) && ((*at != NONE) || add_state(h, at, delays))) {
-        succeed(h, *at, z);
+    state = state_of(h, here, 1 + (uint32_t)k);
+    if (state != NONE) {
+        succeed(h, state, z);
     }
     if (h->successor_count > before) {
         h->successors[before].flags = flags;
@@ -41,9 +39,9 @@ static void succeed_in(engine *h, bound *z, int k, bool delays, uint32_t flags,
 }
 
 /* A zone behind a move, or at the start, in all pieces that the automaton goes on to. */
-static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static void enter_way(engine *h, const bound *z, const spot *here)
 {
-    const bool delays = may_delay(h, places, values);
+    const bool delays = may_delay(h, here);
     const int32_t *way = (h->from_node == NONE) ? NULL : way_of(h, piece_of(h, h->from_node));
     const int32_t count = (way == NULL) ? h->inside_count : way[WAY_ARCS];
     int32_t i;
@@ -51,7 +49,7 @@ static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t 
     for (i = 0; (i < count) && runs(h) && !h->failed; i++) {
         const int k = (way == NULL) ? i : arc_at(h, way[WAY_ARC] + i);
         if (((way == NULL) && (way_of(h, k)[WAY_STARTS] == 0))
-            || !holds(h, piece_at(h, k)[ROW_CONDITION], places, values)) {
+            || !holds(h, piece_at(h, k)[ROW_CONDITION], here)) {
             continue;
         }
         for (tick = 0; tick <= (h->timer != 0); tick++) {
@@ -64,8 +62,8 @@ static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t 
             if (tick) {
                 reset(h->inside, h->dim, h->timer, 0);
             }
-            if (settle_in_piece(h, h->inside, k, delays, places, values)) {
-                succeed_in(h, h->inside, k, delays, MOVES | (tick ? TICKS : 0), places, values);
+            if (settle_in_piece(h, h->inside, k, delays, here)) {
+                succeed_in(h, h->inside, k, MOVES | (tick ? TICKS : 0), here);
             }
         }
     }
@@ -79,7 +77,7 @@ static void expand_way(engine *h, uint32_t n)
     const int32_t *way = way_of(h, k);
     const bool delays = h->delays[h->nodes[n].state] != 0;
     int32_t i;
-    unpack(h, h->nodes[n].state, w->places, w->values);
+    unpack(h, h->nodes[n].state, &w->here);
     copy_zone(h, w->source, zone_of(h, n));
     h->from_node = n;
     w->ordinal = 0;
@@ -87,10 +85,10 @@ static void expand_way(engine *h, uint32_t n)
     (void)each_move(h, w, take);
     for (i = 0; delays && h->clocked && (i < 2 * way[WAY_ARCS]) && runs(h) && !h->failed; i++) {
         const int m = arc_at(h, way[WAY_ARC] + i / 2);
-        if ((m != k) && holds(h, piece_at(h, m)[ROW_CONDITION], w->places, w->values)
-            && cross(h, w->zone, w->source, k, m, i % 2 == 1, w->places, w->values)) {
+        if ((m != k) && holds(h, piece_at(h, m)[ROW_CONDITION], &w->here)
+            && cross(h, w->zone, w->source, k, m, i % 2 == 1, &w->here)) {
             h->link = LINK_CROSSING | (uint32_t)(i % 2);
-            succeed_in(h, w->zone, m, delays, 0, w->places, w->values);
+            succeed_in(h, w->zone, m, 0, &w->here);
         }
     }
 }
@@ -209,10 +207,9 @@ static void open_node(engine *h, successor s)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
-/* Close the last frame, and its component if it is the root of one. */
-static void close_frame(engine *h)
+/* Close the component of a node that is left, if it is the root of one. */
+static void leave_way(engine *h, uint32_t n)
 {
-    const uint32_t n = h->frames[--h->frame_count].node;
     const uint32_t rank = h->rank[n];
     if (h->roots[h->root_count - 1].number == rank) {
         h->root_count--;
@@ -240,12 +237,18 @@ static void merge(engine *h, successor s)
     }
 }
 
+static void meet_way(engine *h, successor s)
+{
+    if ((s.node >= h->rank_room) || (h->rank[s.node] == 0)) {
+        open_node(h, s);
+    } else if (h->rank[s.node] != CLOSED) {
+        merge(h, s);
+    }
+}
+
 /* Search for a run that the automaton accepts, from the zone in `out`. */
 static void look_for_run(engine *h)
 {
-    walk *w = &h->out;
-    uint32_t next = 0;
-    uint32_t end;
     int32_t k;
     for (k = 0; k < h->inside_count; k++) {
         h->clocked = h->clocked || (piece_at(h, k)[ROW_ATOMS] > 0);
@@ -253,37 +256,8 @@ static void look_for_run(engine *h)
     h->phase = 1;
     h->stem = NONE;
     h->from_node = NONE;
-    enter_way(h, w->zone, w->target, w->changed);
-    end = h->successor_count;
-    while (runs(h) && !h->failed) {
-        successor s;
-        if (next == end) {
-            if (h->frame_count == 0) {
-                break;
-            }
-            close_frame(h);
-        } else {
-            s = h->successors[next++];
-            if (h->frame_count == 0) {
-                h->resume = next;
-                h->resume_end = end;
-            } else {
-                h->frames[h->frame_count - 1].next = next;
-            }
-            if ((s.node >= h->rank_room) || (h->rank[s.node] == 0)) {
-                open_node(h, s);
-            } else if (h->rank[s.node] != CLOSED) {
-                merge(h, s);
-            }
-            if (!runs(h)) {
-                break;
-            }
-        }
-        next = (h->frame_count == 0) ? h->resume : h->frames[h->frame_count - 1].next;
-        end = (h->frame_count == 0) ? h->resume_end : h->frames[h->frame_count - 1].end;
-        h->successor_count = end;
-    }
-    h->phase = 0;
+    enter_way(h, h->out.zone, &h->out.there);
+    go_deep(h, meet_way, leave_way);
 }
 
 #endif

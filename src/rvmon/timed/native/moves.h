@@ -8,9 +8,9 @@
 
 #include "variants.h"
 
-static bool able(engine *h, const int32_t *edge, const int32_t *places, int32_t *values)
+static bool able(engine *h, const int32_t *edge, const spot *here)
 {
-    return holds(h, edge[EDGE_GUARD], places, values) && !h->failed;
+    return holds(h, edge[EDGE_GUARD], here) && !h->failed;
 }
 
 static bool could_meet(const int32_t *sender, const int32_t *receiver)
@@ -22,13 +22,13 @@ static bool could_meet(const int32_t *sender, const int32_t *receiver)
 }
 
 static bool same_channel(engine *h, const int32_t *one, const int32_t *other,
-                         const int32_t *places, int32_t *values)
+                         const spot *here)
 {
     if ((one[EDGE_STOP] - one[EDGE_FIRST] == 1) && (other[EDGE_STOP] - other[EDGE_FIRST] == 1)) {
         return true;
     }
-    return (evaluate(h, one[EDGE_CHANNEL], places, values)
-            == evaluate(h, other[EDGE_CHANNEL], places, values))
+    return (evaluate(h, one[EDGE_CHANNEL], here)
+            == evaluate(h, other[EDGE_CHANNEL], here))
            && !h->failed;
 }
 
@@ -37,24 +37,23 @@ static bool is_sender(const int32_t *edge)
     return (edge[EDGE_CHANNEL] != -1) && ((edge[EDGE_FLAGS] & FLAG_SENDS) != 0);
 }
 
-static bool urgent_edge_waits(engine *h, const int32_t *edge, const int32_t *places,
-                              int32_t *values)
+static bool urgent_edge_waits(engine *h, const int32_t *edge, const spot *here)
 {
     int b;
     if (((edge[EDGE_FLAGS] & FLAG_URGENT) == 0) || !is_sender(edge)
-        || !able(h, edge, places, values)) {
+        || !able(h, edge, here)) {
         return false;
     }
     if ((edge[EDGE_FLAGS] & FLAG_BROADCAST) != 0) {
         return true;
     }
     for (b = 0; b < h->automaton_count; b++) {
-        const int32_t *place = place_of(h, places, b);
+        const int32_t *place = place_of(h, here, b);
         int32_t m;
         for (m = 0; m < place[LOC_EDGES]; m++) {
             const int32_t *other = edge_at(h, place[LOC_EDGE] + m);
-            if (could_meet(edge, other) && able(h, other, places, values)
-                && same_channel(h, edge, other, places, values)) {
+            if (could_meet(edge, other) && able(h, other, here)
+                && same_channel(h, edge, other, here)) {
                 return true;
             }
         }
@@ -63,24 +62,36 @@ static bool urgent_edge_waits(engine *h, const int32_t *edge, const int32_t *pla
 }
 
 /* Whether time may pass: nothing is committed or urgent. */
-static bool may_delay(engine *h, const int32_t *places, int32_t *values)
+static bool may_delay(engine *h, const spot *here)
 {
     int a;
     for (a = 0; a < h->automaton_count; a++) {
-        if (place_of(h, places, a)[LOC_KIND] != KIND_NORMAL) {
+        if (place_of(h, here, a)[LOC_KIND] != KIND_NORMAL) {
             return false;
         }
     }
     for (a = 0; a < h->automaton_count; a++) {
-        const int32_t *place = place_of(h, places, a);
+        const int32_t *place = place_of(h, here, a);
         int32_t k;
         for (k = 0; k < place[LOC_EDGES]; k++) {
-            if (urgent_edge_waits(h, edge_at(h, place[LOC_EDGE] + k), places, values)) {
+            if (urgent_edge_waits(h, edge_at(h, place[LOC_EDGE] + k), here)) {
                 return false;
             }
         }
     }
     return true;
+}
+
+/* The number of a discrete state with a mark, new or met before; NONE without memory. */
+static uint32_t state_of(engine *h, const spot *here, uint32_t mark)
+{
+    uint32_t *at;
+    pack(h, here, mark, h->packed);
+    at = find_state(h, h->packed);
+    if ((at == NULL) || ((*at == NONE) && !add_state(h, at, may_delay(h, here)))) {
+        return NONE;
+    }
+    return *at;
 }
 
 /* The edges that may receive, as groups of one automaton each; how many groups. */
@@ -91,13 +102,13 @@ static int receivers(engine *h, walk *w, int32_t sender)
     int n = 0;
     int a;
     for (a = 0; a < h->automaton_count; a++) {
-        const int32_t *place = place_of(h, w->places, a);
+        const int32_t *place = place_of(h, &w->here, a);
         const int start = n;
         int32_t k;
         for (k = 0; k < place[LOC_EDGES]; k++) {
             const int32_t *edge = edge_at(h, place[LOC_EDGE] + k);
-            if (could_meet(s, edge) && able(h, edge, w->places, w->values)
-                && same_channel(h, s, edge, w->places, w->values)) {
+            if (could_meet(s, edge) && able(h, edge, &w->here)
+                && same_channel(h, s, edge, &w->here)) {
                 w->group[n++] = place[LOC_EDGE] + k;
             }
         }
@@ -165,15 +176,15 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
     const int a = edge[EDGE_AUTOMATON];
     int b;
     for (b = 0; b < h->automaton_count; b++) {
-        const int32_t *place = place_of(h, w->places, b);
+        const int32_t *place = place_of(h, &w->here, b);
         int32_t m;
         if ((b == a) || (committed && !w->committed[a] && !w->committed[b])) {
             continue;
         }
         for (m = 0; m < place[LOC_EDGES]; m++) {
             const int32_t *other = edge_at(h, place[LOC_EDGE] + m);
-            if (could_meet(edge, other) && able(h, other, w->places, w->values)
-                && same_channel(h, edge, other, w->places, w->values)) {
+            if (could_meet(edge, other) && able(h, other, &w->here)
+                && same_channel(h, edge, other, &w->here)) {
                 int32_t both[2];
                 both[0] = sender;
                 both[1] = place[LOC_EDGE] + m;
@@ -197,12 +208,12 @@ static bool each_way(engine *h, walk *w, sink take)
     int a;
     drop_denials(&w->skipped);
     for (a = 0; a < h->automaton_count; a++) {
-        w->committed[a] = place_of(h, w->places, a)[LOC_KIND] == KIND_COMMITTED;
+        w->committed[a] = place_of(h, &w->here, a)[LOC_KIND] == KIND_COMMITTED;
         committed = committed || w->committed[a];
     }
     for (pass = 0; pass < 2; pass++) {
         for (a = 0; a < h->automaton_count; a++) {
-            const int32_t *place = place_of(h, w->places, a);
+            const int32_t *place = place_of(h, &w->here, a);
             int32_t k;
             for (k = 0; k < place[LOC_EDGES]; k++) {
                 const int32_t number = place[LOC_EDGE] + k;
@@ -216,7 +227,7 @@ static bool each_way(engine *h, walk *w, sink take)
                     || ((take == note_blocker) && is_watcher(h, a))) {
                     continue;
                 }
-                if (able(h, edge, w->places, w->values)) {
+                if (able(h, edge, &w->here)) {
                     on = alone ? each_variant(h, w, &number, 1, take)
                                : (all ? broadcast(h, w, number, committed, take)
                                       : pairs(h, w, number, committed, take));
@@ -236,13 +247,13 @@ static bool each_move(engine *h, walk *w, sink take)
     drop_denials(&w->blockers);
     w->blocker_count = 0;
     if (plan_count(h->plan, AT_RANKS) > 0) {
-        const int bounds = invariant_of(h, w->places, w->values);
+        const int bounds = invariant_of(h, &w->here);
         int i;
         for (i = 0; i < h->dim; i++) {
-            w->here[i] = UNBOUNDED;
+            w->limits[i] = UNBOUNDED;
         }
         for (i = 0; i < bounds; i++) {
-            w->here[h->tightest[i]] = h->tightest_bound[i];
+            w->limits[h->tightest[i]] = h->tightest_bound[i];
         }
         if ((bounds < 0) || !each_way(h, w, note_blocker)) {
             return false;

@@ -18,10 +18,9 @@ answer search(const int32_t *plan, const double *costs, const caller *from)
 
 void release_answer(answer *found)
 {
-    free(found->path.at);
-    free(found->parts);
-    free(found->spans);
-    found->spans = NULL;
-    found->path.at = NULL;
-    found->parts = NULL;
+    while (found->memory != NULL) {
+        held *next = found->memory->next;
+        free(found->memory);
+        found->memory = next;
+    }
 }

@@ -23,13 +23,9 @@ static federation *clear_table(engine *h, int32_t t)
     uint32_t s;
     if (h->tables[t] == NULL) {
         h->tables[t] = enlarge(h, NULL, &h->table_rooms[t], h->state_count, sizeof **h->tables);
-        if (h->tables[t] == NULL) {
-            return NULL;
-        }
-        (void)memset(h->tables[t], 0, h->table_rooms[t] * sizeof **h->tables);
     }
-    for (s = 0; s < h->state_count; s++) {
-        give_back(h, &h->tables[t][s]);
+    for (s = 0; (h->tables[t] != NULL) && (s < h->state_count); s++) {
+        empty(h, &h->tables[t][s]);
     }
     return h->tables[t];
 }
@@ -54,24 +50,24 @@ static void satisfy(engine *h, int32_t row, uint32_t s, federation *out)
     } else if (r[TREE_KIND] == TREE_NOT) {
         everywhere(h, s, &a);
         satisfy(h, r[TREE_LEFT], s, &b);
-        subtract_all(h, &a, &b);
+        (void)subtract_all(h, &a, &b);
         join_all(h, out, &a);
     } else if (r[TREE_KIND] == TREE_PLAIN) {
         const int32_t *piece = plan_rows(h->plan, AT_PIECES) + (ptrdiff_t)ROW_SIZE * r[TREE_LEFT];
         int32_t k;
-        unpack(h, s, w->places, w->values);
+        unpack(h, s, &w->here);
         for (k = 0; (k < r[TREE_RIGHT]) && runs(h) && !h->failed; k++, piece += ROW_SIZE) {
             universe(h->copy, h->dim);
-            if (cut_invariant(h, h->copy, w->places, w->values)
-                && cut_row(h, h->copy, piece, w->places, w->values)) {
+            if (cut_invariant(h, h->copy, &w->here)
+                && cut_row(h, h->copy, piece, &w->here)) {
                 (void)join(h, out, h->copy);
             }
         }
     } else {
         join_all(h, out, &h->tables[row][s]);
     }
-    give_back(h, &a);
-    give_back(h, &b);
+    empty(h, &a);
+    empty(h, &b);
 }
 
 /* Note from where a delay leads into a zone, as what reaches is to be gone back from. */
@@ -88,7 +84,7 @@ static void note_reaching(engine *h, uint32_t s, const bound *z, const federatio
             visit(h);
         }
     }
-    give_back(h, &more);
+    empty(h, &more);
 }
 
 /* From where some run has `left` or `right` all the way to where it has `right`, within the bound. */
@@ -109,8 +105,8 @@ static void solve_until(engine *h, const int32_t *r, federation *found, federati
             left.count = 0;
             satisfy(h, r[TREE_LEFT], s, &left);
             everywhere(h, s, &bad[s]);
-            subtract_all(h, &bad[s], &good);
-            subtract_all(h, &bad[s], &left);
+            (void)subtract_all(h, &bad[s], &good);
+            (void)subtract_all(h, &bad[s], &left);
         }
         for (k = 0; (k < good.count) && runs(h); k++) {
             copy_zone(h, z, nth(h, &good, k));
@@ -120,8 +116,8 @@ static void solve_until(engine *h, const int32_t *r, federation *found, federati
             }
         }
     }
-    give_back(h, &good);
-    give_back(h, &left);
+    empty(h, &good);
+    empty(h, &left);
     for (k = 0; (k < h->whose_count) && runs(h); k++) {
         const uint32_t to = h->whose[k];
         for (m = (to < h->into_room) ? h->into[to] : NONE; (m != NONE) && runs(h);
@@ -158,7 +154,7 @@ static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
             }
         }
     }
-    give_back(h, &there);
+    empty(h, &there);
 }
 
 /* From where a run can stay without a further move: nothing stops time, or it stops by itself. */
@@ -169,12 +165,12 @@ static void add_ends(engine *h, uint32_t s, const federation *outside, federatio
     federation alive = {0, 0, NULL};
     uint32_t k;
     bool open;
-    unpack(h, s, w->places, w->values);
-    open = h->delays[s] && (invariant_of(h, w->places, w->values) == 0);
+    unpack(h, s, &w->here);
+    open = h->delays[s] && (invariant_of(h, &w->here) == 0);
     everywhere(h, s, &left);
     if (!open) {
         solve_next(h, -1, s, &alive);
-        subtract_all(h, &left, &alive);
+        (void)subtract_all(h, &left, &alive);
     }
     for (k = 0; (k < outside->count) && (left.count > 0) && runs(h); k++) {
         copy_zone(h, h->between, nth(h, outside, k));
@@ -184,8 +180,8 @@ static void add_ends(engine *h, uint32_t s, const federation *outside, federatio
         (void)subtract(h, &left, h->between);
     }
     join_all(h, out, &left);
-    give_back(h, &left);
-    give_back(h, &alive);
+    empty(h, &left);
+    empty(h, &alive);
 }
 
 /* What of a state's valuations still stays: ends there, or goes on to where it stays; whether less. */
@@ -210,9 +206,9 @@ static bool shrink(engine *h, uint32_t s, const federation *outside, const feder
         }
     }
     swap(&now, stays + s);
-    subtract_all(h, &now, stays + s);
+    (void)subtract_all(h, &now, stays + s);
     less = now.count > 0;
-    give_back(h, &now);
+    empty(h, &now);
     return less;
 }
 
@@ -232,7 +228,7 @@ static void solve_stay(engine *h, const int32_t *r, federation *stays, federatio
                 (void)join(h, &stays[s], h->between);
             }
         }
-        subtract_all(h, &outside[s], &stays[s]);
+        (void)subtract_all(h, &outside[s], &stays[s]);
         add_ends(h, s, &outside[s], &ends[s]);
     }
     if (!ROOM(h, h->whose, h->whose_room, h->state_count)) {
@@ -303,12 +299,12 @@ static void solve(engine *h)
     }
 }
 
-static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static bool in_nested(engine *h, const bound *z, const spot *here)
 {
     federation sought = {0, 0, NULL};
     uint32_t *at;
     uint32_t i;
-    pack(h, places, values, 0, h->packed);
+    pack(h, here, 0, h->packed);
     at = find_state(h, h->packed);
     if ((at == NULL) || (*at == NONE)) {
         return false;
@@ -320,7 +316,7 @@ static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t 
             (void)push_zone(h, &h->parts, h->copy);
         }
     }
-    give_back(h, &sought);
+    empty(h, &sought);
     return h->parts.count > 0;
 }
 

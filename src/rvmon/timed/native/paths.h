@@ -24,8 +24,8 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
         if (!runs(h)) {
             break;
         }
-        if (h->been[m / 2] || !has_piece(h, m / 2, w->places, w->values)
-            || !cross(h, to, z, k, m / 2, m % 2 == 1, w->places, w->values)) {
+        if (h->been[m / 2] || !has_piece(h, m / 2, &w->here)
+            || !cross(h, to, z, k, m / 2, m % 2 == 1, &w->here)) {
             continue;
         }
         if (!put(h, &h->crossings, m / 2) || !put(h, &h->crossings, m % 2)) {
@@ -80,15 +80,11 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     const int piece = piece_of(h, to);
     const int32_t number = (int32_t)(link & ~LINK_KIND);
     int steps = 1;
-    if ((link & LINK_KIND) == LINK_MARK) {
-        tell(h, STEP_MARK, piece, number, 0);
+    if ((link & LINK_KIND) != 0) {
+        tell(h, ((link & LINK_KIND) == LINK_MARK) ? STEP_MARK : STEP_CROSSING, piece, number, 0);
         return steps;
     }
-    if ((link & LINK_KIND) == LINK_CROSSING) {
-        tell(h, STEP_CROSSING, piece, number, 0);
-        return steps;
-    }
-    unpack(h, h->nodes[from].state, w->places, w->values);
+    unpack(h, h->nodes[from].state, &w->here);
     w->ordinal = 0;
     h->wanted = link;
     h->step_edge_count = 0;
@@ -119,8 +115,7 @@ static int tell_path(engine *h, uint32_t n)
         const uint32_t to = (uint32_t)way.at[k - 2];
         steps += tell_link(h, (uint32_t)way.at[k - 1], to, h->nodes[to].link);
     }
-    free(way.at);
-    h->bytes -= (uint64_t)way.room * sizeof *way.at;
+    give_back(h, way.at, way.room, sizeof *way.at);
     return steps;
 }
 

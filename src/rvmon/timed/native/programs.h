@@ -20,26 +20,41 @@ static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x
     return true;
 }
 
+/* Which of the resets is that of a clock; how many there are if none is. */
+static int reset_of(const walk *w, int32_t clock)
+{
+    int j = 0;
+    while ((j < w->reset_count) && (w->resets[2 * j] != clock)) {
+        j++;
+    }
+    return j;
+}
+
 /* Note that a clock is set. */
 static bool set_clock(engine *h, int32_t clock, int64_t x)
 {
     walk *w = h->sets;
-    int j = 0;
+    int j;
     if ((w == NULL) || !is_time(h, x)) {
         return false;
     }
-    while ((j < w->reset_count) && (w->resets[2 * j] != clock)) {
-        j++;
-    }
+    j = reset_of(w, clock);
     w->reset_count += (j == w->reset_count);
     w->resets[2 * j] = clock;
     w->resets[2 * j + 1] = (int32_t)x;
     return true;
 }
 
-static int64_t compute(engine *h, int32_t at, const int32_t *places, int32_t *values)
+static void copy_spot(const engine *h, const spot *to, const spot *from)
+{
+    (void)memcpy(to->places, from->places, (size_t)h->automaton_count * sizeof *to->places);
+    (void)memcpy(to->values, from->values, (size_t)h->variable_count * sizeof *to->values);
+}
+
+static int64_t compute(engine *h, int32_t at, const spot *here)
 {
     const int32_t *code = h->code;
+    int32_t *values = here->values;
     int64_t stack[STACK + 1];
     int64_t *s = stack; /* the first is never used */
     for (;;) {
@@ -73,7 +88,7 @@ static int64_t compute(engine *h, int32_t at, const int32_t *places, int32_t *va
             at += 2;
             break;
         case OP_PLACE:
-            *++s = places[code[at]] == code[at + 1];
+            *++s = here->places[code[at]] == code[at + 1];
             at += 2;
             break;
         case OP_NOT:
@@ -120,7 +135,7 @@ static int64_t compute(engine *h, int32_t at, const int32_t *places, int32_t *va
             good = set_clock(h, code[at++], *s--) || !runs(h);
             break;
         case OP_CALL:
-            *++s = compute(h, code[at++], places, values);
+            *++s = compute(h, code[at++], here);
             good = !h->failed;
             break;
         case OP_DROP:
@@ -144,15 +159,15 @@ static int64_t compute(engine *h, int32_t at, const int32_t *places, int32_t *va
     }
 }
 
-static int64_t evaluate(engine *h, int32_t at, const int32_t *places, int32_t *values)
+static int64_t evaluate(engine *h, int32_t at, const spot *here)
 {
     h->rounds = 0;
-    return compute(h, at, places, values);
+    return compute(h, at, here);
 }
 
-static bool holds(engine *h, int32_t program, const int32_t *places, int32_t *values)
+static bool holds(engine *h, int32_t program, const spot *here)
 {
-    return (program < 0) || (evaluate(h, program, places, values) != 0);
+    return (program < 0) || (evaluate(h, program, here) != 0);
 }
 
 /* A number of units of time; if it is none the search fails, if it is large another has to do it. */
@@ -169,37 +184,29 @@ static bool is_time(engine *h, int64_t number)
     return true;
 }
 
-/* The entry and the bound of an atom; false if its number is no time. */
-static bool atom_at(engine *h, const int32_t *atom, const int32_t *places, int32_t *values,
-                    int *x, int *y, bound *b)
+/* An atom by its number; false if what it compares with is no time. */
+static bool atom_at(engine *h, int32_t k, const spot *here, cut *to)
 {
+    const int32_t *atom = h->atoms + (ptrdiff_t)ATOM_SIZE * k;
     const int64_t number = (atom[ATOM_CODE] < 0) ? atom[ATOM_NUMBER]
-                                                 : evaluate(h, atom[ATOM_CODE], places, values);
+                                                 : evaluate(h, atom[ATOM_CODE], here);
     if (h->failed || !is_time(h, number)) {
         return false;
     }
     if (atom[ATOM_OP] < 2) {
-        *x = 0;
-        *y = atom[ATOM_CLOCK];
-        *b = 2 * (bound)number + (atom[ATOM_OP] == 1);
+        *to = (cut){0, atom[ATOM_CLOCK], 2 * (bound)number + (atom[ATOM_OP] == 1)};
     } else {
-        *x = atom[ATOM_CLOCK];
-        *y = 0;
-        *b = -2 * (bound)number + (atom[ATOM_OP] == 2);
+        *to = (cut){atom[ATOM_CLOCK], 0, -2 * (bound)number + (atom[ATOM_OP] == 2)};
     }
     return true;
 }
 
-static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const int32_t *places,
-                      int32_t *values)
+static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const spot *here)
 {
-    const int32_t *atom = h->atoms + (ptrdiff_t)first * ATOM_SIZE;
     int32_t k;
-    for (k = 0; k < count; k++, atom += ATOM_SIZE) {
-        int x;
-        int y;
-        bound b;
-        if (!atom_at(h, atom, places, values, &x, &y, &b) || !constrain(z, h->dim, x, y, b)) {
+    for (k = first; k < first + count; k++) {
+        cut one;
+        if (!atom_at(h, k, here, &one) || !cut_by(h, z, one)) {
             return false;
         }
     }
@@ -207,16 +214,15 @@ static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const i
 }
 
 /* Cut a zone by an alternative of a formula; false if they do not meet in this discrete state. */
-static bool cut_row(engine *h, bound *z, const int32_t *row, const int32_t *places,
-                    int32_t *values)
+static bool cut_row(engine *h, bound *z, const int32_t *row, const spot *here)
 {
-    return holds(h, row[ROW_CONDITION], places, values) && !h->failed
-           && cut_atoms(h, z, row[ROW_ATOM], row[ROW_ATOMS], places, values);
+    return holds(h, row[ROW_CONDITION], here) && !h->failed
+           && cut_atoms(h, z, row[ROW_ATOM], row[ROW_ATOMS], here);
 }
 
-static const int32_t *place_of(const engine *h, const int32_t *places, int a)
+static const int32_t *place_of(const engine *h, const spot *here, int a)
 {
-    return h->locations + (ptrdiff_t)LOC_SIZE * (h->automata[3 * a] + places[a]);
+    return h->locations + (ptrdiff_t)LOC_SIZE * (h->automata[3 * a] + here->places[a]);
 }
 
 static const int32_t *edge_at(const engine *h, int32_t e)
@@ -224,11 +230,11 @@ static const int32_t *edge_at(const engine *h, int32_t e)
     return h->edges + (ptrdiff_t)e * EDGE_SIZE;
 }
 
-static bool invariant_data_holds(engine *h, const int32_t *places, int32_t *values)
+static bool invariant_data_holds(engine *h, const spot *here)
 {
     int a;
     for (a = 0; a < h->automaton_count; a++) {
-        if (!holds(h, place_of(h, places, a)[LOC_INVARIANT], places, values)) {
+        if (!holds(h, place_of(h, here, a)[LOC_INVARIANT], here)) {
             return false;
         }
     }
@@ -236,39 +242,35 @@ static bool invariant_data_holds(engine *h, const int32_t *places, int32_t *valu
 }
 
 /* The tightest upper bound of each clock that an invariant bounds; how many, -1 if it failed. */
-static int invariant_of(engine *h, const int32_t *places, int32_t *values)
+static int invariant_of(engine *h, const spot *here)
 {
     int n = 0;
     int a;
     for (a = 0; a < h->automaton_count; a++) {
-        const int32_t *place = place_of(h, places, a);
+        const int32_t *place = place_of(h, here, a);
         int32_t k;
         for (k = 0; k < place[LOC_ATOMS]; k++) {
-            int x;
-            int y;
+            cut one;
             int i = 0;
-            bound b;
-            if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (place[LOC_ATOM] + k), places, values,
-                         &x, &y, &b)) {
+            if (!atom_at(h, place[LOC_ATOM] + k, here, &one)) {
                 return -1;
             }
-            while ((i < n) && (h->tightest[i] != y)) {
+            while ((i < n) && (h->tightest[i] != one.y)) {
                 i++;
             }
-            if (i == n) {
-                h->tightest[n++] = y;
-                h->tightest_bound[i] = b;
-            } else if (b < h->tightest_bound[i]) {
-                h->tightest_bound[i] = b;
+            if ((i == n) || (one.b < h->tightest_bound[i])) {
+                h->tightest[i] = one.y;
+                h->tightest_bound[i] = one.b;
+                n += (i == n);
             }
         }
     }
     return n;
 }
 
-static bool cut_invariant(engine *h, bound *z, const int32_t *places, int32_t *values)
+static bool cut_invariant(engine *h, bound *z, const spot *here)
 {
-    const int n = invariant_of(h, places, values);
+    const int n = invariant_of(h, here);
     int i;
     for (i = 0; i < n; i++) {
         if (!constrain(z, h->dim, 0, h->tightest[i], h->tightest_bound[i])) {
@@ -279,18 +281,18 @@ static bool cut_invariant(engine *h, bound *z, const int32_t *places, int32_t *v
 }
 
 /* The invariant and, if time may pass, all delays; false if nothing is left. */
-static bool settle(engine *h, bound *z, const int32_t *places, int32_t *values, bool delays)
+static bool settle(engine *h, bound *z, const spot *here, bool delays)
 {
     if (delays) {
-        const int n = invariant_of(h, places, values);
+        const int n = invariant_of(h, here);
         return (n >= 0)
                && delay_within(z, h->dim, h->top, h->tightest, h->tightest_bound, n);
     }
-    return cut_invariant(h, z, places, values);
+    return cut_invariant(h, z, here);
 }
 
 /* The limits that matter in some locations, and the clocks that have any. */
-static void find_limits(engine *h, const int32_t *places)
+static void find_limits(engine *h, const spot *here)
 {
     int a;
     int c;
@@ -301,7 +303,7 @@ static void find_limits(engine *h, const int32_t *places)
     h->lower[0] = 0;
     h->upper[0] = 0;
     for (a = -1; a < h->automaton_count; a++) {
-        const int32_t *place = (a < 0) ? NULL : place_of(h, places, a);
+        const int32_t *place = (a < 0) ? NULL : place_of(h, here, a);
         const int32_t *row =
             (a < 0) ? plan_rows(h->plan, AT_EXTRA)
                     : plan_rows(h->plan, AT_LIMITS) + (ptrdiff_t)LIMIT_SIZE * place[LOC_LIMIT];

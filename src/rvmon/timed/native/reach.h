@@ -57,13 +57,13 @@ static bool stands_for(const engine *h, const bound *large, const bound *z)
 }
 
 /* Keep z in a state unless another stands for it; its node, that given or a new one, or NONE. */
-static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, const int32_t *places)
+static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, const spot *here)
 {
     const bool best = h->policy != POLICY_SHORTEST;
     int tests = 0;
     uint32_t *at = h->heads + state;
     if (*at != NONE) {
-        find_limits(h, places);
+        find_limits(h, here);
         tests = make_test(h, z);
     }
     while (*at != NONE) {
@@ -109,11 +109,12 @@ static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, cons
 static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
 {
     bound *z = w->zone;
+    bool fit;
     int bounds;
     int i;
     labour(h);
     universe(z, h->dim);
-    if (!cut_guards(h, w, z, edges, n) || !cut_invariant(h, z, w->places, w->values)) {
+    if (!cut_guards(h, w, z, edges, n) || !cut_invariant(h, z, &w->here)) {
         return runs(h) && !h->failed;
     }
     if (!apply(h, w, edges, n)) { /* what can be taken, and fails then, is no deadlock */
@@ -122,52 +123,35 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
         }
         h->failed = false;
         w->reset_count = 0;
-        (void)memcpy(w->target, w->places, (size_t)h->automaton_count * sizeof *w->target);
-        (void)memcpy(w->changed, w->values, (size_t)h->variable_count * sizeof *w->changed);
+        copy_spot(h, &w->there, &w->here);
     }
-    if (!invariant_data_holds(h, w->target, w->changed)) {
+    if (!invariant_data_holds(h, &w->there)) {
         return !h->failed;
     }
-    bounds = invariant_of(h, w->target, w->changed);
-    for (i = 0; i < bounds; i++) {
-        const int32_t clock = h->tightest[i];
-        int j = 0;
-        while ((j < w->reset_count) && (w->resets[2 * j] != clock)) {
-            j++;
-        }
-        if (j < w->reset_count) {
-            if (2 * (bound)w->resets[2 * j + 1] + 1 > h->tightest_bound[i]) {
-                return true;
-            }
-        } else if (!constrain(z, h->dim, 0, clock, h->tightest_bound[i])) {
-            return true;
-        }
+    bounds = invariant_behind(h, w);
+    fit = bounds >= 0;
+    for (i = 0; fit && (i < bounds); i++) {
+        fit = constrain(z, h->dim, 0, h->tightest[i], h->tightest_bound[i]);
+    }
+    if (!fit) {
+        return runs(h) && !h->failed;
     }
     if (w->delays) {
         before(z, h->dim);
     }
-    return (bounds >= 0) && fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
+    return fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
 }
 
 /* The part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
-static bool find_dead(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static bool find_dead(engine *h, const bound *z, const spot *here)
 {
     walk *w = &h->look;
-    uint32_t k;
-    (void)memcpy(w->places, places, (size_t)h->automaton_count * sizeof *places);
-    (void)memcpy(w->values, values, (size_t)h->variable_count * sizeof *values);
-    w->delays = may_delay(h, places, values);
+    copy_spot(h, &w->here, here);
+    w->delays = may_delay(h, here);
     h->alive.count = 0;
     h->dead.count = 0;
-    if (!push_zone(h, &h->dead, z) || !each_move(h, w, note_alive)) {
-        return false;
-    }
-    for (k = 0; (k < h->alive.count) && (h->dead.count > 0); k++) {
-        if (!subtract(h, &h->dead, nth(h, &h->alive, k))) {
-            return false;
-        }
-    }
-    return true;
+    return push_zone(h, &h->dead, z) && each_move(h, w, note_alive)
+           && subtract_all(h, &h->dead, &h->alive);
 }
 
 /* --- what is sought ------------------------------------------------------------------------------ */
@@ -178,18 +162,30 @@ static double price_of(const engine *h, const bound *z)
     return (double)(-(low >> 1)) + (((low & 1) != 0) ? 0.0 : 0x1p-20);
 }
 
+/* The least price of what is sought, whose part comes first. */
+static double cheapest(engine *h)
+{
+    bound *first = h->parts.zones;
+    uint32_t k;
+    for (k = 1; k < h->parts.count; k++) {
+        if (price_of(h, nth(h, &h->parts, k)) < price_of(h, first)) {
+            copy_zone(h, first, nth(h, &h->parts, k));
+        }
+    }
+    return price_of(h, first);
+}
+
 /* The parts of a zone in some alternatives, as `parts`; true if there are any, even all of it. */
-static bool in_rows(engine *h, const bound *z, int section, const int32_t *places,
-                    int32_t *values)
+static bool in_rows(engine *h, const bound *z, int section, const spot *here)
 {
     const int32_t *row = plan_rows(h->plan, section);
     int32_t k;
     for (k = 0; k < plan_count(h->plan, section); k++, row += ROW_SIZE) {
-        if (!holds(h, row[ROW_CONDITION], places, values) || h->failed) {
+        if (!holds(h, row[ROW_CONDITION], here) || h->failed) {
             continue;
         }
         copy_zone(h, h->copy, z);
-        if (!cut_atoms(h, h->copy, row[ROW_ATOM], row[ROW_ATOMS], places, values)) {
+        if (!cut_atoms(h, h->copy, row[ROW_ATOM], row[ROW_ATOMS], here)) {
             continue;
         }
         if (row[ROW_ATOMS] == 0) {
@@ -207,7 +203,7 @@ static bool in_rows(engine *h, const bound *z, int section, const int32_t *place
 }
 
 /* The same of the dead parts, else of those that are not. */
-static bool in_dead(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static bool in_dead(engine *h, const bound *z, const spot *here)
 {
     const int sections[2] = {AT_INSIDE, AT_GOAL};
     bool some[2] = {false, false};
@@ -217,33 +213,26 @@ static bool in_dead(engine *h, const bound *z, const int32_t *places, int32_t *v
         const int32_t *row = plan_rows(h->plan, sections[side]);
         int32_t i;
         for (i = 0; i < plan_count(h->plan, sections[side]); i++, row += ROW_SIZE) {
-            some[side] = some[side] || holds(h, row[ROW_CONDITION], places, values);
+            some[side] = some[side] || holds(h, row[ROW_CONDITION], here);
         }
     }
-    if (h->failed || (!some[0] && !some[1]) || !find_dead(h, z, places, values)) {
+    if (h->failed || (!some[0] && !some[1]) || !find_dead(h, z, here)) {
         return false;
     }
     for (k = 0; some[0] && (k < h->dead.count); k++) {
-        if (in_rows(h, nth(h, &h->dead, k), AT_INSIDE, places, values)) {
+        if (in_rows(h, nth(h, &h->dead, k), AT_INSIDE, here)) {
             h->ending = END_DEAD;
             return true;
         }
     }
     if (some[1]) {
-        federation swapped = h->dead;
-        h->dead = h->alive;
-        h->alive = swapped; /* now what is dead */
+        swap(&h->dead, &h->alive); /* now the second is what is dead */
         h->dead.count = 0;
-        if (!push_zone(h, &h->dead, z)) {
+        if (!push_zone(h, &h->dead, z) || !subtract_all(h, &h->dead, &h->alive)) {
             return false;
         }
-        for (k = 0; k < h->alive.count; k++) {
-            if (!subtract(h, &h->dead, nth(h, &h->alive, k))) {
-                return false;
-            }
-        }
         for (k = 0; k < h->dead.count; k++) {
-            if (in_rows(h, nth(h, &h->dead, k), AT_GOAL, places, values)) {
+            if (in_rows(h, nth(h, &h->dead, k), AT_GOAL, here)) {
                 return true;
             }
         }
@@ -251,19 +240,19 @@ static bool in_dead(engine *h, const bound *z, const int32_t *places, int32_t *v
     return false;
 }
 
-static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values);
+static bool in_nested(engine *h, const bound *z, const spot *here);
 
 /* Whether some of a zone is sought; which, as `parts`. */
-static bool is_goal(engine *h, const bound *z, const int32_t *places, int32_t *values)
+static bool is_goal(engine *h, const bound *z, const spot *here)
 {
     h->parts.count = 0;
     if (h->kind == SEEK_DEADLOCK) {
-        return in_dead(h, z, places, values);
+        return in_dead(h, z, here);
     }
     if (h->kind == SEEK_NESTED) {
-        return in_nested(h, z, places, values);
+        return in_nested(h, z, here);
     }
-    return in_rows(h, z, AT_GOAL, places, values);
+    return in_rows(h, z, AT_GOAL, here);
 }
 
 /* --- by increasing cost -------------------------------------------------------------------------- */

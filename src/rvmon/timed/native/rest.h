@@ -85,28 +85,6 @@ static bool rests(engine *h, int k)
     return (h->allowed[k] != 0) && (h->rest_good[k] != 0);
 }
 
-/* The valuations from which an atom, or for an upper bound its opposite, holds when time stops. */
-static bool reaches_atom(engine *h, bound *to, const int32_t *atom, bool delays, bool *upper)
-{
-    walk *w = &h->out;
-    int x;
-    int y;
-    bound b;
-    if (!atom_at(h, atom, w->places, w->values, &x, &y, &b)) {
-        return false;
-    }
-    *upper = x == 0;
-    universe(to, h->dim);
-    if (!cut_invariant(h, to, w->places, w->values)
-        || !(*upper ? constrain(to, h->dim, y, 0, negated(b)) : constrain(to, h->dim, x, y, b))) {
-        return false;
-    }
-    if (delays) {
-        before(to, h->dim);
-    }
-    return true;
-}
-
 /* Whether a piece holds when time stops, for a zone that no atom divides. */
 static bool holds_last(engine *h, const bound *z, int k, bool delays)
 {
@@ -114,8 +92,7 @@ static bool holds_last(engine *h, const bound *z, int k, bool delays)
     int32_t i;
     for (i = 0; i < piece[ROW_ATOMS]; i++) {
         bool upper = false;
-        bool met = reaches_atom(h, h->copy, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i),
-                                delays, &upper)
+        bool met = reaches_atom(h, h->copy, piece[ROW_ATOM] + i, delays, &upper)
                    && cut_zone(h, h->copy, z);
         if (h->failed || (met == upper)) {
             return false;
@@ -135,15 +112,14 @@ static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
     int32_t a;
     int m;
     bool found = false;
-    if (!find_dead(h, z, w->places, w->values)) {
+    if (!find_dead(h, z, &w->here)) {
         return false;
     }
     for (m = 0; m < h->inside_count; m++) {
         const int32_t *piece = piece_at(h, m);
         for (a = 0; (h->allowed[m] != 0) && (a < piece[ROW_ATOMS]) && runs(h); a++) {
             bool upper;
-            if (!reaches_atom(h, reach, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + a),
-                              delays, &upper)) {
+            if (!reaches_atom(h, reach, piece[ROW_ATOM] + a, delays, &upper)) {
                 continue;
             }
             parts.count = 0;
@@ -170,7 +146,7 @@ static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
         }
     }
     (void)memset(h->been, 0, (size_t)h->inside_count);
-    give_back(h, &parts);
+    empty(h, &parts);
     return found;
 }
 
@@ -183,12 +159,12 @@ static bool ends_here(engine *h, uint32_t n)
     walk *w = &h->out;
     bool open;
     int m;
-    unpack(h, h->nodes[n].state, w->places, w->values);
-    open = delays && (invariant_of(h, w->places, w->values) == 0);
+    unpack(h, h->nodes[n].state, &w->here);
+    open = delays && (invariant_of(h, &w->here) == 0);
     for (m = 0; m < h->inside_count; m++) {
         const int32_t *piece = piece_at(h, m);
         int32_t i;
-        h->allowed[m] = holds(h, piece[ROW_CONDITION], w->places, w->values);
+        h->allowed[m] = holds(h, piece[ROW_CONDITION], &w->here);
         for (i = 0; open && (i < piece[ROW_ATOMS]); i++) {
             h->allowed[m] &= h->atoms[ATOM_SIZE * (piece[ROW_ATOM] + i) + ATOM_OP] > 1;
         }

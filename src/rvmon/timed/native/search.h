@@ -18,20 +18,20 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
 }
 
 /* Note between which values the last clock of the network is, by place of the watcher. */
-static void note_span(engine *h, const bound *z, const int32_t *places)
+static void note_span(engine *h, const bound *z, const spot *here)
 {
     const int32_t clock = h->plan[HEAD_CLOCKS];
-    int64_t *span = h->spans + (ptrdiff_t)2 * places[h->automaton_count - 1];
+    int64_t *span = h->spans + (ptrdiff_t)2 * here->places[h->automaton_count - 1];
     const bound low = z[clock * h->dim];
     const int64_t high = (z[clock] < UNBOUNDED) ? (int64_t)z[clock] : INT64_MAX;
     span[0] = (low > span[0]) ? low : span[0];
     span[1] = (high > span[1]) ? high : span[1];
 }
 
-static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values);
+static void enter_way(engine *h, const bound *z, const spot *here);
 
 /* A zone just reached in a state whose data the invariants allow. */
-static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
+static void arrive(engine *h, bound *z, const spot *here,
                    const int32_t *edges, int count)
 {
     uint32_t *at;
@@ -40,26 +40,26 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
     bool fresh;
     bool delays;
     if (h->kind == SEEK_RUN) {
-        enter_way(h, z, places, values);
+        enter_way(h, z, here);
         return;
     }
     if (h->phase != 0) {
-        enter(h, z, places, values);
+        enter(h, z, here);
         return;
     }
-    pack(h, places, values, 0, h->packed);
+    pack(h, here, 0, h->packed);
     at = find_state(h, h->packed);
     if (at == NULL) {
         return;
     }
     fresh = *at == NONE;
-    delays = fresh ? may_delay(h, places, values) : (h->delays[*at] != 0);
-    if (h->failed || !settle(h, z, places, values, delays) || (fresh && !add_state(h, at, delays))) {
+    delays = fresh ? may_delay(h, here) : (h->delays[*at] != 0);
+    if (h->failed || !settle(h, z, here, delays) || (fresh && !add_state(h, at, delays))) {
         return;
     }
     state = *at;
     if (h->spans != NULL) {
-        note_span(h, z, places);
+        note_span(h, z, here);
     }
     if (h->policy != POLICY_SHORTEST) {
         n = new_node(h, state, z);
@@ -68,7 +68,7 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
         }
         return;
     }
-    n = keep(h, state, NONE, z, places);
+    n = keep(h, state, NONE, z, here);
     if (n == NONE) {
         return;
     }
@@ -77,7 +77,7 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
         return;
     }
     if ((h->kind == SEEK_GOAL) || (h->kind == SEEK_DEADLOCK) || (h->kind == SEEK_NESTED)) {
-        if (is_goal(h, z, places, values) && runs(h)) {
+        if (is_goal(h, z, here) && runs(h)) {
             h->found = n;
             h->state = SEARCH_FOUND;
             return;
@@ -90,25 +90,30 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
     (void)wait_for(h, n);
 }
 
+static void note_step(engine *h, const int32_t *edges, int n)
+{
+    (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
+    h->step_edge_count = n;
+}
+
 /* Take a move of the walk `out`. */
 static bool take(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t ordinal = w->ordinal++;
-    int j;
     labour(h);
     copy_zone(h, w->zone, w->source);
     if (cut_guards(h, w, w->zone, edges, n)) {
         if (!apply(h, w, edges, n)) {
-            (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
-            h->step_edge_count = n;
+            note_step(h, edges, n);
             return false;
         }
-        if (invariant_data_holds(h, w->target, w->changed)) {
+        if (invariant_data_holds(h, &w->there)) {
+            int j;
             for (j = 0; j < w->reset_count; j++) {
                 reset(w->zone, h->dim, w->resets[2 * j], w->resets[2 * j + 1]);
             }
             h->link = ordinal;
-            arrive(h, w->zone, w->target, w->changed, edges, n);
+            arrive(h, w->zone, &w->there, edges, n);
         }
     }
     return runs(h) && !h->failed;
@@ -121,15 +126,12 @@ static bool match(engine *h, walk *w, const int32_t *edges, int n)
     if (w->ordinal++ != h->wanted) {
         return true;
     }
-    (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
-    h->step_edge_count = n;
+    note_step(h, edges, n);
     for (k = 0; k < w->against_count; k++) {
-        uint32_t count;
-        const denied one = denied_by(w, k, &count)[w->skip[k]];
-        const bound b = negated(one.b);
-        (void)(put(h, &h->step_bounds, one.y) && put(h, &h->step_bounds, one.x)
-               && put(h, &h->step_bounds, (int32_t)((b - (b & 1)) / 2))
-               && put(h, &h->step_bounds, (int32_t)(b & 1)));
+        const cut one = failing(w, k);
+        (void)(put(h, &h->step_bounds, one.x) && put(h, &h->step_bounds, one.y)
+               && put(h, &h->step_bounds, (int32_t)((one.b - (one.b & 1)) / 2))
+               && put(h, &h->step_bounds, (int32_t)(one.b & 1)));
     }
     return false;
 }
@@ -138,7 +140,7 @@ static bool match(engine *h, walk *w, const int32_t *edges, int n)
 static void expand(engine *h, uint32_t n)
 {
     walk *w = &h->out;
-    unpack(h, h->nodes[n].state, w->places, w->values);
+    unpack(h, h->nodes[n].state, &w->here);
     copy_zone(h, w->source, zone_of(h, n));
     w->ordinal = 0;
     h->from_node = n;
@@ -151,6 +153,7 @@ static void expand_late(engine *h, uint32_t n)
     walk *w = &h->out;
     const int k = piece_of(h, n);
     const bool delays = h->delays[h->nodes[n].state] != 0;
+    uint32_t state;
     int m;
     h->phase = (k >= 0);
     if (k < 0) {
@@ -158,33 +161,31 @@ static void expand_late(engine *h, uint32_t n)
         for (m = 0; (m < h->goal_count) && runs(h) && !h->failed; m++) {
             copy_zone(h, w->zone, w->source);
             if (cut_row(h, w->zone, plan_rows(h->plan, AT_GOAL) + (ptrdiff_t)m * ROW_SIZE,
-                        w->places, w->values)) {
+                        &w->here)) {
                 reset(w->zone, h->dim, h->timer, 0);
                 h->phase = 1;
                 h->link = LINK_MARK | (uint32_t)m;
-                enter(h, w->zone, w->places, w->values);
+                enter(h, w->zone, &w->here);
                 h->phase = 0;
             }
         }
         return;
     }
-    unpack(h, h->nodes[n].state, w->places, w->values);
+    unpack(h, h->nodes[n].state, &w->here);
     copy_zone(h, w->source, zone_of(h, n));
     h->from_node = n;
     for (m = 0; delays && (piece_at(h, k)[ROW_ATOMS] > 0) && (m < 2 * h->inside_count); m++) {
-        uint32_t *at;
         if (!runs(h) || h->failed) {
             break;
         }
-        if ((m / 2 == k) || !has_piece(h, m / 2, w->places, w->values)
-            || !cross(h, w->zone, w->source, k, m / 2, m % 2 == 1, w->places, w->values)) {
+        if ((m / 2 == k) || !has_piece(h, m / 2, &w->here)
+            || !cross(h, w->zone, w->source, k, m / 2, m % 2 == 1, &w->here)) {
             continue;
         }
-        pack(h, w->places, w->values, 1 + (uint32_t)(m / 2), h->packed);
-        at = find_state(h, h->packed);
+        state = state_of(h, &w->here, 1 + (uint32_t)(m / 2));
         h->link = LINK_CROSSING | (uint32_t)(m % 2);
-        if ((at != NULL) && ((*at != NONE) || add_state(h, at, delays))) {
-            keep_late(h, *at, w->zone, m / 2, delays, w->places, w->values);
+        if (state != NONE) {
+            keep_late(h, state, w->zone, m / 2, delays, &w->here);
         }
     }
     if (runs(h) && !h->failed) {
@@ -200,36 +201,28 @@ static void step_best(engine *h)
     walk *w = &h->out;
     const entry e = heap_pop(h);
     double cost = e.cost;
-    unpack(h, h->nodes[e.node].state, w->places, w->values);
+    unpack(h, h->nodes[e.node].state, &w->here);
     if (e.goal != 0) {
-        if (is_goal(h, zone_of(h, e.node), w->places, w->values) && runs(h)) {
-            uint32_t k;
-            for (k = 1; k < h->parts.count; k++) { /* the cheapest one is told */
-                if (price_of(h, nth(h, &h->parts, k)) < price_of(h, h->parts.zones)) {
-                    copy_zone(h, h->parts.zones, nth(h, &h->parts, k));
-                }
+        if (is_goal(h, zone_of(h, e.node), &w->here) && runs(h)) {
+            if (h->parts.count > 0) {
+                (void)cheapest(h);
+                h->parts.count = 1;
             }
-            h->parts.count = (h->parts.count > 0);
             h->found = e.node;
             h->state = SEARCH_FOUND;
         }
         return;
     }
     copy_zone(h, w->source, zone_of(h, e.node));
-    if (keep(h, h->nodes[e.node].state, e.node, w->source, w->places) == NONE) {
+    if (keep(h, h->nodes[e.node].state, e.node, w->source, &w->here) == NONE) {
         drop_zone(h, e.node);
         return;
     }
     visit(h);
     h->price = e.cost;
-    if (is_goal(h, w->source, w->places, w->values)) {
-        uint32_t k;
+    if (is_goal(h, w->source, &w->here)) {
         if ((h->policy == POLICY_FASTEST) && (h->parts.count > 0)) {
-            cost = price_of(h, h->parts.zones);
-            for (k = 1; k < h->parts.count; k++) {
-                const double other = price_of(h, nth(h, &h->parts, k));
-                cost = (other < cost) ? other : cost;
-            }
+            cost = cheapest(h);
         }
         (void)heap_push(h, cost, e.node, 1);
     }

@@ -5,7 +5,7 @@
 #include "programs.h"
 
 /* The bits of a discrete state; `mark` distinguishes what else a search distinguishes. */
-static void pack(const engine *h, const int32_t *places, const int32_t *values, uint32_t mark,
+static void pack(const engine *h, const spot *here, uint32_t mark,
                  uint32_t *to)
 {
     const int n = h->automaton_count + h->variable_count;
@@ -14,12 +14,13 @@ static void pack(const engine *h, const int32_t *places, const int32_t *values, 
     to[h->words - 1] = mark;
     for (i = 0; i < n; i++) {
         const field f = h->fields[i];
-        const int32_t x = (i < h->automaton_count) ? places[i] : values[i - h->automaton_count];
+        const int32_t x = (i < h->automaton_count) ? here->places[i]
+                                                     : here->values[i - h->automaton_count];
         to[f.word] |= ((uint32_t)x - (uint32_t)f.low) << f.shift;
     }
 }
 
-static void unpack(const engine *h, uint32_t state, int32_t *places, int32_t *values)
+static void unpack(const engine *h, uint32_t state, const spot *to)
 {
     const uint32_t *from = h->bits + (size_t)state * h->words;
     const int n = h->automaton_count + h->variable_count;
@@ -27,7 +28,7 @@ static void unpack(const engine *h, uint32_t state, int32_t *places, int32_t *va
     for (i = 0; i < n; i++) {
         const field f = h->fields[i];
         const int32_t x = (int32_t)((from[f.word] >> f.shift & f.mask) + (uint32_t)f.low);
-        *((i < h->automaton_count) ? places + i : values + (i - h->automaton_count)) = x;
+        *((i < h->automaton_count) ? to->places + i : to->values + (i - h->automaton_count)) = x;
     }
 }
 
@@ -49,49 +50,54 @@ static uint32_t hash_of(const void *data, size_t words)
     return (uint32_t)(x ^ x >> 29);
 }
 
-/* A new table for hashes, all places empty; NULL without memory. The old one is given back by who
- * fills it again. */
-static uint32_t *wider_table(engine *h, uint32_t old, uint32_t *size)
+/* Room in a table of so many for one more; false without memory. */
+static bool widen(engine *h, table *t, uint32_t count, uint32_t (*hash)(const engine *, uint32_t))
 {
-    uint32_t room = 0;
-    uint32_t *made = enlarge(h, NULL, &room, (old == 0) ? 1024 : 2 * (uint64_t)old, sizeof *made);
-    if (made != NULL) {
-        *size = (old == 0) ? 1024 : 2 * old;
-        (void)memset(made, 0xff, *size * sizeof *made);
+    table wide = {NULL, 0};
+    uint32_t i;
+    if (2 * ((uint64_t)count + 1) <= t->size) {
+        return true;
     }
-    return made;
+    wide.at = enlarge(h, NULL, &wide.size, (t->size == 0) ? 1024 : 2 * (uint64_t)t->size,
+                      sizeof *wide.at);
+    if (wide.at == NULL) {
+        return false;
+    }
+    (void)memset(wide.at, 0xff, wide.size * sizeof *wide.at);
+    for (i = 0; i < t->size; i++) {
+        if (t->at[i] != NONE) {
+            uint32_t k = hash(h, t->at[i]) & (wide.size - 1);
+            while (wide.at[k] != NONE) {
+                k = (k + 1) & (wide.size - 1);
+            }
+            wide.at[k] = t->at[i];
+        }
+    }
+    give_back(h, t->at, t->size, sizeof *t->at);
+    *t = wide;
+    return true;
+}
+
+static uint32_t hash_state(const engine *h, uint32_t state)
+{
+    return hash_of(h->bits + (size_t)state * h->words, h->words);
 }
 
 /* Where the table has the packed state, or would have it; NULL without memory. */
 static uint32_t *find_state(engine *h, const uint32_t *packed)
 {
     const size_t bytes = h->words * sizeof *packed;
+    const table *t = &h->met;
     uint32_t k;
-    if (2 * ((uint64_t)h->state_count + 1) > h->table_size) {
-        uint32_t size = 0;
-        uint32_t *made = wider_table(h, h->table_size, &size);
-        uint32_t s;
-        if (made == NULL) {
-            return NULL;
-        }
-        for (s = 0; s < h->state_count; s++) {
-            k = hash_of(h->bits + (size_t)s * h->words, h->words) & (size - 1);
-            while (made[k] != NONE) {
-                k = (k + 1) & (size - 1);
-            }
-            made[k] = s;
-        }
-        free(h->table);
-        h->bytes -= (uint64_t)h->table_size * sizeof *made;
-        h->table = made;
-        h->table_size = size;
+    if (!widen(h, &h->met, h->state_count, hash_state)) {
+        return NULL;
     }
-    k = hash_of(packed, h->words) & (h->table_size - 1);
-    while ((h->table[k] != NONE)
-           && (memcmp(h->bits + (size_t)h->table[k] * h->words, packed, bytes) != 0)) {
-        k = (k + 1) & (h->table_size - 1);
+    k = hash_of(packed, h->words) & (t->size - 1);
+    while ((t->at[k] != NONE)
+           && (memcmp(h->bits + (size_t)t->at[k] * h->words, packed, bytes) != 0)) {
+        k = (k + 1) & (t->size - 1);
     }
-    return h->table + k;
+    return t->at + k;
 }
 
 static bool add_state(engine *h, uint32_t *at, bool delays)
@@ -193,18 +199,23 @@ static bool push_zone(engine *h, federation *f, const bound *z)
     return to != NULL;
 }
 
-static void give_back(engine *h, federation *f)
+static void empty(engine *h, federation *f)
 {
-    free(f->zones);
-    h->bytes -= (uint64_t)f->room * h->zone_bytes;
+    give_back(h, f->zones, f->room, h->zone_bytes);
     *f = (federation){0, 0, NULL};
+}
+
+static void swap(federation *a, federation *b)
+{
+    const federation was = *a;
+    *a = *b;
+    *b = was;
 }
 
 /* What is in a union without a zone, by way of `rest`. */
 static bool subtract(engine *h, federation *from, const bound *other)
 {
     const int d = h->dim;
-    federation swapped;
     uint32_t k;
     h->rest.count = 0;
     for (k = 0; k < from->count; k++) {
@@ -234,9 +245,18 @@ static bool subtract(engine *h, federation *from, const bound *other)
             return false;
         }
     }
-    swapped = *from;
-    *from = h->rest;
-    h->rest = swapped;
+    swap(from, &h->rest);
+    return true;
+}
+
+static bool subtract_all(engine *h, federation *f, const federation *others)
+{
+    uint32_t i;
+    for (i = 0; (i < others->count) && (f->count > 0); i++) {
+        if (!subtract(h, f, nth(h, others, i))) {
+            return false;
+        }
+    }
     return true;
 }
 

@@ -8,33 +8,42 @@
 
 enum { NEW, ON_THE_WAY, DONE };
 
+/* The valuations from which an atom, or for an upper bound its opposite, holds when time stops. */
+static bool reaches_atom(engine *h, bound *to, int32_t k, bool delays, bool *upper)
+{
+    walk *w = &h->out;
+    cut one;
+    if (!atom_at(h, k, &w->here, &one)) {
+        return false;
+    }
+    *upper = one.x == 0;
+    universe(to, h->dim);
+    if (!cut_invariant(h, to, &w->here) || !cut_by(h, to, *upper ? opposite(one) : one)) {
+        return false;
+    }
+    if (delays) {
+        before(to, h->dim);
+    }
+    return true;
+}
+
 /* The part of a zone from which no edge can be taken and time stops before the piece ends, as `dead`. */
 static bool find_stuck(engine *h, const bound *z, int k, bool delays)
 {
     const walk *w = &h->out;
     const int32_t *piece = piece_at(h, k);
     int32_t i;
-    if (!find_dead(h, z, w->places, w->values)) {
+    if (!find_dead(h, z, &w->here)) {
         return false;
     }
     for (i = 0; delays && (h->dead.count > 0) && (i < piece[ROW_ATOMS]); i++) {
-        int x;
-        int y;
-        bound b;
-        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i), w->places,
-                     w->values, &x, &y, &b)) {
+        bool upper;
+        if (reaches_atom(h, h->copy, piece[ROW_ATOM] + i, true, &upper) && upper
+            && !subtract(h, &h->dead, h->copy)) {
             return false;
         }
-        if (x != 0) {
-            continue;
-        }
-        universe(h->copy, h->dim);
-        if (cut_invariant(h, h->copy, w->places, w->values)
-            && constrain(h->copy, h->dim, y, x, negated(b))) {
-            before(h->copy, h->dim);
-            if (!subtract(h, &h->dead, h->copy)) {
-                return false;
-            }
+        if (h->failed || !runs(h)) {
+            return false;
         }
     }
     return h->dead.count > 0;
@@ -45,7 +54,7 @@ static bool look_for_end(engine *h, const bound *z, int k, bool delays)
 {
     const walk *w = &h->out;
     const int32_t *piece = piece_at(h, k);
-    const int bounds = invariant_of(h, w->places, w->values);
+    const int bounds = invariant_of(h, &w->here);
     bool open = delays && (bounds == 0);
     int32_t i;
     uint32_t j;
@@ -113,17 +122,14 @@ static int ask_counts(engine *h, uint32_t n)
     int counts;
     int e;
     head = enlarge(h, NULL, &room, (uint64_t)h->entries, sizeof *head);
-    if ((head == NULL) || !runs(h)) {
-        free(head);
+    if (!runs(h)) {
         return -1;
     }
     for (e = 0; e < h->entries; e++) {
-        const bound b = zone_of(h, n)[e];
-        head[e] = (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
+        head[e] = told_bound(zone_of(h, n)[e]);
     }
     counts = h->from->counts(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
-    free(head);
-    h->bytes -= (uint64_t)room * sizeof *head;
+    give_back(h, head, room, sizeof *head);
     h->step_edge_count = 0;
     if (counts < 0) {
         h->state = SEARCH_STOPPED;
@@ -166,7 +172,7 @@ static void stay_at(engine *h, successor at)
     h->colours[at.node] = ON_THE_WAY;
     top = h->frames + h->frame_count++;
     *top = (frame){at.node, at.link, h->successor_count, h->successor_count};
-    unpack(h, state, h->out.places, h->out.values);
+    unpack(h, state, &h->out.here);
     h->ending = END_REACHED;
     h->crossings.count = 0;
     (void)each_stand(h, zone_of(h, at.node), k, delays, 0, look_for_end);
@@ -190,55 +196,49 @@ static void stay_at(engine *h, successor at)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
+/* Go through successors in depth: what to do with each that is met, and with a node that is left. */
+static void go_deep(engine *h, void (*seen)(engine *, successor), void (*left)(engine *, uint32_t))
+{
+    frame stem = {NONE, 0, 0, h->successor_count};
+    while (runs(h) && !h->failed) {
+        frame *top = (h->frame_count > 0) ? h->frames + h->frame_count - 1 : &stem;
+        h->successor_count = top->end;
+        if (top->next < top->end) {
+            seen(h, h->successors[top->next++]);
+        } else if (h->frame_count > 0) {
+            left(h, h->frames[--h->frame_count].node);
+        } else {
+            break;
+        }
+    }
+    h->phase = 0;
+}
+
+static void meet_stay(engine *h, successor at)
+{
+    if (h->colours[at.node] == ON_THE_WAY) {
+        close_loop(h, at);
+    } else if (h->colours[at.node] == NEW) {
+        stay_at(h, at);
+    }
+}
+
+static void leave_stay(engine *h, uint32_t n)
+{
+    h->colours[n] = DONE;
+}
+
 /* From the zone in `out`, with the discrete state in its target. */
 static void stay_from(engine *h, uint32_t stem, uint32_t link)
 {
-    walk *w = &h->out;
-    uint32_t next = 0;
-    uint32_t end;
     h->phase = 1;
     h->successor_count = 0;
     h->frame_count = 0;
     h->stem = stem;
     h->from_node = stem;
     h->link = link;
-    enter(h, w->zone, w->target, w->changed);
-    end = h->successor_count;
-    while (runs(h) && !h->failed) {
-        successor at;
-        if (next == end) {
-            if (h->frame_count == 0) {
-                break;
-            }
-            h->colours[h->frames[--h->frame_count].node] = DONE;
-            if (h->frame_count == 0) {
-                next = h->resume;
-                end = h->resume_end;
-            } else {
-                next = h->frames[h->frame_count - 1].next;
-                end = h->frames[h->frame_count - 1].end;
-            }
-            h->successor_count = end;
-            continue;
-        }
-        at = h->successors[next++];
-        if (h->frame_count == 0) {
-            h->resume = next;
-            h->resume_end = end;
-        } else {
-            h->frames[h->frame_count - 1].next = next;
-        }
-        if (h->colours[at.node] == ON_THE_WAY) {
-            close_loop(h, at);
-        } else if (h->colours[at.node] == NEW) {
-            stay_at(h, at);
-            if (runs(h) && !h->failed) {
-                next = h->frames[h->frame_count - 1].next;
-                end = h->frames[h->frame_count - 1].end;
-            }
-        }
-    }
-    h->phase = 0;
+    enter(h, h->out.zone, &h->out.there);
+    go_deep(h, meet_stay, leave_stay);
 }
 
 /* From all triggers that are pending, where the goal holds. */
@@ -253,10 +253,10 @@ static void stay_after(engine *h)
             if (h->nodes[from].zone == NONE) {
                 break; /* a larger one triggers too */
             }
-            unpack(h, h->nodes[from].state, w->target, w->changed);
+            unpack(h, h->nodes[from].state, &w->there);
             copy_zone(h, w->zone, zone_of(h, from));
             if (cut_row(h, w->zone, plan_rows(h->plan, AT_GOAL) + (ptrdiff_t)k * ROW_SIZE,
-                        w->target, w->changed)) {
+                        &w->there)) {
                 stay_from(h, from, LINK_MARK | (uint32_t)k);
             }
         }

@@ -38,13 +38,6 @@ static void join_all(engine *h, federation *f, const federation *others)
     }
 }
 
-static void subtract_all(engine *h, federation *f, const federation *others)
-{
-    uint32_t i;
-    for (i = 0; (i < others->count) && (f->count > 0) && subtract(h, f, nth(h, others, i)); i++) {
-    }
-}
-
 /* Add what two unions have in common. */
 static void meet(engine *h, federation *out, const federation *a, const federation *b)
 {
@@ -64,18 +57,11 @@ static void meet(engine *h, federation *out, const federation *a, const federati
 static void everywhere(engine *h, uint32_t s, federation *out)
 {
     walk *w = &h->look;
-    unpack(h, s, w->places, w->values);
+    unpack(h, s, &w->here);
     universe(h->copy, h->dim);
-    if (cut_invariant(h, h->copy, w->places, w->values)) {
+    if (cut_invariant(h, h->copy, &w->here)) {
         (void)push_zone(h, out, h->copy);
     }
-}
-
-static void swap(federation *a, federation *b)
-{
-    const federation held = *a;
-    *a = *b;
-    *b = held;
 }
 
 /* Add the valuations from which a delay leads into a zone, with nothing bad on the way nor there. */
@@ -91,7 +77,7 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
         return;
     }
     if (!h->delays[s]) {
-        subtract_all(h, &all, bad);
+        (void)subtract_all(h, &all, bad);
     } else {
         before(all.zones, h->dim);
         for (k = 0; (k < bad->count) && (all.count > 0) && runs(h); k++) {
@@ -120,9 +106,9 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
         }
     }
     join_all(h, out, &all);
-    give_back(h, &all);
-    give_back(h, &some);
-    give_back(h, &both);
+    empty(h, &all);
+    empty(h, &some);
+    empty(h, &both);
 }
 
 /* The valuations in which a clock may have any value that are in a zone once it is set to a number;

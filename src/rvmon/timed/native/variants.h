@@ -15,21 +15,21 @@ static bool is_watcher(const engine *h, int automaton)
 /* What the updates of a move make of its source, in `target`, `changed` and `resets`. */
 static bool apply(engine *h, walk *w, const int32_t *edges, int n)
 {
+    const spot changing = {w->here.places, w->there.values};
     int k;
-    (void)memcpy(w->target, w->places, (size_t)h->automaton_count * sizeof *w->target);
-    (void)memcpy(w->changed, w->values, (size_t)h->variable_count * sizeof *w->changed);
+    copy_spot(h, &w->there, &w->here);
     w->reset_count = 0;
     for (k = 0; k < n; k++) {
         const int32_t *edge = edge_at(h, edges[k]);
         if (edge[EDGE_UPDATE] >= 0) {
             h->sets = w;
-            (void)evaluate(h, edge[EDGE_UPDATE], w->places, w->changed);
+            (void)evaluate(h, edge[EDGE_UPDATE], &changing);
             h->sets = NULL;
             if (h->failed || !runs(h)) {
                 return false;
             }
         }
-        w->target[edge[EDGE_AUTOMATON]] = edge[EDGE_TARGET];
+        w->there.places[edge[EDGE_AUTOMATON]] = edge[EDGE_TARGET];
     }
     return true;
 }
@@ -45,12 +45,12 @@ static bool begin_denial(engine *h, denials *to, int32_t rank)
     return true;
 }
 
-static bool deny(engine *h, denials *to, int x, int y, bound b)
+static bool deny(engine *h, denials *to, cut one)
 {
     if (!ROOM(h, to->atoms, to->atom_room, (uint64_t)to->atom_count + 1)) {
         return false;
     }
-    to->atoms[to->atom_count++] = (denied){x, y, b};
+    to->atoms[to->atom_count++] = one;
     to->rows[to->count - 1].count++;
     return true;
 }
@@ -59,12 +59,8 @@ static bool deny_guard(engine *h, walk *w, denials *to, const int32_t *edge)
 {
     int32_t k;
     for (k = 0; k < edge[EDGE_ATOMS]; k++) {
-        int x;
-        int y;
-        bound b;
-        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (edge[EDGE_ATOM] + k), w->places,
-                     w->values, &x, &y, &b)
-            || !deny(h, to, x, y, b)) {
+        cut one;
+        if (!atom_at(h, edge[EDGE_ATOM] + k, &w->here, &one) || !deny(h, to, one)) {
             return false;
         }
     }
@@ -83,13 +79,21 @@ static void drop_denials(denials *from)
 }
 
 /* What keeps the move at hand back, by its place in `against`; those left out come first. */
-static denied *denied_by(const walk *w, uint32_t k, uint32_t *count)
+static const denial *denied_by(const walk *w, uint32_t k, const cut **atoms)
 {
     const uint32_t skipped = w->skipped.count;
     const denials *from = (k < skipped) ? &w->skipped : &w->blockers;
     const denial *row = from->rows + ((k < skipped) ? k : w->against[k - skipped]);
-    *count = row->count;
-    return from->atoms + row->first;
+    *atoms = from->atoms + row->first;
+    return row;
+}
+
+/* Of what keeps the move at hand back, the bound that fails in the variant at hand. */
+static cut failing(const walk *w, uint32_t k)
+{
+    const cut *atoms;
+    (void)denied_by(w, k, &atoms);
+    return opposite(atoms[w->skip[k]]);
 }
 
 /* The guards of edges that move together, and for what keeps them back a bound that fails. */
@@ -99,14 +103,12 @@ static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges,
     int i;
     for (i = 0; i < n; i++) {
         const int32_t *edge = edge_at(h, edges[i]);
-        if (!cut_atoms(h, z, edge[EDGE_ATOM], edge[EDGE_ATOMS], w->places, w->values)) {
+        if (!cut_atoms(h, z, edge[EDGE_ATOM], edge[EDGE_ATOMS], &w->here)) {
             return false;
         }
     }
     for (k = 0; k < w->against_count; k++) {
-        uint32_t count;
-        const denied one = denied_by(w, k, &count)[w->skip[k]];
-        if (!constrain(z, h->dim, one.y, one.x, negated(one.b))) {
+        if (!cut_by(h, z, failing(w, k))) {
             return false;
         }
     }
@@ -126,7 +128,7 @@ static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
     if (first[EDGE_CHANNEL] != -1) {
         channel = first[EDGE_FIRST];
         if (first[EDGE_STOP] - first[EDGE_FIRST] > 1) {
-            channel = evaluate(h, first[EDGE_CHANNEL], w->places, w->values);
+            channel = evaluate(h, first[EDGE_CHANNEL], &w->here);
         }
         if ((channel < first[EDGE_FIRST]) || (channel >= first[EDGE_STOP])) {
             h->failed = true;
@@ -140,29 +142,36 @@ static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
     return ranks[h->automaton_count + 1 + channel] + own;
 }
 
-/* The bounds under which an invariant behind a move holds, where it did not before; false if it
- * does not hold, or failed. */
+/* The bounds before a move under which the invariant behind it holds, as of an invariant; how many,
+ * -1 if it does not hold or failed. */
+static int invariant_behind(engine *h, const walk *w)
+{
+    const int bounds = invariant_of(h, &w->there);
+    int n = 0;
+    int i;
+    for (i = 0; i < bounds; i++) {
+        const int j = reset_of(w, h->tightest[i]);
+        if (j == w->reset_count) {
+            h->tightest[n] = h->tightest[i];
+            h->tightest_bound[n++] = h->tightest_bound[i];
+        } else if (2 * (bound)w->resets[2 * j + 1] + 1 > h->tightest_bound[i]) {
+            return -1;
+        }
+    }
+    return (bounds < 0) ? -1 : n;
+}
+
+/* Those of them that did not hold before; false if the invariant does not hold, or failed. */
 static bool deny_invariant(engine *h, walk *w)
 {
-    const int bounds = invariant_of(h, w->target, w->changed);
+    const int bounds = invariant_behind(h, w);
     int c;
     int i;
     for (c = 1; c < h->dim; c++) {
-        int j = 0;
         for (i = 0; (i < bounds) && (h->tightest[i] != c); i++) {
         }
-        if (i >= bounds) {
-            continue;
-        }
-        while ((j < w->reset_count) && (w->resets[2 * j] != c)) {
-            j++;
-        }
-        if (j < w->reset_count) {
-            if (2 * (bound)w->resets[2 * j + 1] + 1 > h->tightest_bound[i]) {
-                return false;
-            }
-        } else if ((h->tightest_bound[i] < w->here[c])
-                   && !deny(h, &w->blockers, 0, c, h->tightest_bound[i])) {
+        if ((i < bounds) && (h->tightest_bound[i] < w->limits[c])
+            && !deny(h, &w->blockers, (cut){0, c, h->tightest_bound[i]})) {
             return false;
         }
     }
@@ -184,9 +193,7 @@ static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
         }
     }
     for (k = 0; k < w->against_count; k++) {
-        uint32_t count;
-        const denied one = denied_by(w, k, &count)[w->skip[k]];
-        if (!deny(h, &w->blockers, one.y, one.x, negated(one.b))) {
+        if (!deny(h, &w->blockers, failing(w, k))) {
             return false;
         }
     }
@@ -195,7 +202,7 @@ static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
         h->failed = false;
         return is_numbers;
     }
-    if (!invariant_data_holds(h, w->target, w->changed) || !deny_invariant(h, w)) {
+    if (!invariant_data_holds(h, &w->there) || !deny_invariant(h, w)) {
         drop_denial(&w->blockers);
     }
     return runs(h) && !h->failed;
@@ -205,7 +212,7 @@ static bool is_same(const walk *w, const denial *one, const denial *other)
 {
     return (one->count == other->count)
            && (memcmp(w->blockers.atoms + one->first, w->blockers.atoms + other->first,
-                      one->count * sizeof(denied))
+                      one->count * sizeof(cut))
                == 0);
 }
 
@@ -256,11 +263,11 @@ static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink t
         h->state = before;
         return take(h, w, edges, n);
     }
-    place = place_of(h, w->places, h->automaton_count - 1);
+    place = place_of(h, &w->here, h->automaton_count - 1);
     for (k = place[LOC_EDGE]; k < place[LOC_EDGE] + place[LOC_EDGES]; k++) {
         const int32_t *edge = edge_at(h, k);
         if (((edge[EDGE_FLAGS] & FLAG_WATCHES) != 0)
-            && holds(h, edge[EDGE_GUARD], w->target, w->changed)) {
+            && holds(h, edge[EDGE_GUARD], &w->there)) {
             w->watching[count++] = k;
         }
     }
@@ -287,9 +294,8 @@ static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink t
             return false;
         }
         for (i = (int64_t)w->against_count - 1; i >= 0; i--) {
-            uint32_t count;
-            (void)denied_by(w, (uint32_t)i, &count);
-            if (++w->skip[i] < count) {
+            const cut *atoms;
+            if (++w->skip[i] < denied_by(w, (uint32_t)i, &atoms)->count) {
                 break;
             }
             w->skip[i] = 0;

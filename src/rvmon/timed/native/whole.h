@@ -42,10 +42,10 @@ static void make_walk(engine *h, walk *w)
 {
     const size_t places = (size_t)h->automaton_count;
     const size_t values = (size_t)plan_count(h->plan, AT_VARIABLES);
-    w->places = block(h, places, sizeof *w->places);
-    w->values = block(h, values, sizeof *w->values);
-    w->target = block(h, places, sizeof *w->target);
-    w->changed = block(h, values, sizeof *w->changed);
+    w->here.places = block(h, places, sizeof *w->here.places);
+    w->here.values = block(h, values, sizeof *w->here.values);
+    w->there.places = block(h, places, sizeof *w->there.places);
+    w->there.values = block(h, values, sizeof *w->there.values);
     w->source = block(h, (size_t)h->entries, sizeof *w->source);
     w->zone = block(h, (size_t)h->entries, sizeof *w->zone);
     w->resets = block(h, 2 * (size_t)h->dim, sizeof *w->resets);
@@ -54,39 +54,9 @@ static void make_walk(engine *h, walk *w)
     w->first = block(h, places, sizeof *w->first);
     w->pick = block(h, places, sizeof *w->pick);
     w->committed = block(h, places, sizeof *w->committed);
-    w->here = block(h, (size_t)h->dim, sizeof *w->here);
+    w->limits = block(h, (size_t)h->dim, sizeof *w->limits);
     w->together = block(h, places, sizeof *w->together);
     w->watching = block(h, (size_t)h->edge_count, sizeof *w->watching);
-}
-
-static void free_walk(walk *w)
-{
-    void *all[21];
-    size_t i;
-    all[0] = w->places;
-    all[1] = w->values;
-    all[2] = w->target;
-    all[3] = w->changed;
-    all[4] = w->source;
-    all[5] = w->zone;
-    all[6] = w->resets;
-    all[7] = w->chosen;
-    all[8] = w->group;
-    all[9] = w->first;
-    all[10] = w->pick;
-    all[11] = w->committed;
-    all[12] = w->here;
-    all[13] = w->against;
-    all[14] = w->skip;
-    all[15] = w->skipped.rows;
-    all[16] = w->skipped.atoms;
-    all[17] = w->blockers.rows;
-    all[18] = w->blockers.atoms;
-    all[19] = w->together;
-    all[20] = w->watching;
-    for (i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
 }
 
 /* No place of the watcher was met: bounds that no clock has. */
@@ -168,54 +138,21 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     return runs(h);
 }
 
-static void free_engine(engine *h)
-{
-    void *all[] = {
-        h->fields, h->bits, h->heads, h->table, h->delays, h->packed, h->nodes, h->chunks,
-        h->queue, h->heap, h->triggers, h->colours, h->exact, h->successors, h->frames, h->arrows,
-        h->into, h->out_of, h->pool, h->whose, h->tables, h->table_rooms, h->lower, h->upper,
-        h->lowers, h->uppers, h->test_entries, h->test_least, h->tightest, h->tightest_bound,
-        h->top, h->spare, h->inside, h->copy, h->between, h->been, h->allowed, h->rest_allowed,
-        h->rest_good, h->rest_on, h->rest_back, h->rank, h->open, h->roots, h->trail,
-        h->step_edges, h->failed_edges, h->step_bounds.at, h->crossings.at, h->last_crossings.at, h->alive.zones,
-        h->dead.zones, h->rest.zones, h->parts.zones, h->guards.zones, h->pending.zones,
-    };
-    size_t i;
-    uint32_t s;
-    int32_t k;
-    for (s = 0; s < h->chunk_count; s++) {
-        free(h->chunks[s]);
-    }
-    for (k = 0; (h->tables != NULL) && (h->table_rooms != NULL)
-                && (k < plan_count(h->plan, AT_TREE) + 2); k++) {
-        for (s = 0; (h->tables[k] != NULL) && (s < h->table_rooms[k]); s++) {
-            free(h->tables[k][s].zones);
-        }
-        free(h->tables[k]);
-    }
-    free_walk(&h->out);
-    free_walk(&h->look);
-    for (i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]);
-    }
-}
-
 /* The start: initial locations and values, all clocks 0. */
 static void begin(engine *h)
 {
     walk *w = &h->out;
     int i;
     for (i = 0; i < h->automaton_count; i++) {
-        w->target[i] = h->automata[3 * i + 2];
+        w->there.places[i] = h->automata[3 * i + 2];
     }
     for (i = 0; i < h->variable_count; i++) {
-        w->changed[i] = h->variables[4 * i + 2];
+        w->there.values[i] = h->variables[4 * i + 2];
     }
     for (i = 0; i < h->entries; i++) {
         w->zone[i] = AT_ONCE;
     }
-    (void)memcpy(w->places, w->target, (size_t)h->automaton_count * sizeof *w->places);
-    (void)memcpy(w->values, w->changed, (size_t)h->variable_count * sizeof *w->values);
+    copy_spot(h, &w->here, &w->there);
     if (!h->from->goes_on(h->from->context, 0, 0)) {
         h->state = SEARCH_STOPPED;
     }
@@ -251,7 +188,7 @@ static void run(engine *h)
     if (runs(h) && !limits_fit(h)) {
         h->state = SEARCH_TOO_LARGE;
     }
-    if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
+    if (!runs(h) || !invariant_data_holds(h, &w->there)) {
         return;
     }
     if ((h->kind == SEEK_NESTED) || (h->kind == SEEK_START)) {
@@ -263,7 +200,7 @@ static void run(engine *h)
         begin(h);
     }
     if (h->kind == SEEK_START) {
-        if (in_nested(h, w->zone, w->target, w->changed)) {
+        if (in_nested(h, w->zone, &w->there)) {
             h->state = SEARCH_FOUND;
         }
         return;
@@ -277,7 +214,7 @@ static void run(engine *h)
         return;
     }
     h->phase = (h->kind == SEEK_LATE);
-    arrive(h, w->zone, w->target, w->changed, NULL, 0);
+    arrive(h, w->zone, &w->there, NULL, 0);
     h->phase = 0;
     while (runs(h) && !h->failed) {
         if (h->kind == SEEK_STAY_AFTER) {
@@ -365,9 +302,8 @@ static answer search_here(const int32_t *plan, const double *costs, const caller
                              sizeof *told.parts);
         for (k = 0; (told.parts != NULL) && (k < h->parts.count); k++) {
             for (e = 0; e < h->entries; e++) {
-                const bound b = nth(h, &h->parts, k)[e];
                 told.parts[(size_t)k * (size_t)h->entries + (size_t)e] =
-                    (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
+                    told_bound(nth(h, &h->parts, k)[e]);
             }
             told.part_count = k + 1;
         }
@@ -384,7 +320,7 @@ static answer search_here(const int32_t *plan, const double *costs, const caller
     told.dim = (uint32_t)h->dim;
     told.spans = h->spans;
     told.span_count = (h->spans != NULL) ? (uint32_t)h->automata[3 * h->automaton_count - 2] : 0;
-    free_engine(h);
+    told.memory = h->memory;
     return told;
 }
 

@@ -45,6 +45,7 @@ typedef struct {
     int64_t *spans;
     uint32_t span_count;
     uint32_t dim;
+    struct held *memory; /* all of the search */
 } answer;
 
 /* What a search asks for. `goes_on` is called now and then; false stops it. `counts` is called with a

@@ -123,7 +123,7 @@ FAILS_IN_ITS_SECOND_STATE = zlib.decompress(
 def test_a_want_of_memory_is_no_failure():
     """With any amount of memory the same state fails, or none is told."""
     told = set()
-    for most_bytes in range(0, 12_000, 8):
+    for most_bytes in range(0, 20_000, 8):
         state, *_, visited = search(
             FAILS_IN_ITS_SECOND_STATE,
             bytes(16),
