@@ -15,9 +15,7 @@ the share of the coverage model that they cover. Exits with 1 if anything is not
 
 `closing`: tests that it takes to close the holes of two campaigns, of the handover with and without
 the tests that people have written; those that added a goal, those after which each share was met,
-the size of the suite, and CPU seconds of all processes. With `--random DB`, a database of
-`handover run --strategy pseudorandom,constrained --tests 5000`, the share of the same goals (but
-for the edges of the model, which only tests of its runs can show) that random tests met.
+the size of the suite, and CPU seconds of all processes.
 
 `shrinking`: failing tests of robots with a planted fault, those of the model and the first of each
 random strategy: actions before and after, tests that were played, CPU seconds of this process.
@@ -33,9 +31,9 @@ import resource
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain, islice
+from itertools import islice
 from pathlib import Path
 from statistics import median
 
@@ -49,8 +47,7 @@ from handover.robot import handover as code
 from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv import Campaign, Gate
-from rvmon.cdv.close import Budget, Closed, close
-from rvmon.cdv.close.goals import EDGES
+from rvmon.cdv.close import Budget, close
 from rvmon.cdv.coverage import covered_share
 from rvmon.cdv.gate import judge_campaign
 from rvmon.cdv.mutation.baseline import record_suite
@@ -60,12 +57,9 @@ from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.cdv.plan import Job, plan
 from rvmon.cdv.play import execute, player
 from rvmon.cdv.shrink import Shrunk, shrink
-from rvmon.coverage.database import read
-from rvmon.coverage.questions import Answers
 from rvmon.session import load
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
-LOOKED_AT = (25, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest")
 
 
@@ -154,7 +148,6 @@ def closing(options: argparse.Namespace) -> int:
     sys.path.insert(0, str(EXAMPLE))
     from campaign import campaign as people  # type: ignore[import-not-found]
 
-    closed = None
     handover = handover_campaign(("correct",))
     unwritten = replace(handover.closing, written=())
     for campaign, robot, strategies in (
@@ -163,15 +156,13 @@ def closing(options: argparse.Namespace) -> int:
         (handover, "correct", ()),
     ):
         for seed in range(options.seed, options.seed + options.seeds):
-            closed = _timed(campaign, robot, strategies, seed, options.tests or 400)
-    if options.random is not None and closed is not None:
-        _look_at(options.random, closed)
+            _timed(campaign, robot, strategies, seed, options.tests or 400)
     return 0
 
 
 def _timed(
     campaign: Campaign, robot: str, strategies: tuple[str, ...], seed: int, tests: int
-) -> Closed:
+) -> None:
     before = _cpu_s()
     closed = close(campaign, robot, seed=seed, strategies=strategies, budget=Budget(tests))
     reached = {}
@@ -187,7 +178,6 @@ def _timed(
         f"{closed.needed} ({closed.sizes}), at least {closed.fewest}",
         flush=True,
     )
-    return closed
 
 
 def _cpu_s() -> float:
@@ -195,26 +185,6 @@ def _cpu_s() -> float:
         resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     )
     return own.ru_utime + own.ru_stime + played.ru_utime + played.ru_stime
-
-
-def _look_at(path: str, closed: Closed) -> None:
-    """The share of the goals of a closed campaign that random tests met."""
-    goals = {goal for one in closed.tests for goal in one.goals if goal[0] != EDGES}
-    goals |= {goal for goal in closed.open if goal[0] != EDGES}
-    coverage = read([path])
-    met: set[tuple[str, str]] = set()
-    for number, place in enumerate(_in_turn(Answers(coverage).strategies.values()), 1):
-        row = coverage.entries[place].row
-        met |= goals & {coverage.items[item] for item in row.items.tolist()}
-        if number in LOOKED_AT:
-            print(
-                f"{number:,} random tests: {len(met)} of {len(goals)}, {len(met) / len(goals):.1%}"
-            )
-    print("never met:", ", ".join(f"{group}: {item}" for group, item in sorted(goals - met)))
-
-
-def _in_turn(several: Iterable[Sequence[int]]) -> Iterator[int]:
-    return chain.from_iterable(zip(*several, strict=False))
 
 
 def shrinking(options: argparse.Namespace) -> int:
@@ -264,7 +234,6 @@ def main() -> int:
         "--tests", type=int, help="disturbed ones (60), of a strategy (100), of a campaign (400)"
     )
     parser.add_argument("--failures", type=int, default=20, help="shrinking: so many")
-    parser.add_argument("--random", metavar="DB", help="closing: of random tests of the handover")
     options = parser.parse_args()
     return TASKS[options.what](options)
 

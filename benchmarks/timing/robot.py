@@ -10,18 +10,13 @@ import math
 import random
 from collections.abc import Iterator
 
-from benchmarks.timing.workload import Workload
-from tests.tools.build import always, compared, eventually, historically, no, two
+from benchmarks.timing.workload import Workload, formula
 from tests.tools.common_fragment import names_in
-
-from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
 
 RATES = {"20 Hz": 20, "1 kHz": 1000}
 
-_request, _granted, _withheld, _released, _near, _stopped = (
-    SignalAtom(name) for name in ("request", "granted", "withheld", "released", "near", "stopped")
-)
-_distance, _speed = SignalValue("distance"), SignalValue("speed")
+FLAGS = ("request", "granted", "withheld", "released", "near", "stopped")
+SECOND = 1_000_000_000
 
 
 def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]:
@@ -33,10 +28,7 @@ def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]
         seed: of the random choices.
     """
     rng = random.Random(f"robot/{rate}/{seed}")
-    flags: dict[str, list[bool | float]] = {
-        name: [False] * rows
-        for name in ("request", "granted", "withheld", "released", "near", "stopped")
-    }
+    flags: dict[str, list[bool | float]] = {name: [False] * rows for name in FLAGS}
 
     def hold(name: str, start: float, seconds: float) -> None:
         for row in range(int(start), min(int(start + max(seconds * rate, 1)), rows)):
@@ -63,17 +55,17 @@ def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]
     }
 
 
-def properties(rate: int) -> Iterator[tuple[str, str, Formula]]:
+def properties(rate: int) -> Iterator[tuple[str, str, str]]:
     """Name, form and formula of each requirement; bounds in rows at this rate."""
-    three, two_seconds = 3 * rate, 2 * rate
-    yield "answered in 3 s", "future", two(_request, "->", eventually(_granted, 0, three))
-    yield "answered in 3 s", "past", no(two(no(_granted), "S", _request, three + 1, None))
-    yield "withheld for 2 s", "future", two(_withheld, "->", always(no(_released), 0, two_seconds))
-    yield "withheld for 2 s", "past", two(_released, "->", historically(no(_withheld), 0, rate))
-    slow = two(compared(_distance, "<", 0.65), "->", compared(_speed, "<=", 0.25))
-    yield "slow when close", "past", slow
-    stopping = eventually(always(_stopped, 0, rate // 10), 0, 3 * rate // 10)
-    yield "stops in 0.3 s", "future", two(_near, "->", two(_stopped, "or", stopping))
+    three, two, one, tenth = (f"{n * rate // 10} ns" for n in (30, 20, 10, 1))
+    late, soon = f"{3 * rate + 1} ns", f"{3 * rate // 10} ns"
+    yield "answered in 3 s", "future", f"request -> eventually[0 ns, {three}] granted"
+    yield "answered in 3 s", "past", f"not ((not granted) since[{late}, inf) request)"
+    yield "withheld for 2 s", "future", f"withheld -> always[0 ns, {two}] not released"
+    yield "withheld for 2 s", "past", f"released -> historically[0 ns, {one}] not withheld"
+    yield "slow when close", "past", "distance < 0.65 -> speed <= 0.25"
+    stopping = f"eventually[0 ns, {soon}] always[0 ns, {tenth}] stopped"
+    yield "stops in 0.3 s", "future", f"near -> (stopped or {stopping})"
 
 
 def workloads(seconds: int) -> Iterator[Workload]:
@@ -81,8 +73,7 @@ def workloads(seconds: int) -> Iterator[Workload]:
     for label, rate in RATES.items():
         rows = seconds * rate
         columns = stream(rate, rows)
-        for name, form, formula in properties(rate):
-            used = {key: columns[key] for key in sorted(names_in(formula))}
-            yield Workload(
-                "robot", f"{name}, {label}", form, (formula,), used, 1_000_000_000 // rate
-            )
+        for name, form, text in properties(rate):
+            asked = formula(text, ", ".join(FLAGS), "distance, speed")
+            used = {key: columns[key] for key in sorted(names_in(asked))}
+            yield Workload("robot", f"{name}, {label}", form, (asked,), used, SECOND // rate)

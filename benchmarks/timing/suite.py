@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from benchmarks.timing import timescales
-from benchmarks.timing.workload import Workload
-from tests.tools.build import always, compared, eventually, no, once, two
+from benchmarks.timing.workload import Column, Workload, formula
 from tests.tools.common_fragment import names_in
 
-from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
+from rvmon.spec.checked.formula import Formula
 
 SIGNALS = 20
 """Of the stream that many monitors read."""
@@ -26,15 +25,17 @@ _BATCHED = (
 )
 
 
+FORMS = ("past", "future")
+
+
 def families(rows: int, bounds: Sequence[int] = timescales.BOUNDS) -> Iterator[Workload]:
     """The Timescales families in both forms."""
     for family in timescales.FAMILIES:
         for high in bounds:
             columns = timescales.trace(family, high, rows)
-            low = timescales.low_bound(high)
-            name = f"{family.name} {high}"
-            yield Workload("online", name, "past", (family.past(low, high),), columns)
-            yield Workload("online", name, "future", (family.future(low, high),), columns)
+            for form in FORMS:
+                asked = formula(family.text(form, high))
+                yield Workload("online", f"{family.name} {high}", form, (asked,), columns)
 
 
 def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workload]:
@@ -49,28 +50,27 @@ def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workloa
         for name in names:
             columns[name].append(state[name])
     for count in counts:
-        yield Workload("many", f"{count} monitors", "past", _responses(count, "past"), columns)
-        yield Workload("many", f"{count} monitors", "future", _responses(count, "future"), columns)
+        for form in FORMS:
+            formulas = tuple(_responses(names, count, form))
+            yield Workload("many", f"{count} monitors", form, formulas, columns)
 
 
-def _responses(count: int, form: str) -> tuple[Formula, ...]:
+def _responses(names: Sequence[str], count: int, form: str) -> Iterator[Formula]:
     rng = random.Random("responses")
-    formulas = []
     for _ in range(count):
-        asked, answer = (SignalAtom(f"v{n}") for n in rng.sample(range(SIGNALS), 2))
+        asked, answer = rng.sample(names, 2)
         deadline = rng.randint(40, 400)
         if form == "past":
-            formulas.append(no(two(no(answer), "S", two(asked, "and", no(answer)), deadline, None)))
+            text = f"not ((not {answer}) since[{deadline} ns, inf) ({asked} and not {answer}))"
         else:
-            formulas.append(two(asked, "->", eventually(answer, 0, deadline)))
-    return tuple(formulas)
+            text = f"{asked} -> eventually[0 ns, {deadline} ns] {answer}"
+        yield formula(text, f"{asked}, {answer}")
 
 
 def bounds(
     rows: int, highs: Sequence[int] = (10, 100, 1_000, 10_000, 100_000)
 ) -> Iterator[Workload]:
     """One response with a growing deadline, on one trace."""
-    p, s = SignalAtom("p"), SignalAtom("s")
     rng = random.Random("bounds")
     columns: dict[str, list[bool | float]] = {"p": [False] * rows, "s": [False] * rows}
     row = 0
@@ -80,31 +80,32 @@ def bounds(
         columns["s"][row] = True
         row += rng.randint(1, 9)
     for high in highs:
-        past = no(two(no(s), "S", p, high, None))
-        future = two(p, "->", eventually(s, 0, high))
-        yield Workload("bound", f"bound {high}", "past", (past,), columns)
-        yield Workload("bound", f"bound {high}", "future", (future,), columns)
+        texts = f"not ((not s) since[{high} ns, inf) p)", f"p -> eventually[0 ns, {high} ns] s"
+        for form, text in zip(FORMS, texts, strict=True):
+            yield Workload("bound", f"bound {high}", form, (formula(text),), columns)
+
+
+UNSTEADY = {
+    "respond": "x > 5 -> eventually[0 ns, 100 ns] x < 5",
+    "soon": "eventually[0 ns, 10 ns] x > 5",
+    "recur": "always[0 ns, 100 ns] eventually[0 ns, 10 ns] x > 5",
+    "settle": "x > 8 -> eventually[0 ns, 50 ns] always[0 ns, 30 ns] x < 6",
+    "stop": "s > 5 -> eventually[0 ns, 30 ns] always[0 ns, 200 ns] v <= 0.01",
+}
+"""Forms that people write."""
 
 
 def unsteady(section: str, rows: int) -> Iterator[Workload]:
-    """Forms that people write, over values that are drawn anew and cross at every row."""
+    """Over values that are drawn anew and cross at every row."""
     rng = random.Random("unsteady")
-    x: list[bool | float] = [rng.uniform(0, 10) for _ in range(rows)]
-    stop = [rng.uniform(0, 10 if row % 400 == 0 else 5) for row in range(rows)]
-    speed = [rng.uniform(0, 0.01 if row // 230 % 2 else 0.02) for row in range(rows)]
-    at_rest = eventually(always(compared(SignalValue("v"), "<=", 0.01), 0, 200), 0, 30)
-    for name, formula, columns in (
-        ("respond", two(_over(5), "->", eventually(_under(5), 0, 100)), {"x": x}),
-        ("soon", eventually(_over(5), 0, 10), {"x": x}),
-        ("recur", always(eventually(_over(5), 0, 10), 0, 100), {"x": x}),
-        ("settle", two(_over(8), "->", eventually(always(_under(6), 0, 30), 0, 50)), {"x": x}),
-        (
-            "stop",
-            two(compared(SignalValue("s"), ">", 5), "->", at_rest),
-            {"s": stop, "v": speed},
-        ),
-    ):
-        yield Workload(section, name, "future", (formula,), columns, 1_000_000_000)
+    columns = {
+        "x": [rng.uniform(0, 10) for _ in range(rows)],
+        "s": [rng.uniform(0, 10 if row % 400 == 0 else 5) for row in range(rows)],
+        "v": [rng.uniform(0, 0.01 if row // 230 % 2 else 0.02) for row in range(rows)],
+    }
+    for name, text in UNSTEADY.items():
+        asked = formula(text, "p", "x, s, v")
+        yield Workload(section, name, "future", (asked,), _read(asked, columns), 1_000_000_000)
 
 
 _FAILING = {
@@ -113,34 +114,31 @@ _FAILING = {
 }
 """Below which a value has to be for the formula to be false at that share of the rows."""
 
+_FORMS = {
+    "limit": ("past", "x < {}"),
+    "respond": ("future", "x > 5 -> eventually[0 ns, 3 ns] y < {}"),
+    "soon": ("future", "eventually[0 ns, 3 ns] x < {}"),
+    "recur": ("future", "always[0 ns, 10 ns] eventually[0 ns, 3 ns] x < {}"),
+    "settle": ("future", "x > 5 -> eventually[0 ns, 10 ns] always[0 ns, 3 ns] y < {}"),
+    "past": ("past", "x > 5 -> once[0 ns, 3 ns] y < {}"),
+}
+
 
 def failing(rows: int) -> Iterator[Workload]:
     """Forms that are false at 1 % and at 30 % of the rows; all values are new at every row."""
     rng = random.Random("failing")
-    columns: dict[str, list[bool | float]] = {
-        name: [rng.uniform(0, 10) for _ in range(rows)] for name in "xy"
-    }
+    columns = {name: [rng.uniform(0, 10) for _ in range(rows)] for name in "xy"}
     for share, limits in _FAILING.items():
         for name, limit in limits.items():
-            x, y = _under(limit), _under(limit, "y")
-            form, formula = {
-                "limit": ("past", x),
-                "respond": ("future", two(_over(5), "->", eventually(y, 0, 3))),
-                "soon": ("future", eventually(x, 0, 3)),
-                "recur": ("future", always(eventually(x, 0, 3), 0, 10)),
-                "settle": ("future", two(_over(5), "->", eventually(always(y, 0, 3), 0, 10))),
-                "past": ("past", two(_over(5), "->", once(y, 0, 3))),
-            }[name]
-            used = {key: columns[key] for key in sorted(names_in(formula))}
-            yield Workload("failing", f"{name}, {share}", form, (formula,), used, 1_000_000_000)
+            form, text = _FORMS[name]
+            asked = formula(text.format(limit), "p", "x, y")
+            used = _read(asked, columns)
+            yield Workload("failing", f"{name}, {share}", form, (asked,), used, 1_000_000_000)
 
 
-def _over(value: float) -> Formula:
-    return compared(SignalValue("x"), ">", value)
-
-
-def _under(value: float, name: str = "x") -> Formula:
-    return compared(SignalValue(name), "<", value)
+def _read(asked: Formula, columns: Mapping[str, Column]) -> dict[str, Column]:
+    """The columns that a formula reads."""
+    return {name: columns[name] for name in sorted(names_in(asked))}
 
 
 def batches(rows: int) -> Iterator[Workload]:
@@ -159,5 +157,5 @@ def processed(rows: int) -> Iterator[Workload]:
 def _family(section: str, name: str, high: int, rows: int) -> Workload:
     family = next(family for family in timescales.FAMILIES if family.name == name)
     columns = timescales.trace(family, high, rows)
-    formula = family.past(timescales.low_bound(high), high)
-    return Workload(section, f"{name} {high}, {rows:,} rows", "past", (formula,), columns)
+    asked = formula(family.text("past", high))
+    return Workload(section, f"{name} {high}, {rows:,} rows", "past", (asked,), columns)

@@ -15,17 +15,16 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from tests.tools.build import always, eventually, historically, no, once, two
-
-from rvmon.spec.checked.formula import Formula, SignalAtom
-
 BOUNDS = (10, 100, 1000)
-
-_p, _q, _r, _s = (SignalAtom(name) for name in "pqrs")
-
 
 Part = tuple[str, int]
 """Names that are true, and at how many rows; behind `?` a name that is drawn at each."""
+
+_WORDS = {
+    "BETWEEN": "(r and not q and once q)",  # the scope between q and r has just ended
+    "OPENS": "(q and not r and eventually r)",  # it opens, if it ever closes
+    "ANSWERED": "((s -> once[LOW, HIGH] p) and not ((not s) since[HIGH, inf) p))",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +34,7 @@ class Family:
     Attributes:
         name: property and scope.
         names: the columns.
-        past: the past form for the bounds low and high, to hold at every row.
+        past: the past form, to hold at every row; with `LOW` and `HIGH` bounds.
         future: the future form, likewise.
         episode: rows on which both forms hold, for the bounds low and high.
         violation: rows on which the past form is false at the last of them.
@@ -43,10 +42,18 @@ class Family:
 
     name: str
     names: str
-    past: Callable[[int, int], Formula]
-    future: Callable[[int, int], Formula]
+    past: str
+    future: str
     episode: Callable[[random.Random, int, int], Sequence[Part]]
-    violation: Callable[[int, int], Sequence[Part]]
+    violation: Callable[[int], Sequence[Part]]
+
+    def text(self, form: str, high: int) -> str:
+        """The form that is named, for an upper bound."""
+        found: str = getattr(self, form)
+        bounds = {"LOW": f"{low_bound(high)} ns", "HIGH": f"{high} ns"}
+        for word, meaning in {**_WORDS, **bounds}.items():
+            found = found.replace(word, meaning)
+        return found
 
 
 def low_bound(high: int) -> int:
@@ -63,7 +70,6 @@ def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list
         rows: the least length; the last episode is made whole.
         seed: of the random choices.
     """
-    low = low_bound(high)
     rng = random.Random(f"{family.name}/{high}/{seed}")
     columns: dict[str, list[bool]] = {name: [] for name in family.names}
 
@@ -76,44 +82,9 @@ def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list
                     column.extend([name in true] * count)
 
     while len(columns[family.names[0]]) < rows - 2 * high:
-        add(family.episode(rng, low, high))
-    add(family.violation(low, high))
+        add(family.episode(rng, low_bound(high), high))
+    add(family.violation(high))
     return columns
-
-
-def _between() -> Formula:
-    """Where the scope between q and r has just ended."""
-    return two(two(_r, "and", no(_q)), "and", once(_q))
-
-
-def _opens() -> Formula:
-    """Where the scope between q and r opens, if it ever closes."""
-    return two(two(_q, "and", no(_r)), "and", eventually(_r))
-
-
-def _after(inside: Formula) -> Callable[[int, int], Formula]:
-    return lambda _, high: two(once(_q, 0, high), "->", two(inside, "S", _q))
-
-
-def _before(inside: Formula) -> Callable[[int, int], Formula]:
-    return lambda _, high: two(_r, "->", historically(inside, 0, high))
-
-
-def _before_future(inside: Formula) -> Callable[[int, int], Formula]:
-    return lambda _, high: two(eventually(_r, 0, high), "->", two(inside, "U", _r))
-
-
-def _between_past(inside: Formula) -> Callable[[int, int], Formula]:
-    return lambda low, high: two(_between(), "->", two(inside, "S", _q, low, high))
-
-
-def _between_future(inside: Formula) -> Callable[[int, int], Formula]:
-    return lambda low, high: two(_opens(), "->", two(inside, "U", _r, low, high))
-
-
-def _answered(low: int, high: int) -> Formula:
-    in_time = two(_s, "->", once(_p, low, high))
-    return two(in_time, "and", no(two(no(_s), "S", _p, high, None)))
 
 
 def _in_scope(true: str) -> Callable[[random.Random, int, int], Sequence[Part]]:
@@ -150,81 +121,81 @@ FAMILIES = (
     Family(
         "AbsentAQ",
         "qp",
-        _after(no(_p)),
-        lambda _, high: two(_q, "->", always(no(_p), 0, high)),
+        "(once[0 ns, HIGH] q) -> (not p) since q",
+        "q -> always[0 ns, HIGH] not p",
         lambda _rng, _, high: [("q", 1), ("", high), ("?p", high)],
-        lambda _, high: [("q", 1), ("", high - 1), ("p", 1)],
+        lambda high: [("q", 1), ("", high - 1), ("p", 1)],
     ),
     Family(
         "AbsentBR",
         "pr",
-        _before(no(_p)),
-        _before_future(no(_p)),
+        "r -> historically[0 ns, HIGH] not p",
+        "(eventually[0 ns, HIGH] r) -> (not p) until r",
         lambda _rng, _, high: [("?p", high), ("", high), ("r", 1)],
-        lambda _, high: [("p", 1), ("", high - 1), ("r", 1)],
+        lambda high: [("p", 1), ("", high - 1), ("r", 1)],
     ),
     Family(
         "AbsentBQR",
         "qpr",
-        _between_past(no(_p)),
-        _between_future(no(_p)),
+        "BETWEEN -> (not p) since[LOW, HIGH] q",
+        "OPENS -> (not p) until[LOW, HIGH] r",
         _in_scope(""),
-        lambda _, high: [("q", 1), ("", high - 2), ("p", 1), ("r", 1)],
+        lambda high: [("q", 1), ("", high - 2), ("p", 1), ("r", 1)],
     ),
     Family(
         "AlwaysAQ",
         "qp",
-        _after(_p),
-        lambda _, high: two(_q, "->", always(_p, 0, high)),
+        "(once[0 ns, HIGH] q) -> p since q",
+        "q -> always[0 ns, HIGH] p",
         lambda _rng, _, high: [("qp", 1), ("p", high), ("?p", high)],
-        lambda _, high: [("qp", 1), ("p", high - 1), ("", 1)],
+        lambda high: [("qp", 1), ("p", high - 1), ("", 1)],
     ),
     Family(
         "AlwaysBR",
         "pr",
-        _before(_p),
-        _before_future(_p),
+        "r -> historically[0 ns, HIGH] p",
+        "(eventually[0 ns, HIGH] r) -> p until r",
         lambda _rng, _, high: [("?p", high), ("p", high), ("pr", 1)],
-        lambda _, high: [("", 1), ("p", high - 1), ("pr", 1)],
+        lambda high: [("", 1), ("p", high - 1), ("pr", 1)],
     ),
     Family(
         "AlwaysBQR",
         "qpr",
-        _between_past(_p),
-        _between_future(_p),
+        "BETWEEN -> p since[LOW, HIGH] q",
+        "OPENS -> p until[LOW, HIGH] r",
         _in_scope("p"),
-        lambda _, high: [("qp", 1), ("p", high + 1), ("pr", 1)],
+        lambda high: [("qp", 1), ("p", high + 1), ("pr", 1)],
     ),
     Family(
         "RecurGLB",
         "p",
-        lambda _, high: once(_p, 0, high),
-        lambda _, high: eventually(_p, 0, high),
+        "once[0 ns, HIGH] p",
+        "eventually[0 ns, HIGH] p",
         lambda rng, _, high: [("p", 1), _recurring(rng, high)],
-        lambda _, high: [("p", 1), ("", high + 1)],
+        lambda high: [("p", 1), ("", high + 1)],
     ),
     Family(
         "RecurBQR",
         "qpr",
-        lambda _, high: two(_between(), "->", two(once(two(_p, "or", _q), 0, high), "S", _q)),
-        lambda _, high: two(_opens(), "->", two(once(two(_p, "or", _q), 0, high), "U", _r)),
+        "BETWEEN -> (once[0 ns, HIGH] (p or q)) since q",
+        "OPENS -> (once[0 ns, HIGH] (p or q)) until r",
         _recurring_between,
-        lambda _, high: [("q", 1), ("", high + 1), ("r", 1)],
+        lambda high: [("q", 1), ("", high + 1), ("r", 1)],
     ),
     Family(
         "RespondGLB",
         "ps",
-        _answered,
-        lambda low, high: two(_p, "->", eventually(_s, low, high)),
+        "ANSWERED",
+        "p -> eventually[LOW, HIGH] s",
         _responding,
-        lambda _, high: [("p", 1), ("", high)],
+        lambda high: [("p", 1), ("", high)],
     ),
     Family(
         "RespondBQR",
         "qpsr",
-        lambda low, high: two(_between(), "->", two(_answered(low, high), "S", _q)),
-        lambda low, high: two(_opens(), "->", two(_p, "->", eventually(_s, low, high))),
+        "BETWEEN -> ANSWERED since q",
+        "OPENS -> (p -> eventually[LOW, HIGH] s)",
         _responding_between,
-        lambda _, high: [("q", 1), ("p", 1), ("", high + 1), ("r", 1)],
+        lambda high: [("q", 1), ("p", 1), ("", high + 1), ("r", 1)],
     ),
 )

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon import loads
 from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.rewrite import without_spans
 from rvmon.spec.print import format_formula
 
 Column = Sequence[bool | float]
@@ -44,6 +46,18 @@ class Workload:
             any(column[row] != column[row - 1] for column in columns) for row in range(1, self.rows)
         )
         return changed / max(self.rows - 1, 1)
+
+
+def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:
+    """A formula of our language over Boolean signals, and numbers.
+
+    >>> formula("p -> within 3 ns x > 1", reals="x").interval is None
+    True
+    """
+    numbers = f"signal {reals} : real\n" if reals else ""
+    declared = f"time sampled\nsignal {bools} : bool\n{numbers}"
+    spec = loads(f"{declared}requirement R\n  upon start then ({text})\n")
+    return without_spans(spec.checked.requirements["R"].consequent)
 
 
 def specification(requirements: Sequence[str], columns: Mapping[str, Column]) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from benchmarks.peers.ways import Question, answers, ask_oracle
-from benchmarks.timing.timescales import FAMILIES, Family, low_bound, trace
+from benchmarks.timing.timescales import FAMILIES, Family, trace
+from benchmarks.timing.workload import formula
 
 from rvmon.spec.checked.specification import TimeModel
 
@@ -15,8 +16,8 @@ HIGH = 6
 def test_past_form(family: Family) -> None:
     """The past form holds at every row of a trace but the last."""
     columns = trace(family, HIGH, 60)
-    formula = family.past(low_bound(HIGH), HIGH)
-    found = answers(Question(formula, columns, TimeModel.SAMPLED), ask_oracle)
+    asked = formula(family.text("past", HIGH))
+    found = answers(Question(asked, columns, TimeModel.SAMPLED), ask_oracle)
     assert found[:-1] == [True] * (len(found) - 1)
     assert found[-1] is False
 
@@ -25,8 +26,8 @@ def test_past_form(family: Family) -> None:
 def test_future_form(family: Family) -> None:
     """The future form is false nowhere before the violation at the end."""
     columns = trace(family, HIGH, 60)
-    formula = family.future(low_bound(HIGH), HIGH)
-    found = answers(Question(formula, columns, TimeModel.SAMPLED), ask_oracle)
+    asked = formula(family.text("future", HIGH))
+    found = answers(Question(asked, columns, TimeModel.SAMPLED), ask_oracle)
     assert False not in found[: -2 * HIGH]
     assert True in found
 
