@@ -11,23 +11,14 @@ from contextlib import ExitStack, closing
 from threading import Event
 from typing import Any
 
-from benchmarks.lossy.live import closed
+from benchmarks.lossy.live import Topics
 from benchmarks.lossy.trial import Trial, Verdicts, batches
 from benchmarks.lossy.wires import until_told
 from tests.tools.servers import LOOPBACK, until
 
 from rvmon.adapters import dds
 from rvmon.adapters.messages import MessageFeed
-from rvmon.live import Driver, SimulatedClock
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.schema import Kind
-
-_TYPES = {
-    Kind.BOOL: "std_msgs/msg/Bool",
-    Kind.INT: "std_msgs/msg/Int64",
-    Kind.REAL: "std_msgs/msg/Float64",
-    Kind.LABEL: "std_msgs/msg/String",
-}
 
 
 def domain() -> int:
@@ -48,26 +39,21 @@ class _Gate(MessageFeed):
         super().take(topic, content)
 
 
-class _Talker:
+class _Talker(Topics):
     """One run: a topic for each name, and what hears them."""
 
     def __init__(self, home: str, trial: Trial, mouth: _Mouth) -> None:
-        self.trial, self.samples = trial, trial.case.samples
-        spec = trial.case.spec
-        topics = {n: f"{home}/{n}" for n in (*spec.signals, *spec.events)}
-        reading = trial.spec.reading(columns=topics)
-        self.clock = SimulatedClock(self.samples[0].t)
-        self.driver = Driver(reading, clock=self.clock, sources=trial.case.names)
-        self.feed = _Gate(self.driver, reading.schema)
+        super().__init__(trial, home)
+        self.feed = _Gate(self.driver, self.reading.schema)
         self.feed.gate = Event()
         self.feed.gate.set()
         self.source = dds.DdsSource(self.feed, domain=domain())
-        self.mouth, self.topics = mouth, topics
-        for name, topic in topics.items():
-            kind = _TYPES[spec.signals[name].type.kind] if name in spec.signals else _EMPTY
-            mouth.say([topic, kind])
+        self.mouth = mouth
+        for name, topic in self.topics.items():
+            mouth.say([topic, f"std_msgs/msg/{self.kind(name)}"])
         heard = {name for one in self.samples[: trial.lost.start] for name in one.values}
-        is_full = {*self.samples[trial.lost.start].values} <= heard & spec.signals.keys()
+        signals = trial.case.spec.signals.keys()
+        is_full = {*self.samples[trial.lost.start].values} <= heard & signals
         self.how = trial.rng.choice(("depth", "flood")) if is_full else "flood"
         trial.is_named = True
         if self.how == "depth":
@@ -81,9 +67,7 @@ class _Talker:
 
     def write(self, name: str, value: Any) -> None:
         """Publish what is said of a name."""
-        signal = self.trial.case.spec.signals.get(name)
-        is_real = signal is not None and signal.type.kind is Kind.REAL
-        self.mouth.say([self.topics[name], None, float(value) if is_real else value])
+        self.mouth.say([self.topics[name], None, self.said(name, value)])
 
     def play(self) -> None:
         """Publish samples in their time, those that are to be lost in their way."""
@@ -92,9 +76,7 @@ class _Talker:
             if place in self.trial.lost and self.how == "depth":
                 self._fill(place)
             elif place in self.trial.lost:
-                self.driver._waiting.room = 0
-                self.driver.offer(sample.values, t_ns=sample.t)
-                self.driver._waiting.room = 10_000
+                self.flood(place)
             else:
                 least = self.driver.waiting + len(sample.values)
                 for name, value in sample.values.items():
@@ -120,9 +102,6 @@ class _Talker:
             until_told(self.driver, before + 1)
             self.feed.gate.set()
             until_told(self.driver, before + 4)  # lost, twice the former, found
-
-
-_EMPTY = "std_msgs/msg/Empty"
 
 
 class _Mouth:
@@ -183,7 +162,7 @@ def _heard(home: str, trials: Sequence[Trial], mouth: _Mouth) -> Sequence[Verdic
             until(talker.is_connected)
             talker.play()
     mouth.say([])
-    return [closed(one.driver, one.clock, one.trial) for one in talkers]
+    return [one.verdicts() for one in talkers]
 
 
 def main() -> None:

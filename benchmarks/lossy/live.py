@@ -17,6 +17,7 @@ from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines
 from rvmon.errors import TraceError
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
 from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
 
 
 def one_by_one(
@@ -50,13 +51,53 @@ def closed(driver: Driver, clock: SimulatedClock, trial: Trial) -> Verdicts:
     return driver.close()[""][-1].verdicts
 
 
+class Heard:
+    """One run that is heard; its driver works when it is told to."""
+
+    def __init__(self, trial: Trial, reading: Any = None) -> None:
+        self.trial, self.samples = trial, trial.case.samples
+        self.clock = SimulatedClock(self.samples[0].t)
+        self.driver = Driver(reading or trial.spec, clock=self.clock, sources=trial.case.names)
+
+    def flood(self, place: int) -> None:
+        """Have a sample come where there is no room."""
+        self.driver._waiting.room = 0
+        self.driver.offer(self.samples[place].values, t_ns=self.samples[place].t)
+        self.driver._waiting.room = 10_000
+
+    def verdicts(self) -> Verdicts:
+        """Those of the end."""
+        return closed(self.driver, self.clock, self.trial)
+
+
+class Topics(Heard):
+    """One run of which each name is a topic of ROS, below a home."""
+
+    def __init__(self, trial: Trial, home: str) -> None:
+        self.topics = {
+            n: f"{home}/{n}" for n in (*trial.case.spec.signals, *trial.case.spec.events)
+        }
+        self.reading = trial.spec.reading(columns=self.topics)
+        super().__init__(trial, self.reading)
+
+    def kind(self, name: str) -> str:
+        """The type of std_msgs that carries a name."""
+        signal = self.trial.case.spec.signals.get(name)
+        return "Empty" if signal is None else _KINDS[signal.type.kind]
+
+    def said(self, name: str, value: Any) -> Any:
+        """A value, as the type of its topic has it."""
+        return float(value) if self.kind(name) == "Float64" else value
+
+
+_KINDS = {Kind.BOOL: "Bool", Kind.INT: "Int64", Kind.REAL: "Float64", Kind.LABEL: "String"}
+
+
 @one_by_one
 def stdin(trial: Trial) -> Verdicts:
     """Lines that are damaged, come late, or have lines of nobody between them, in pieces."""
-    rng, samples = trial.rng, trial.case.samples
-    clock = SimulatedClock(samples[0].t)
-    driver = Driver(trial.spec, clock=clock, sources=trial.case.names)
-    lines = [object_of(one) for one in samples]
+    rng, run = trial.rng, Heard(trial)
+    lines = [object_of(one) for one in run.samples]
     kept = [line for place, line in enumerate(lines) if place not in trial.lost]
     match rng.choice(("damaged", "late", "cut")):
         case "damaged":
@@ -72,8 +113,8 @@ def stdin(trial: Trial) -> Verdicts:
             torn = b"\n".join(_lost(trial, lines))
             torn = torn[: rng.randrange(1, len(lines[trial.lost.start]) - 1)]
             kept.insert(trial.lost.start, torn)
-    feed_lines(JsonObjects(driver, clock=clock), _piped(rng, kept))
-    return closed(driver, clock, trial)
+    feed_lines(JsonObjects(run.driver, clock=run.clock), _piped(rng, kept))
+    return run.verdicts()
 
 
 def _lost(trial: Trial, lines: Sequence[bytes]) -> Sequence[bytes]:

@@ -12,15 +12,13 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from benchmarks.lossy.live import closed
+from benchmarks.lossy.live import Topics
 from benchmarks.lossy.trial import Trial, Verdicts, batches
 from benchmarks.lossy.wires import until_told
 from tests.tools.servers import SYSTEM, master_of_ros1, until
 
-from rvmon.live import Driver, SimulatedClock
 from rvmon.session import Spec
 from rvmon.testing.generate.trace import Case
-from rvmon.trace.schema import Kind
 
 _TOGETHER = 25
 
@@ -64,44 +62,32 @@ class _Begun:
         self._process.communicate()
 
 
-class _Talker:
+class _Talker(Topics):
     """One run: a topic for each name, and what hears them."""
 
     def __init__(self, number: int, trial: Trial) -> None:
         from rvmon.adapters.messages import MessageFeed
         from rvmon.adapters.ros1 import Ros1Source
 
-        self.trial, self.samples = trial, trial.case.samples
-        spec = trial.case.spec
-        self._topics = {n: f"/r{number}/{n}" for n in (*spec.signals, *spec.events)}
+        super().__init__(trial, f"/r{number}")
         self._publishers: dict[str, Any] = {}
-        reading = trial.spec.reading(columns=self._topics)
-        self.clock = SimulatedClock(self.samples[0].t)
-        self.driver = Driver(reading, clock=self.clock, sources=trial.case.names)
-        self.source = Ros1Source(MessageFeed(self.driver, reading.schema))
-        is_plain = all(name in spec.signals for name in trial.names)
+        self.source = Ros1Source(MessageFeed(self.driver, self.reading.schema))
+        is_plain = all(name in trial.case.spec.signals for name in trial.names)
         self.how = trial.rng.choice(("down", "damaged" if is_plain else "down", "flood"))
 
     def advertise(self) -> None:
         """Begin to publish what is heard, each name by itself."""
         import rospy
 
-        for name, topic in self._topics.items():
+        for name, topic in self.topics.items():
             if self.trial.case.names is None or name in self.trial.case.names:
-                kind = self._kind(name)
+                kind = self._type(name)
                 self._publishers[name] = rospy.Publisher(topic, kind, queue_size=100)
 
-    def _kind(self, name: str) -> Any:
+    def _type(self, name: str) -> Any:
         from std_msgs import msg
 
-        kinds = {
-            Kind.BOOL: msg.Bool,
-            Kind.INT: msg.Int64,
-            Kind.REAL: msg.Float64,
-            Kind.LABEL: msg.String,
-        }
-        signal = self.trial.case.spec.signals.get(name)
-        return msg.Empty if signal is None else kinds[signal.type.kind]
+        return getattr(msg, self.kind(name))
 
     def is_connected(self) -> bool:
         """Whether each topic is heard."""
@@ -111,12 +97,11 @@ class _Talker:
         """Publish a sample, name by name, and wait until it is here."""
         before, values = self.driver.waiting, self.samples[place].values
         for name, value in values.items():
-            kind = self._kind(name)
+            kind = self._type(name)
             if is_damaged:
                 kind = type(kind.__name__, (kind,), {"serialize": lambda *_: None})
-            signal = self.trial.case.spec.signals.get(name)
-            given: Any = float(value) if signal and signal.type.kind is Kind.REAL else value  # type: ignore[arg-type]
-            self._publishers[name].publish(kind() if signal is None else kind(given))
+            is_signal = name in self.trial.case.spec.signals
+            self._publishers[name].publish(kind(self.said(name, value)) if is_signal else kind())
         until_told(self.driver, before + len(values))
 
     def play(self, places: range) -> None:
@@ -127,9 +112,7 @@ class _Talker:
             if is_lost and self.how == "down":
                 continue
             if is_lost and self.how == "flood":
-                self.driver._waiting.room = 0
-                self.driver.offer(self.samples[place].values, t_ns=self.samples[place].t)
-                self.driver._waiting.room = 10_000
+                self.flood(place)
             else:
                 self.send(place, is_damaged=is_lost)
             if self.trial.rng.random() < 0.3:
@@ -198,7 +181,7 @@ def _verdicts(given: Sequence[_Given]) -> list[tuple[str, Verdicts]]:
         until(talker.is_connected)
         until_told(talker.driver, len(talker._publishers))
         talker.play(range(talker.trial.lost.stop, len(talker.samples)))
-    return [(one.how, dict(closed(one.driver, one.clock, one.trial))) for one in talkers]
+    return [(one.how, dict(one.verdicts())) for one in talkers]
 
 
 if __name__ == "__main__":

@@ -7,13 +7,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from benchmarks.lossy.live import closed, damaged, object_of
+from benchmarks.lossy.live import Heard, damaged, object_of
 from benchmarks.lossy.trial import Trial, Verdicts, batches
 from tests.tools.servers import Broker, until
 
 from rvmon.adapters.json_objects import JsonObjects
 from rvmon.adapters.mqtt import MqttSource, address_of
-from rvmon.live import Driver, SimulatedClock
+from rvmon.live import Driver
 from rvmon.trace.sample import Sample
 
 
@@ -36,20 +36,17 @@ class _Counted(JsonObjects):
         self.came += 1
 
 
-class _Subscribed:
-    """One run that is heard over MQTT; its driver works when it is told to."""
+class _Subscribed(Heard):
+    """One run that is heard over MQTT."""
 
     def __init__(
         self, trial: Trial, how: Sequence[str], number: int, port: int, publish: Any
     ) -> None:
-        self.trial = trial
+        super().__init__(trial)
         self.how = trial.rng.choice(how)
-        self.samples = trial.case.samples
-        self.clock = SimulatedClock(self.samples[0].t)
-        self.driver = Driver(trial.spec, clock=self.clock, sources=trial.case.names)
         self.objects = _Counted(self.driver)
         self.source = MqttSource(self.objects, address_of(f"mqtt://127.0.0.1:{port}/r{number}/#"))
-        self._topic, self._publish, self._sent = f"r{number}/", publish, 0
+        self._topic, self._publish, self._sent = f"r{number}", publish, 0
 
     def send(self, sample: Sample, *, stamped: bool = False, is_damaged: bool = False) -> None:
         """Publish a sample, and wait until it is here."""
@@ -57,7 +54,7 @@ class _Subscribed:
         if is_damaged:
             text = damaged(self.trial.rng, text)
         self._sent += 1
-        self._publish(self._topic[:-1], text)
+        self._publish(self._topic, text)
         until(lambda: self.objects.came == self._sent)
 
     def play(self, places: range) -> None:
@@ -83,7 +80,7 @@ class _Subscribed:
             for place in self.trial.lost:
                 self.driver.work()
                 self.send(self.samples[place], stamped=True)
-        return closed(self.driver, self.clock, self.trial)
+        return super().verdicts()
 
 
 _TOGETHER = 25

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from rvmon.spec.checked.formula import (
@@ -32,6 +33,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Window
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import (
     BOOLS,
@@ -64,49 +66,19 @@ def timed(op: UnaryOp, formula: Formula, low: int = 0, high: int | None = None) 
     return Unary(op, formula, Interval(low, high))
 
 
-def eventually(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
-    """`F[low, high] formula`."""
-    return timed(UnaryOp.EVENTUALLY, formula, low, high)
-
-
-def always(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
-    """`G[low, high] formula`."""
-    return timed(UnaryOp.ALWAYS, formula, low, high)
-
-
-def once(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
-    """`O[low, high] formula`."""
-    return timed(UnaryOp.ONCE, formula, low, high)
-
-
-def historically(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
-    """`H[low, high] formula`."""
-    return timed(UnaryOp.HISTORICALLY, formula, low, high)
+eventually = partial(timed, UnaryOp.EVENTUALLY)
+always = partial(timed, UnaryOp.ALWAYS)
+once = partial(timed, UnaryOp.ONCE)
+historically = partial(timed, UnaryOp.HISTORICALLY)
+following = partial(Unary, UnaryOp.NEXT)
+previous = partial(Unary, UnaryOp.PREVIOUS)
+rise = partial(Unary, UnaryOp.RISE)
+fall = partial(Unary, UnaryOp.FALL)
 
 
 def held(formula: Formula, duration: int) -> Formula:
     """`held(formula, duration)`."""
     return timed(UnaryOp.HELD, formula, 0, duration)
-
-
-def following(formula: Formula) -> Formula:
-    """`X formula`."""
-    return Unary(UnaryOp.NEXT, formula)
-
-
-def previous(formula: Formula) -> Formula:
-    """`Y formula`."""
-    return Unary(UnaryOp.PREVIOUS, formula)
-
-
-def rise(formula: Formula) -> Formula:
-    """`rise(formula)`."""
-    return Unary(UnaryOp.RISE, formula)
-
-
-def fall(formula: Formula) -> Formula:
-    """`fall(formula)`."""
-    return Unary(UnaryOp.FALL, formula)
 
 
 def two(left: Formula, op: str, right: Formula, *interval: int | None) -> Formula:
@@ -116,41 +88,23 @@ def two(left: Formula, op: str, right: Formula, *interval: int | None) -> Formul
     Interval(low=0, high=3)
     """
     found = BinaryOp.of(op)
-    if found in _TEMPORAL:
-        low, high = interval if interval else (0, None)
-        return Binary(found, left, right, Interval(low or 0, high))
-    return Binary(found, left, right)
-
-
-_TEMPORAL = (
-    BinaryOp.UNTIL,
-    BinaryOp.RELEASE,
-    BinaryOp.WEAK_UNTIL,
-    BinaryOp.STRONG_RELEASE,
-    BinaryOp.SINCE,
-)
+    if found.entry.window is Window.NONE:
+        return Binary(found, left, right)
+    low, high = interval if interval else (0, None)
+    return Binary(found, left, right, Interval(low or 0, high))
 
 
 def scaled(formula: Formula, factor: int) -> Formula:
     """The formula with all its bounds so many times as large."""
-    match formula:
-        case Unary(operand=operand, interval=interval):
-            wider = _scaled_interval(interval, factor)
-            return replace(formula, operand=scaled(operand, factor), interval=wider)
-        case Binary(left=left, right=right, interval=interval):
-            wider = _scaled_interval(interval, factor)
-            return replace(
-                formula, left=scaled(left, factor), right=scaled(right, factor), interval=wider
-            )
-        case _:
-            return formula
-
-
-def _scaled_interval(interval: Interval | None, factor: int) -> Interval | None:
-    if interval is None:
-        return None
-    high = None if interval.high is None else interval.high * factor
-    return Interval(interval.low * factor, high)
+    if not isinstance(formula, Unary | Binary):
+        return formula
+    if (window := formula.interval) is not None:
+        high = None if window.high is None else window.high * factor
+        formula = replace(formula, interval=Interval(window.low * factor, high))
+    if isinstance(formula, Unary):
+        return replace(formula, operand=scaled(formula.operand, factor))
+    left, right = scaled(formula.left, factor), scaled(formula.right, factor)
+    return replace(formula, left=left, right=right)
 
 
 def compared(left: Numeric, op: str, right: Numeric | float | str) -> Formula:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable
+from dataclasses import replace
+from itertools import product
 
 from rvmon.coverage import (
     Ending,
@@ -28,14 +30,11 @@ SECOND = 1_000_000_000
 def door_model() -> Model:
     """Two coverpoints, their cross with an illegal and an ignored item, and a requirement."""
     gaze, near = ["yes", "no"], ["touch", "reach", "far"]
-    crossed = {}
-    for look in gaze:
-        for place in near:
-            name = combination([look, place])
-            kind = {("no", "touch"): BinKind.ILLEGAL, ("yes", "far"): BinKind.IGNORE}.get(
-                (look, place), BinKind.GOAL
-            )
-            crossed[name] = Item(name, kind)
+    kinds = {("no", "touch"): BinKind.ILLEGAL, ("yes", "far"): BinKind.IGNORE}
+    crossed = {
+        combination(pair): Item(combination(pair), kinds.get(pair, BinKind.GOAL))
+        for pair in product(gaze, near)
+    }
     return model_of(
         [
             group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no", goal=3)]),
@@ -85,14 +84,9 @@ def fill(database: Database) -> None:
         ),
     ]
     for number, (test, hits) in enumerate(tests):
-        database.record(_placed(test, number), hits)
+        placed = replace(test, number=number, when=number * SECOND, seconds=0.5)
+        database.record(placed, hits)
     database.explain("near", "far", "the arm is 1 m long: `far` begins at 1 m")
-
-
-def _placed(test: TestRecord, number: int) -> TestRecord:
-    from dataclasses import replace
-
-    return replace(test, number=number, when=number * SECOND, seconds=0.5)
 
 
 def random_database(seed: int) -> Database:

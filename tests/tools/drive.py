@@ -16,36 +16,29 @@ from rvmon.verdict.report import Report
 class Monitored(Protocol):
     """The part of a monitor that is driven."""
 
-    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        """Take a sample."""
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]: ...
 
-    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
-        """Let time pass."""
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]: ...
 
-    def finish_ns(self, t_ns: int | None = None, /) -> Report:
-        """End the trace."""
+    def finish_ns(self, t_ns: int | None = None, /) -> Report: ...
 
 
 class Losing(Monitored, Protocol):
     """A monitor that can be told of outages."""
 
-    def lose(self, names: Iterable[str], since: int, /) -> bool:
-        """Lose some names."""
+    def lose(self, names: Iterable[str], since: int, /) -> bool: ...
 
-    def found(self, names: Iterable[str], at: int, /) -> bool:
-        """Find them again."""
+    def found(self, names: Iterable[str], at: int, /) -> bool: ...
 
 
 class OnlineMonitor(Monitored, Protocol):
     """A monitor that can be asked at any time."""
 
     @property
-    def open(self) -> Sequence[Attempt]:
-        """The attempts that are undecided now."""
+    def open(self) -> Sequence[Attempt]: ...
 
     @property
-    def next_due(self) -> int | None:
-        """The next instant at which time alone can decide something."""
+    def next_due(self) -> int | None: ...
 
 
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:

@@ -143,37 +143,31 @@ class Stepped:
         return decided
 
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
-        """Let time pass."""
         self._asked = False
         decided: Sequence[Attempt] = self._monitor.advance_ns(t_ns)
         return decided
 
     def lose(self, names: Iterable[str], since: int, /) -> bool:
-        """Lose some names."""
         self._asked = False
         self._monitor.lose_ns(names, since)
         return True
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
-        """Find them again."""
         self._asked = False
         self._monitor.found_ns(names, at)
         return True
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
-        """End the trace."""
         report: Report = self._monitor.finish_ns(t_ns)
         return report
 
     @property
     def open(self) -> Sequence[Attempt]:
-        """The attempts that are undecided now."""
         attempts: Sequence[Attempt] = self._monitor.open
         return attempts
 
     @property
     def next_due(self) -> int | None:
-        """The next instant at which time alone can decide something."""
         due: int | None = self._monitor.next_due
         return due
 
@@ -264,7 +258,6 @@ class ByRows:
         self._rng = random.Random(len(case.actions))
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        """Take a sample."""
         if self._rng.random() < 0.1:
             self._feed()
             if not self._run.judge(t_ns, self._planned.plain(t_ns, values), True):
@@ -274,23 +267,19 @@ class ByRows:
         return ()
 
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
-        """Let time pass."""
         self._feed()
         self._run.advance(t_ns)
         return ()
 
     def lose(self, names: Iterable[str], since: int, /) -> bool:
-        """Lose some names."""
         self._feed()
         return self._run.lose([self._planned.numbers[name] for name in names], since)
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
-        """Find them again."""
         self._feed()
         return self._run.found([self._planned.numbers[name] for name in names], at)
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
-        """End the trace."""
         self._feed()
         origin, _, _ = self._run.times()
         end = self._run.finish(t_ns)

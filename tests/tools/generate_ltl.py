@@ -2,67 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from dataclasses import replace
 
-from rvmon.spec.checked.formula import (
-    Binary,
-    BinaryOp,
-    Formula,
-    Interval,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-)
-from rvmon.testing.generate import BOOLS, Rng, chance, pick
+from rvmon.spec.checked.formula import Binary, BoundAtom, Formula, Interval, SignalAtom, Unary
+from rvmon.testing.generate import BOOLS, Rng, pick
+from rvmon.testing.generate.formula import Shape, formula
 
-_EVER = Interval(0, None)
-_UNARY = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)
-_BINARY = (
-    BinaryOp.AND,
-    BinaryOp.OR,
-    BinaryOp.IMPLIES,
-    BinaryOp.IFF,
-    BinaryOp.XOR,
-    BinaryOp.UNTIL,
-    BinaryOp.RELEASE,
-    BinaryOp.WEAK_UNTIL,
-    BinaryOp.STRONG_RELEASE,
-)
-_TIMED = (*_BINARY[5:], UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)
-
-
-_FROM_ZERO = (BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
-_LONGEST = 3
+_SHAPE = Shape(past=False, numbers=False, events=False, constants=0, longest=3)
 
 
 def random_ltl(rng: Rng, depth: int) -> Formula:
     """A random untimed formula of future operators, at most `depth` of them nested."""
-    return _formula(rng, depth, _UNARY, lambda _: _EVER)
+    return _over_signals(rng, formula(rng, replace(_SHAPE, step=True), depth), is_timed=False)
 
 
 def random_mtl(rng: Rng, depth: int) -> Formula:
     """A random formula of future operators with windows of a few ticks, without `X`."""
-    unary = tuple(op for op in _UNARY if op is not UnaryOp.NEXT)
-    return _formula(rng, depth, unary, lambda op: _window(rng, from_zero=op in _FROM_ZERO))
+    return _over_signals(rng, formula(rng, _SHAPE, depth), is_timed=True)
 
 
-def _formula(
-    rng: Rng, depth: int, unary: Sequence[UnaryOp], window: Callable[[UnaryOp | BinaryOp], Interval]
-) -> Formula:
-    if depth == 0 or chance(rng, 8):
+def _over_signals(rng: Rng, made: Formula, *, is_timed: bool) -> Formula:
+    """The formula without `start`, and perhaps without bounds."""
+    if isinstance(made, BoundAtom):
         return SignalAtom(pick(rng, BOOLS))
-    if chance(rng, 45):
-        op = pick(rng, unary)
-        interval = window(op) if op in _TIMED else None
-        return Unary(op, _formula(rng, depth - 1, unary, window), interval)
-    binary = pick(rng, _BINARY)
-    interval = window(binary) if binary in _TIMED else None
-    left = _formula(rng, rng.randint(0, depth - 1), unary, window)
-    return Binary(binary, left, _formula(rng, depth - 1, unary, window), interval)
-
-
-def _window(rng: Rng, *, from_zero: bool) -> Interval:
-    low = 0 if from_zero or chance(rng, 60) else rng.randint(1, _LONGEST)
-    if chance(rng, 20):
-        return Interval(low, None)
-    return Interval(low, rng.randint(max(low, 1), _LONGEST))
+    if isinstance(made, Unary | Binary) and made.interval is not None and not is_timed:
+        made = replace(made, interval=Interval())
+    if isinstance(made, Unary):
+        return replace(made, operand=_over_signals(rng, made.operand, is_timed=is_timed))
+    if isinstance(made, Binary):
+        left, right = (
+            _over_signals(rng, one, is_timed=is_timed) for one in (made.left, made.right)
+        )
+        return replace(made, left=left, right=right)
+    return made

@@ -16,24 +16,24 @@ event g(k: int)
 requirement R
 """
 
-_CHAIN_HEADS = (
+_HEADS = (
     "always ({})",
-    "always (p -> {})",
-    "whenever p and r then {}",
-    "whenever p or {} then {}",
-    "upon p then {}",
+    "whenever p then {}",
     "upon e then {}",
-    "upon p then r R {}",
     "upon start then {}",
     "upon g then {}\n  for each k in g.k",
     "upon p then {}\n  let v = x",
 )
-
-_TAILS = (
-    "",
-    "  at end: strict\n",
-    "  at end: strong\n",
+_CHAIN_HEADS = (
+    *_HEADS,
+    "always (p -> {})",
+    "whenever p and r then {}",
+    "whenever p or {} then {}",
+    "upon p then {}",
+    "upon p then r R {}",
 )
+
+_TAILS = ("", "  at end: strict\n", "  at end: strong\n")
 
 
 def random_chain(rng: random.Random, *, untils: bool = False) -> CheckedSpec:
@@ -64,15 +64,6 @@ _ATOMS = (
     *("x > 0", "x > 1", "x <= 2", "y > 0", "y >= 2", "y < 3", "x == y", "g.k > 0", "g.k > 1"),
 )
 
-_LETTER_HEADS = (
-    "always ({})",
-    "whenever p then {}",
-    "upon e then {}",
-    "upon start then {}",
-    "upon g then {}\n  for each k in g.k",
-    "upon p then {}\n  let v = x",
-)
-
 
 def random_letters(rng: random.Random) -> CheckedSpec:
     """A specification with such a requirement, of 17 or 18 propositions, in any model of time."""
@@ -80,5 +71,5 @@ def random_letters(rng: random.Random) -> CheckedSpec:
     window, joint = rng.choice((("F", " or "), ("G", " and ")))
     parts = rng.sample(_ATOMS, rng.randint(17, 18))
     formula = joint.join(f"{window}[0 ns, {n} ns] ({part})" for n, part in enumerate(parts))
-    text = rng.choice(_LETTER_HEADS).format(formula)
+    text = rng.choice(_HEADS).format(formula)
     return rvmon.loads(f"time {time}\n{_SIGNALS}  {text}\n").checked

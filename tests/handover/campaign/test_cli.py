@@ -13,7 +13,7 @@ import time
 from dataclasses import replace
 
 import pytest
-from tests.tools.shared_folder import shared_folder
+from tests.handover.campaign.shared_folder import shared_folder
 
 from handover.campaign.campaign import handover_campaign
 from handover.campaign.table1 import spread, spread_text

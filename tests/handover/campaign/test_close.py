@@ -5,7 +5,7 @@ import io
 import json
 
 import pytest
-from tests.tools.shared_folder import shared_folder
+from tests.handover.campaign.shared_folder import shared_folder
 
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main

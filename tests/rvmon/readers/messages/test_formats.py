@@ -7,6 +7,12 @@ import sqlite3
 import struct
 
 import pytest
+from tests.rvmon.readers.messages.flatbuffers import (
+    message_of,
+    packed,
+    schema_of,
+    write_flatbuffer_mcap,
+)
 from tests.tools.bags import (
     HEADER,
     SHOP,
@@ -18,7 +24,6 @@ from tests.tools.bags import (
     write_ros1,
     write_ros2,
 )
-from tests.tools.flatbuffers import message_of, packed, schema_of, write_flatbuffer_mcap
 
 import rvmon
 from rvmon.cli import main
