@@ -8,18 +8,28 @@ import re
 from collections.abc import Iterator
 
 from handover.cli import _parser as handover_parser
-from rvmon.cli import GROUPS
+from rvmon.cli import COMMANDS, GROUPS
 from rvmon.cli import _parser as rvmon_parser
 
 
 def commands(program: str) -> str:
     """Every subcommand of a program with its usage, arguments and example."""
     os.environ["COLUMNS"] = "80"
-    parser = rvmon_parser([]) if program == "rvmon" else handover_parser()
-    groups = GROUPS if program == "rvmon" else {}
+    is_ours = program == "rvmon"
+    parsers = [rvmon_parser([name]) for name in COMMANDS] if is_ours else [handover_parser()]
+    groups = GROUPS if is_ours else {}
     parts = [f"* {group}: {', '.join(map(_link, names))}" for group, names in groups.items()]
     return "\n".join(
-        [*parts, "", *(line for command in _subcommands(parser) for line in _section(command))]
+        [
+            *parts,
+            "",
+            *(
+                line
+                for parser in parsers
+                for command in _subcommands(parser)
+                for line in _section(command)
+            ),
+        ]
     )
 
 

@@ -145,7 +145,7 @@ def _interrupted() -> int:
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser with the named subcommand only, or with all for help and for errors."""
+    """The parser with the named subcommand; without one, with the names of all."""
     import argparse
 
     from rvmon.cli.parser import Parser
@@ -168,11 +168,14 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser.add_argument("-h", "--help", action="help", help=hidden)
     parser.add_argument("--version", action="version", version=version, help=hidden)
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True, help=hidden, prog="rvmon")
-    named = [word for word in words[:1] if word in COMMANDS]
-    for command in named or COMMANDS:
-        module = import_module(f"rvmon.cli.{command}")
-        module.add_parser(subparsers)
-        subparsers.choices[command].set_defaults(run=module.run)
-        if command in ("run", "why"):
-            relax(subparsers.choices[command], words)
+    command = next((word for word in words if not word.startswith("-")), "")
+    if command not in COMMANDS:
+        for name in COMMANDS:
+            subparsers.add_parser(name)
+        return parser
+    module = import_module(f"rvmon.cli.{command}")
+    module.add_parser(subparsers)
+    subparsers.choices[command].set_defaults(run=module.run)
+    if command in ("run", "why"):
+        relax(subparsers.choices[command], words)
     return parser

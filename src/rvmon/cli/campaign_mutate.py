@@ -8,9 +8,21 @@ import time
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.mutation.baseline import mutated_code, record_suite
+from rvmon.cdv.mutation.output import (
+    MutationReport,
+    SuiteTried,
+    list_text,
+    mutation_page,
+    report_text,
+)
+from rvmon.cdv.mutation.play import play_mutants
+from rvmon.cdv.mutation.python_mutants import Mutant, code_mutants
+from rvmon.cdv.mutation.spec_mutants import SpecMutant, spec_mutants, try_spec_mutants
+from rvmon.cdv.mutation.tried import equivalents, failing_runs, readers
 from rvmon.cdv.plan import plan
 from rvmon.cdv.tables import to_json
 from rvmon.cdv.test import Test, load
@@ -19,19 +31,12 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import write_whole
 from rvmon.report.folder import made
 
-if TYPE_CHECKING:
-    from rvmon.cdv.mutation.output import MutationReport
-    from rvmon.cdv.mutation.python_mutants import Mutant
-    from rvmon.cdv.mutation.spec_mutants import SpecMutant
-
 MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""
 
 
 def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
     """Play suites on mutants of a robot's code, show and keep the scores, return an exit code."""
-    from rvmon.cdv.mutation.output import list_text, mutation_page, report_text
-
     found = _mutants(campaign, robot, arguments)
     if arguments.list:
         say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
@@ -61,11 +66,6 @@ class _Mutants(NamedTuple):
 
 
 def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
-    from rvmon.cdv.mutation.baseline import mutated_code
-    from rvmon.cdv.mutation.python_mutants import code_mutants
-    from rvmon.cdv.mutation.spec_mutants import spec_mutants
-    from rvmon.cdv.mutation.tried import equivalents
-
     code: list[Mutant] = []
     spec: list[SpecMutant] = []
     equivalent: dict[str, str] = {}
@@ -90,12 +90,6 @@ def _reported(
     found: _Mutants,
     arguments: Namespace,
 ) -> MutationReport:
-    from rvmon.cdv.mutation.baseline import record_suite
-    from rvmon.cdv.mutation.output import MutationReport, SuiteTried
-    from rvmon.cdv.mutation.play import play_mutants
-    from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
-    from rvmon.cdv.mutation.tried import failing_runs, readers
-
     jobs = arguments.jobs or os.cpu_count() or 1
     begun = time.perf_counter()
     spec = campaign.requirements_of(robot)

@@ -6,16 +6,16 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rvmon.cli.options import constants_of, declare
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.parser import duration
+from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
+from rvmon.errors import SpecError
+from rvmon.report.memory_text import memory_lines
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.compiled_cache import compile_cached
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
-
-if TYPE_CHECKING:
-    from rvmon.diagnostics import Diagnostic
-    from rvmon.spec.checked.specification import CheckedSpec
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -91,9 +91,6 @@ def _checked(
     text: str, name: str, constants: Mapping[str, str]
 ) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
     """The specification, or nothing if it is unfit for use, and what is to be reported about it."""
-    from rvmon.errors import SpecError
-    from rvmon.spec.compiled_cache import compile_cached
-
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name
     try:
@@ -114,8 +111,6 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 def _memory(checked: CheckedSpec) -> list[str]:
     """What windows of the past keep."""
-    from rvmon.report.memory_text import memory_lines
-
     return memory_lines(checked)
 
 
@@ -142,8 +137,6 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:
-    from rvmon.diagnostics import coloured, render_concise, render_json, wants_colour
-
     match form:
         case "json":
             say_json(render_json(findings))

@@ -6,8 +6,9 @@ import argparse
 import shlex
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
+from rvmon import __version__
+from rvmon.cli.judging import Judged, Options, judge
 from rvmon.cli.options import READING, constants_of, declare, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.cli.parser import span, ticks
@@ -20,17 +21,17 @@ from rvmon.cli.reading import (
     reading_spec,
 )
 from rvmon.cli.reproduced import ENDING
+from rvmon.clipping.clip import clip, refuse_place
+from rvmon.clipping.piece import Copied, Piece, values_before
 from rvmon.errors import RvmonError
 from rvmon.readers.places import name_of
 from rvmon.report.folder import refuse_no_file
+from rvmon.session import Spec, load
+from rvmon.spec.checked.specification import Mode
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_stamp, format_stamped
-
-if TYPE_CHECKING:
-    from rvmon.cli.judging import Judged
-    from rvmon.clipping.piece import Copied, Piece
-    from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+from rvmon.verdict import LAW
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report, report_of
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -75,9 +76,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Find the attempt, cut the recording, judge the piece, and return the exit code."""
-    from rvmon.clipping.clip import clip, refuse_place
-    from rvmon.session import load
-
     data = arguments.data
     out, case = _places(arguments)
     if case is not None and arguments.attempt is None:
@@ -129,9 +127,7 @@ def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
 
 
 def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: Attempt) -> None:
-    from rvmon import __version__
     from rvmon.reproducer import Case, write_case
-    from rvmon.verdict import LAW
 
     case = Case(
         __version__,
@@ -157,8 +153,6 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
     """What is known of a recording, be it that it breaks off."""
-    from rvmon.verdict.report import report_of
-
     judged = _judged(spec, arguments, trace, name)
     if judged.report is not None:
         return judged.report
@@ -169,16 +163,12 @@ def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
 
 
 def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Judged:
-    from rvmon.cli.judging import Options, judge
-
     allowed = allowed_names(arguments.allow_missing)
     return judge(spec, trace, Options((name,), allow_missing=allowed), is_alone=True)
 
 
 def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
     """What is cut out, with the values that it brings along."""
-    from rvmon.clipping.piece import Piece, values_before
-
     recording = opened(spec, arguments.data)
     ordered = spec.checked.max_delay is None
     start, stop = -TIME_LIMIT, TIME_LIMIT
@@ -202,8 +192,6 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
 
 def _begin(spec: Spec, attempt: Attempt) -> int:
     """Its trigger; of an episode, which may have lasted for hours, when that began what failed."""
-    from rvmon.spec.checked.specification import Mode
-
     blame = attempt.blame
     if blame is None or spec.requirements[attempt.requirement].mode is Mode.UPON:
         return attempt.triggered
@@ -223,9 +211,6 @@ def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt
     An episode that had begun before begins with the piece; what was settled by the end of the
     recording is settled by the piece's.
     """
-    from rvmon.spec.checked.specification import Mode
-    from rvmon.verdict.attempt import Decision
-
     is_episode = spec.requirements[attempt.requirement].mode is Mode.WHENEVER
     by_end = attempt.decision is not Decision.PREFIX
     begin = max(piece.start, attempt.triggered) if is_episode else attempt.triggered

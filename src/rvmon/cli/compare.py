@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say_json
+from rvmon.verdict.compare import Change, Comparison, Difference, compare
+from rvmon.verdict.table_file import read_results
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from rvmon.verdict.compare import Change, Comparison, Difference
 
 LISTED = 20
 """Differences of one kind that the text lists."""
@@ -38,9 +39,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
-    from rvmon.verdict.compare import compare
-    from rvmon.verdict.table_file import read_results
-
     with busy("comparing verdicts"):
         found = compare(read_results(arguments.before), read_results(arguments.after))
     if arguments.format == "json":

@@ -5,18 +5,20 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import duration
 from rvmon.errors import TraceError, UnknownNameError
+from rvmon.readers.found import found_recordings
+from rvmon.readers.recording import FileRecording
 from rvmon.texts import counted
-
-if TYPE_CHECKING:
-    from rvmon.timed.conformance.conform import Allowed, Conformance
-    from rvmon.timed.model.network import Network
-    from rvmon.trace.schema import Stamps
+from rvmon.timed.conformance.conform import Allowed, Conformance, actions_in, conform, labels_of
+from rvmon.timed.language.load import load_network
+from rvmon.timed.model.network import Network
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.stamps import stamps_of
+from rvmon.trace.time import ticks_of_seconds
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -57,11 +59,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
-    from rvmon.readers.found import found_recordings
-    from rvmon.timed.conformance.conform import labels_of
-    from rvmon.timed.language.load import load_network
-    from rvmon.trace.stamps import stamps_of
-
     network = load_network(arguments.model)
     labels = labels_of(network)
     chosen = _chosen(arguments.observe, labels)
@@ -100,11 +97,6 @@ def _compare(
     chosen: frozenset[str] | None,
     arguments: argparse.Namespace,
 ) -> Conformance:
-    from rvmon.readers.recording import FileRecording
-    from rvmon.timed.conformance.conform import actions_in, conform
-    from rvmon.trace.schema import Schema
-    from rvmon.trace.time import ticks_of_seconds
-
     wanted = frozenset(labels) if chosen is None else chosen
     recording = FileRecording(path, Schema({}, {name: {} for name in wanted}, stamps=stamps))
     actions, length, occurred = actions_in(recording, wanted)

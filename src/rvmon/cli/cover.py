@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from rvmon import __version__
 from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import percentage
+from rvmon.coverage import Coverage, Group
+from rvmon.coverage.database import merge, read
+from rvmon.coverage.questions import only
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.report.coverage_summary import Summary
 from rvmon.report.folder import write_file
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rvmon.coverage import Coverage, Group
-    from rvmon.report.coverage_summary import Summary
+from rvmon.texts import did_you_mean
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -73,9 +73,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, show, and return the exit code."""
-    from rvmon.coverage.database import merge, read
-    from rvmon.report.coverage_summary import Summary
-
     with busy("reading databases"):
         coverage = read(arguments.databases)
         if arguments.merge is not None:
@@ -91,14 +88,13 @@ def run(arguments: argparse.Namespace) -> int:
 
         write_file(arguments.report, coverage_page(summary))
     if arguments.ucis is not None:
-        from rvmon import __version__
         from rvmon.report.coverage_ucis import coverage_ucis
 
         write_file(arguments.ucis, coverage_ucis(summary, __version__))
     if arguments.format == "json":
         import msgspec
 
-        from rvmon.report.coverage_text import coverage_data
+        from rvmon.report.coverage_summary import coverage_data
 
         say_json(msgspec.json.encode(coverage_data(summary)).decode())
     else:
@@ -108,8 +104,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
     """What is compared with: a file, or a campaign of what is shown."""
-    from rvmon.coverage.database import read
-
     if Path(arguments.compare).exists() or arguments.compare not in coverage.campaigns:
         return read([arguments.compare])
     if arguments.campaign is None:
@@ -121,9 +115,6 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
 
 
 def _campaign(coverage: Coverage, name: str) -> Coverage:
-    from rvmon.coverage.questions import only
-    from rvmon.texts import did_you_mean
-
     known = coverage.campaigns
     if name not in known:
         listed = ", ".join(f"`{one}`" for one in known) or "none"
@@ -134,8 +125,6 @@ def _campaign(coverage: Coverage, name: str) -> Coverage:
 
 def _groups(coverage: Coverage, name: str | None) -> Sequence[Group]:
     """The groups whose items are listed."""
-    from rvmon.texts import did_you_mean
-
     groups = coverage.model.groups
     if name is None:
         return ()

@@ -6,7 +6,10 @@ import argparse
 import sys
 
 from rvmon.cli.output import say, warn
+from rvmon.errors import SpecError
 from rvmon.files import write_whole
+from rvmon.spec.print.formatter import format_text
+from rvmon.texts import text_of_file, text_of_input
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -25,10 +28,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Lay out, and return the exit code."""
-    from rvmon.errors import SpecError
-    from rvmon.spec.print.formatter import format_text
-    from rvmon.texts import text_of_file, text_of_input
-
     changed = wrong = 0
     for name in arguments.specs:
         try:

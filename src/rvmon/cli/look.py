@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 from rvmon.cli.options import READING, constants_of, declare
 from rvmon.cli.output import busy, say
 from rvmon.cli.reading import reading_spec
+from rvmon.report.folder import write_file
+from rvmon.report.look_page import look_page, look_tables
+from rvmon.report.terminal import Terminal
+from rvmon.starter.column import Profile
+from rvmon.starter.profile import bound_profile, profile_of
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.starter.column import Profile
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -43,15 +47,9 @@ def run(arguments: argparse.Namespace) -> int:
         profile = _looked(arguments, spec)
     requirements = () if spec is None else tuple(spec.requirements.values())
     if arguments.output is not None:
-        from rvmon.report.folder import write_file
-        from rvmon.report.look_page import look_page
-
         write_file(arguments.output, look_page(profile, requirements))
         say(f"wrote {arguments.output}: {len(profile.columns):,} names")
         return 0
-    from rvmon.report.look_page import look_tables
-    from rvmon.report.terminal import Terminal
-
     terminal = Terminal()
     for shown in look_tables(profile, requirements):
         terminal.print(shown)
@@ -60,8 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _looked(arguments: argparse.Namespace, spec: Spec | None) -> Profile:
     """The recording, looked over; what a specification reads as it reads it."""
-    from rvmon.starter.profile import bound_profile, profile_of
-
     if spec is None:
         return profile_of(arguments.data, arguments.time)
     return bound_profile(arguments.data, spec.schema)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.judging import Judged, Options, judge_all, spec_and_options
 from rvmon.cli.options import EVALUATED, ONLY, declare, ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.parser import positive, shard
@@ -15,17 +16,19 @@ from rvmon.cli.reading import reading_words
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
+from rvmon.execute.shards import shards_beside
+from rvmon.readers.found import found_recordings
+from rvmon.readers.places import JOINT
 from rvmon.report.folder import refuse_no_file
+from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
+from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
-    from rvmon.cli.judging import Judged, Options
     from rvmon.reproducer import Case
-    from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.known_failures import KnownFailures
-    from rvmon.verdict.report import Report
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -125,10 +128,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    from rvmon.cli.judging import spec_and_options
-    from rvmon.readers.found import found_recordings
-    from rvmon.readers.places import JOINT
-
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
@@ -167,8 +166,6 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
-    from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
-
     if arguments.known is None:
         return NONE_KNOWN
     return KnownFailures(read_known(arguments.known, spec.requirements))
@@ -182,8 +179,6 @@ def _judged(
     case: Case | None,
 ) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
-    from rvmon.cli.judging import judge_all
-
     jobs = arguments.dask or arguments.jobs
     shards = _shards(arguments)
     begun = None
@@ -235,7 +230,6 @@ def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
 def _shards(arguments: argparse.Namespace) -> list[Path]:
     """The files that keep what shards have judged, where they are to be joined."""
     from rvmon.cli.resume import path_of
-    from rvmon.execute.shards import shards_beside
 
     if not arguments.resume or arguments.shard is not None:
         return []

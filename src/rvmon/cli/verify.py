@@ -12,15 +12,29 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.timed.describe import (
+    extreme_data,
+    extreme_text,
+    observation_data,
+    outcome_data,
+    run_lines,
+    sampled_data,
+    simulation_data,
+    suite_data,
+    trajectory_lines,
+)
+from rvmon.timed.language.elaborate import chosen_queries
+from rvmon.timed.language.load import load_network
+from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.timed.runs.run import Run
+from rvmon.timed.runs.statistics import ERROR, Sampled, sample, trajectories
+from rvmon.timed.search.extremes import Extreme, extremes
+from rvmon.timed.search.meter import Budget, Meter, Outcome, Policy, Watch
+from rvmon.timed.search.verify import verify
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.timed.model.network import Network, Query
     from rvmon.timed.observation.observe import Observation
-    from rvmon.timed.runs.run import Run
-    from rvmon.timed.runs.statistics import Sampled
-    from rvmon.timed.search.extremes import Extreme
-    from rvmon.timed.search.meter import Budget, Outcome, Watch
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -68,8 +82,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.timed.language.load import load_network
-
     _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)
     network = load_network(arguments.model, constants=constants)
@@ -95,20 +107,6 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.describe import (
-        extreme_data,
-        outcome_data,
-        sampled_data,
-        simulation_data,
-        trajectory_lines,
-    )
-    from rvmon.timed.language.elaborate import chosen_queries
-    from rvmon.timed.model.network import Chance, Extremes, Mean, Simulation
-    from rvmon.timed.runs.statistics import sample, trajectories
-    from rvmon.timed.search.extremes import extremes
-    from rvmon.timed.search.meter import Meter, Policy
-    from rvmon.timed.search.verify import verify
-
     data: dict[str, list[dict[str, Any]]] = {"queries": [], "simulated": [], "extremes": []}
     in_words = arguments.format == "text"
     failed = False
@@ -173,8 +171,6 @@ def _print_query(query: Query, word: str) -> None:
 
 
 def _print_run(network: Network, run: Run | None, kind: str) -> None:
-    from rvmon.timed.describe import run_lines
-
     if run is not None:
         say(f"    {kind}:")
         for line in run_lines(network, run):
@@ -194,8 +190,6 @@ def _print_outcome(network: Network, outcome: Outcome) -> None:
 
 
 def _print_extremes(network: Network, found: Sequence[Extreme]) -> None:
-    from rvmon.timed.describe import extreme_text
-
     _print_query(found[0].query, "answered" if all(one.exact for one in found) else "not decided")
     for one in found:
         statistics = one.statistics
@@ -206,8 +200,6 @@ def _print_extremes(network: Network, found: Sequence[Extreme]) -> None:
 
 
 def _print_sampled(one: Sampled) -> None:
-    from rvmon.timed.runs.statistics import ERROR
-
     words = {True: "holds, by a test", False: "does not hold, by a test", None: "simulated"}
     word = "not decided" if one.margin and one.holds is None else words[one.holds]
     _print_query(one.query, word)
@@ -220,7 +212,6 @@ def _print_sampled(one: Sampled) -> None:
 
 
 def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.describe import run_lines, suite_data
     from rvmon.timed.search.suite import Criterion, build_suite, item_text
 
     criterion = Criterion(arguments.suite)
@@ -261,7 +252,6 @@ def check_spec(
 ) -> int:
     """Decide, show, and return the exit code."""
     from rvmon.session import load
-    from rvmon.timed.describe import observation_data
     from rvmon.timed.observation.observe import observe
 
     spec = load(arguments.spec)
@@ -289,7 +279,6 @@ def _binding(text: str) -> tuple[str, str]:
 
 
 def _print_observation(one: Observation, spec: Spec) -> None:
-    from rvmon.timed.describe import run_lines
     from rvmon.timed.observation.observe import UNDECIDED_IN_THE_END
 
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[one.holds]
@@ -329,18 +318,18 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     recorded, end = recording_of(one.network, shown, signals)
     samples: list[Sample] = []
     last: dict[str, object] = {}
-    for sample in recorded:
+    for record in recorded:
         values = {
             name: bool(value) if name in truths else value
-            for name, value in sample.values.items()
+            for name, value in record.values.items()
             if name in names and (name not in signals or last.get(name) != value)
         }
         last.update(values)
         if values or not samples:
-            samples.append(Sample(sample.t, values))
+            samples.append(Sample(record.t, values))
     monitor = spec.monitor(only=[one.requirement])
-    for sample in samples:
-        monitor.step_ns(sample.t, sample.values)
+    for record in samples:
+        monitor.step_ns(record.t, record.values)
     if shown.steps and shown.steps[-1].action is None:
         end += 1  # what only time decides is decided a tick after its window
     monitor.advance_ns(end + 1)

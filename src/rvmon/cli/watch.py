@@ -12,21 +12,21 @@ from collections.abc import Callable
 from io import FileIO
 from typing import TYPE_CHECKING
 
+from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
 from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import warn
 from rvmon.cli.parser import positive, span
 from rvmon.cli.reading import mapped_names
+from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
+from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
+from rvmon.session import Spec, load
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.adapters.dds import DdsSource
-    from rvmon.adapters.json_objects import JsonObjects
     from rvmon.adapters.ros1 import Ros1Source
     from rvmon.adapters.ros2 import Ros2Source
-    from rvmon.cli.watch_output import Output
-    from rvmon.live import Clock, Judgement, Live
-    from rvmon.session import Spec
 
 _TURN = 0.25
 """Seconds between two looks at the specification."""
@@ -108,8 +108,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
-    from rvmon.cli.watch_output import output_named
-
     arguments.made = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)
     if arguments.state is not None:
@@ -131,9 +129,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
-    from rvmon.adapters.json_objects import read_lines
-    from rvmon.cli.watch_output import refuse_others, watch_kept
-
     refuse_others(arguments)
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
@@ -143,9 +138,6 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
-    from rvmon.live import SimulatedClock
-
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
         first = next((line for line in lines if line.strip()), None)
@@ -185,7 +177,6 @@ def _warn_ignored(objects: JsonObjects) -> None:
 
 
 def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.json_objects import JsonObjects
     from rvmon.adapters.mqtt import MqttSource, address_of
 
     address = address_of(arguments.source)
@@ -201,7 +192,6 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
 
 def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.messages import CLOCK, MessageFeed
-    from rvmon.live import SimulatedClock
 
     domain = _domain_of(arguments.source)
     if arguments.source.startswith("ros1:"):
@@ -282,16 +272,12 @@ def _live_here(
 
 
 def _own_clock() -> Clock:
-    from rvmon.live import WallClock
-
     return WallClock(since_1970=True)
 
 
 def _live(
     arguments: argparse.Namespace, spec: Spec, clock: Clock, judged: Callable[[Judgement], object]
 ) -> Live:
-    from rvmon.live import Live
-
     return Live(
         spec,
         clock=clock,
@@ -303,8 +289,6 @@ def _live(
 
 
 def _loaded(arguments: argparse.Namespace) -> Spec:
-    from rvmon.session import load
-
     spec = load(arguments.spec, const=constants_of(arguments.const))
     columns = mapped_names(arguments.map)
     return spec.reading(time=arguments.time, columns=columns, binding=arguments.binding)

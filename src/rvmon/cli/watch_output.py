@@ -8,25 +8,28 @@ import sys
 import zlib
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import msgspec
+from rich import box
+from rich.console import Group, RenderableType
+from rich.live import Live as Screen
+from rich.table import Table
+from rich.text import Text
 
+from rvmon.adapters.json_objects import decoded_object
 from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
-from rvmon.report.style import MARKS
+from rvmon.live import Driver, Judgement, Status
+from rvmon.live.durable import DurableMonitor
+from rvmon.readers.jsonl_rows import read_object
+from rvmon.report.style import MARKS, verdict_text
+from rvmon.report.terminal import Terminal
 from rvmon.report.wording import health_facts
+from rvmon.session import Spec
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict, fold
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from rvmon.live import Driver, Judgement, Status
-    from rvmon.live.durable import DurableMonitor
-    from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt import Attempt
 
 _LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
 _TOLD = 5
@@ -96,8 +99,6 @@ class Output(logging.Handler):
 
     def ended(self, driver: Driver) -> None:
         """Say what came of it."""
-        from rvmon.report.terminal import Terminal
-
         Terminal().print(tables(driver))
 
 
@@ -126,10 +127,6 @@ class View(Output):
     """A table that stays in its place: verdicts, what is required until when, what failed last."""
 
     def __init__(self, *, failures_only: bool) -> None:
-        from rich.live import Live as Screen
-
-        from rvmon.report.terminal import Terminal
-
         super().__init__(failures_only=failures_only)
         self._failures: deque[str] = deque(maxlen=_SHOWN_FAILURES)
         self._screen = Screen(console=Terminal(), auto_refresh=False, transient=True)
@@ -163,9 +160,6 @@ class View(Output):
         self._screen.console.print(self._drawn(driver))
 
     def _drawn(self, driver: Driver, height: int | None = None) -> RenderableType:
-        from rich.console import Group
-        from rich.text import Text
-
         failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
         return Group(tables(driver, height), *failures)
 
@@ -199,8 +193,6 @@ def tables(driver: Driver, height: int | None = None) -> RenderableType:
         driver: of the robots.
         height: so many lines there are; what finds none is counted. `None`: all requirements.
     """
-    from rich.console import Group
-
     found = driver.status(most_open=_MOST_OPEN)
     robots = sorted(found.values(), key=lambda one: _need(fold(one.verdicts.values())))
     requirements = len(driver.spec.requirements)
@@ -229,13 +221,6 @@ def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
 
 
 def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> RenderableType:
-    from rich import box
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    from rvmon.report.style import verdict_text
-
     heading = f"{status.robot}  " if status.robot else ""
     run = f"run {status.run}, " if status.run > 1 else ""
     lost = f", {status.lost:,} lost" if status.lost else ""
@@ -306,14 +291,11 @@ def watch_kept(
         lines: what comes.
         is_file: whether they begin anew with each process: those that were taken are passed over.
     """
-    from rvmon.live.durable import DurableMonitor
 
     def report(number: int, attempt: Attempt) -> None:
         if attempt.verdict is not Verdict.FAIL and arguments.failures:
             return
         if arguments.format == "json":
-            from rvmon.live import Judgement
-
             record = {"number": number, **Judgement("", 1, attempt).to_dict()}
             say_json(msgspec.json.encode(record).decode())
             sys.stdout.flush()
@@ -375,9 +357,6 @@ def _behind_taken(
 
 
 def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
-    from rvmon.adapters.json_objects import decoded_object
-    from rvmon.readers.jsonl_rows import read_object
-
     ignored: Counter[str] = Counter()
     for number, line in enumerate(lines, 1):
         if not line.strip():

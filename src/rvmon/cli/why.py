@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from rvmon.analysis.near_miss import why_not_triggered
+from rvmon.analysis.subformulas import dissect
+from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
 from rvmon.cli.options import EVALUATED, constants_of, declare
 from rvmon.cli.output import busy, say_json, shown_while_reading
 from rvmon.cli.reading import (
@@ -19,14 +21,20 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.errors import RvmonError
-
-if TYPE_CHECKING:
-    from rvmon.readers.batch import Batch
-    from rvmon.readers.held import HeldRecording
-    from rvmon.spec.checked.specification import CheckedSpec
-    from rvmon.trace.sample import Sample
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+from rvmon.monitor.missing import expect_names
+from rvmon.readers.batch import Batch
+from rvmon.readers.held import HeldRecording, pieces_up_to
+from rvmon.readers.source import Source
+from rvmon.report.changes import changes_of
+from rvmon.report.tracks import tracks_of
+from rvmon.report.wording import value_text
+from rvmon.session import load
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.print import format_window
+from rvmon.trace.sample import Sample, Trace
+from rvmon.trace.time import ticks_of_seconds
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -55,14 +63,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
-    from rvmon.analysis.near_miss import why_not_triggered
-    from rvmon.analysis.subformulas import dissect
-    from rvmon.monitor.missing import expect_names
-    from rvmon.readers.held import HeldRecording, pieces_up_to
-    from rvmon.readers.source import Source
-    from rvmon.session import load
-    from rvmon.trace.time import ticks_of_seconds
-
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
     spec = reading_spec(
@@ -94,8 +94,6 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     assert report.end is not None, "a recording with an attempt has an end"
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
-    from rvmon.report.changes import changes_of
-    from rvmon.report.tracks import tracks_of
     from rvmon.report.why_text import values_told, why_lines
 
     requirement = spec.requirements[name]
@@ -125,11 +123,6 @@ def _windows_told(
     names: frozenset[str] | None,
 ) -> dict[str, Sequence[str]]:
     """What the windows that failed came to, at the instants of the signals' values."""
-    from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
-    from rvmon.report.wording import value_text
-    from rvmon.spec.print import format_window
-    from rvmon.trace.sample import Trace
-
     if attempt.blame is None or attempt.decided is None:
         return {}
     windows = windows_blamed(checked, checked.requirements[attempt.requirement], attempt.blame)

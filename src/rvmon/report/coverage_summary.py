@@ -1,11 +1,13 @@
-"""The coverage figures that terminal, page and JSON show, computed lazily."""
+"""The coverage figures that terminal, page and JSON show, computed lazily; and the JSON."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from functools import cached_property
 from math import prod
+from typing import Any
 
 import numpy as np
 
@@ -274,3 +276,88 @@ def cell_text(kind: BinKind, goal: int, count: int) -> str:
             return f"{count:,} !" if count else "!"
         case BinKind.GOAL:
             return f"{count:,}" if count >= goal or goal == 1 else f"{count:,}/{goal:,}"
+
+
+_OF_TEST = (
+    "name campaign strategy recording seed system verdicts expected ending error seconds when"
+)
+
+
+def coverage_data(summary: Summary) -> dict[str, Any]:
+    """The whole summary as JSON values."""
+    coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
+    return {
+        "share": summary.share,
+        "groups": [_group_data(summary, name) for name in coverage.model.groups],
+        "holes": _item_names(summary, summary.holes),
+        "illegal": _item_names(summary, summary.illegal),
+        "tests": [
+            {
+                **{name: getattr(record, name) for name in _OF_TEST.split()},
+                "added": _item_names(summary, step.added),
+                "share": step.share,
+                "only_by_it": _item_names(summary, only),
+            }
+            for record, step, only in zip(records, summary.steps, summary.unique, strict=True)
+        ],
+        "shortest_known_order": [
+            {
+                "test": step.entry,
+                "name": records[step.entry].name,
+                "added": _item_names(summary, step.added),
+                "share": step.share,
+            }
+            for step in summary.ranking
+        ],
+        "compared": _compared(summary),
+    }
+
+
+def _group_data(summary: Summary, name: str) -> dict[str, Any]:
+    group, score = summary.coverage.model.groups[name], summary.scores[name]
+    return {
+        "name": name,
+        "title": group.title,
+        "subject": group.subject,
+        "weight": group.weight,
+        "items": score.items,
+        "covered": score.covered,
+        "axes": group.axes,
+        "bins": [
+            {
+                "name": item.name,
+                "text": item.text,
+                "kind": item.kind,
+                "goal": item.goal,
+                "hits": int(summary.totals.counts[place]),
+                "tests": int(summary.totals.tests[place]),
+                "first": _first_data(summary, place),
+                "reasons": summary.coverage.reasons.get((name, item.name), ()),
+                "hole": summary.hole_texts.get(place),
+                "unreachable": summary.coverage.unreachable.get((name, item.name), ()),
+            }
+            for place, item in summary.places(group)
+        ],
+    }
+
+
+def _first_data(summary: Summary, place: int) -> dict[str, Any] | None:
+    """The test that hit an item first (index and name), and the instant in ns."""
+    entry = int(summary.totals.first[place])
+    if entry < 0:
+        return None
+    instant = int(summary.totals.instants[place])
+    return {
+        "test": entry,
+        "name": summary.record(entry).name,
+        "at": None if instant == UNKNOWN else instant,
+    }
+
+
+def _item_names(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:
+    return [summary.coverage.items[place] for place in places]
+
+
+def _compared(summary: Summary) -> dict[str, Any] | None:
+    found = summary.comparison
+    return None if found is None else {"with": summary.earlier_name, **asdict(found)}

@@ -1,26 +1,24 @@
-"""Coverage as text for a terminal, and as data for other programs."""
+"""Coverage as text for a terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any
 
-from rvmon.coverage import UNKNOWN, Group, combination
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rvmon.coverage import Group, combination
 from rvmon.coverage.questions import Comparison
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
+from rvmon.report.table import table_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import first_of
 from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdict import Verdict
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
 
 _FEW = 3
 SHOWN = 10
@@ -32,10 +30,6 @@ BAR, WIDE = 20, 64
 
 def print_overview(summary: Summary, console: Console) -> None:
     """Print the groups, the total, the verdicts, illegal hits and failed tests."""
-    from rich.text import Text
-
-    from rvmon.report.table import table_text
-
     first = Text.assemble((summary.name, "bold"), f"  {summary.tests_text()}")
     console.print(first, soft_wrap=True)
     console.print(_groups(summary, console))
@@ -79,8 +73,6 @@ def print_holes(summary: Summary, console: Console) -> None:
 
 def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> None:
     """Print the items of groups: the hits of each, and the first test that hit it."""
-    from rich.text import Text
-
     for group in groups:
         score = summary.scores[group.name]
         heading = f"  {group.subject.value}, {score.covered:,} of {score.items:,} covered"
@@ -95,10 +87,6 @@ def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> N
 
 def print_tests(summary: Summary, console: Console) -> None:
     """Print the tests, the items each added, and the shortest known order."""
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     wide = console.width >= WIDE
     with_strategy = wide and any(summary.strategies)
@@ -129,9 +117,6 @@ def print_tests(summary: Summary, console: Console) -> None:
 
 
 def _groups(summary: Summary, console: Console) -> Table:
-    from rich import box
-    from rich.table import Table
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_footer=True)
     table.add_column("", "total", overflow="fold")
     wide = console.width >= WIDE
@@ -157,8 +142,6 @@ def _groups(summary: Summary, console: Console) -> Table:
 
 def _bar(share: float, console: Console) -> Text:
     """A share as a bar: full only at 1, empty only at 0."""
-    from rich.text import Text
-
     filled = round(share * BAR)
     if 0 < share < 1:
         filled = min(max(filled, 1), BAR - 1)
@@ -174,9 +157,6 @@ def _fits(table: Table, console: Console) -> bool:
 
 def _grid(summary: Summary, group: Group) -> Table:
     """A cross: the bins of the last axis from left to right, of the others downwards."""
-    from rich import box
-    from rich.table import Table
-
     *down, (across, columns) = group.axes.items()
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for axis, _ in down:
@@ -211,8 +191,6 @@ def _key(group: Group) -> str:
 
 
 def _cell(summary: Summary, group: Group, place: int) -> Text:
-    from rich.text import Text
-
     item = group.items[summary.coverage.items[place][1]]
     kind, count = summary.kind(place, item), int(summary.totals.counts[place])
     match kind:
@@ -226,10 +204,6 @@ def _cell(summary: Summary, group: Group, place: int) -> Text:
 
 
 def _bins(summary: Summary, group: Group) -> Table:
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("")
     table.add_column("hits", justify="right", no_wrap=True)
@@ -247,8 +221,6 @@ def _bins(summary: Summary, group: Group) -> Table:
 
 
 def _print_comparison(found: Comparison, name: str, console: Console) -> None:
-    from rich.text import Text
-
     change = f": {share_text(found.before)} → {share_text(found.after)}"
     console.print(Text.assemble("since ", (name, "bold"), change), soft_wrap=True)
     for heading, items, style in (
@@ -277,88 +249,3 @@ def _print_list(console: Console, heading: str, lines: Sequence[str], *, style: 
 
 def _letter(verdict: Verdict | None) -> str:
     return "–" if verdict is None else verdict.value
-
-
-_OF_TEST = (
-    "name campaign strategy recording seed system verdicts expected ending error seconds when"
-)
-
-
-def coverage_data(summary: Summary) -> dict[str, Any]:
-    """The whole summary as JSON values."""
-    coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
-    return {
-        "share": summary.share,
-        "groups": [_group_data(summary, name) for name in coverage.model.groups],
-        "holes": _item_names(summary, summary.holes),
-        "illegal": _item_names(summary, summary.illegal),
-        "tests": [
-            {
-                **{name: getattr(record, name) for name in _OF_TEST.split()},
-                "added": _item_names(summary, step.added),
-                "share": step.share,
-                "only_by_it": _item_names(summary, only),
-            }
-            for record, step, only in zip(records, summary.steps, summary.unique, strict=True)
-        ],
-        "shortest_known_order": [
-            {
-                "test": step.entry,
-                "name": records[step.entry].name,
-                "added": _item_names(summary, step.added),
-                "share": step.share,
-            }
-            for step in summary.ranking
-        ],
-        "compared": _compared(summary),
-    }
-
-
-def _group_data(summary: Summary, name: str) -> dict[str, Any]:
-    group, score = summary.coverage.model.groups[name], summary.scores[name]
-    return {
-        "name": name,
-        "title": group.title,
-        "subject": group.subject,
-        "weight": group.weight,
-        "items": score.items,
-        "covered": score.covered,
-        "axes": group.axes,
-        "bins": [
-            {
-                "name": item.name,
-                "text": item.text,
-                "kind": item.kind,
-                "goal": item.goal,
-                "hits": int(summary.totals.counts[place]),
-                "tests": int(summary.totals.tests[place]),
-                "first": _first_data(summary, place),
-                "reasons": summary.coverage.reasons.get((name, item.name), ()),
-                "hole": summary.hole_texts.get(place),
-                "unreachable": summary.coverage.unreachable.get((name, item.name), ()),
-            }
-            for place, item in summary.places(group)
-        ],
-    }
-
-
-def _first_data(summary: Summary, place: int) -> dict[str, Any] | None:
-    """The test that hit an item first (index and name), and the instant in ns."""
-    entry = int(summary.totals.first[place])
-    if entry < 0:
-        return None
-    instant = int(summary.totals.instants[place])
-    return {
-        "test": entry,
-        "name": summary.record(entry).name,
-        "at": None if instant == UNKNOWN else instant,
-    }
-
-
-def _item_names(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:
-    return [summary.coverage.items[place] for place in places]
-
-
-def _compared(summary: Summary) -> dict[str, Any] | None:
-    found = summary.comparison
-    return None if found is None else {"with": summary.earlier_name, **asdict(found)}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+
+from rich.console import RenderableType
+from rich.text import Text
 
 from rvmon.analysis.example import Budget, Example, Found
 from rvmon.analysis.examples import Analysis, difference_of, shortest_examples, verdict_of
@@ -13,16 +15,13 @@ from rvmon.analysis.vacuity import Possible, possible
 from rvmon.analysis.words import facts_of, requirement_in_words
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.report.style import MARKS
 from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print import format_duration
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-    from rich.text import Text
 
 HIGH, LOW, NOBODY_KNOWS, OCCURS = "▇", "▁", "?", "●"
 NARROWEST = 9
@@ -34,8 +33,6 @@ def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> li
 
     Time is not to scale: each instant with a sample, trigger or decision has a column.
     """
-    from rich.text import Text
-
     instants = _instants(example)
     names = [name for name in (*spec.signals, *spec.events) if name in read]
     heads = [*names, *example.verdicts, "time"]
@@ -131,10 +128,6 @@ def _fill(cell: str, width: int) -> str:
 def _verdict_lines(
     name: str, example: Example, instants: Sequence[int], margin: int, width: int
 ) -> list[Text]:
-    from rich.text import Text
-
-    from rvmon.report.style import MARKS
-
     own = [attempt for attempt in example.attempts if attempt.requirement == name]
     if not own:
         mark = MARKS[Verdict.NOT_TRIGGERED]
@@ -191,8 +184,6 @@ def explained(
     compiled: CompiledSpec, name: str, budget: Budget | None = None
 ) -> Iterator[RenderableType]:
     """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
-    from rich.text import Text
-
     one = compiled.requirements[name]
     yield _title(one.requirement)
     yield ""
@@ -226,8 +217,6 @@ def difference_explained(
     compiled: CompiledSpec, first: str, second: str, budget: Budget | None = None
 ) -> Iterator[RenderableType]:
     """Two requirements: the shortest timelines on which they differ."""
-    from rich.text import Text
-
     pair = [compiled.requirements[name] for name in (first, second)]
     for one in pair:
         yield _title(one.requirement)
@@ -248,8 +237,6 @@ def difference_explained(
 
 
 def _title(requirement: Requirement) -> RenderableType:
-    from rich.text import Text
-
     text = f"{requirement.id}  {requirement.text}".rstrip()
     wrapped = Text(textwrap.fill(text, WIDTH, subsequent_indent=" " * (len(requirement.id) + 2)))
     wrapped.stylize("bold", 0, len(requirement.id))
@@ -292,8 +279,6 @@ def _names_read(one: CompiledRequirement) -> frozenset[str]:
 
 
 def _wrapped(text: str, first: str, rest: str) -> RenderableType:
-    from rich.text import Text
-
     return Text(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=rest))
 
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING
 
-from rvmon.report.terminal import wrapped
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rvmon.diagnostics import snippet
+from rvmon.report.style import MARKS, verdict_text
+from rvmon.report.terminal import Terminal, wrapped
 from rvmon.report.wording import (
     SHOWN,
     SHOWN_PER_REQUIREMENT,
@@ -19,19 +25,13 @@ from rvmon.report.wording import (
     without_attempts,
 )
 from rvmon.spec.checked.goals import BinKind
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdict import Verdict
 from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredBin, CoveredGroup
 from rvmon.verdict.report import Report
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
@@ -81,8 +81,6 @@ def print_reports(
 
     Every F comes with cause, window and line of the specification, every I with its obligation.
     """
-    from rvmon.report.terminal import Terminal
-
     console = Terminal()
     for report in () if counts_only else reports:
         print_report(report, spec, console)
@@ -97,8 +95,6 @@ def print_reports(
 
 def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     """Print the verdicts on one recording."""
-    from rich.text import Text
-
     end = "" if report.end is None else f"  to {format_stamped(report.end, report.origin)}"
     console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
     if spec.requirements:
@@ -132,11 +128,6 @@ def _print_coverage(groups: Sequence[CoveredGroup], console: Console) -> None:
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    from rvmon.report.style import verdict_text
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("", "verdict", "attempts"):
         table.add_column(heading, no_wrap=True)
@@ -171,10 +162,6 @@ def _least_robustness(report: Report) -> dict[str, str]:
 
 
 def _goals_text(goals: Mapping[str, Verdict]) -> Text:
-    from rich.text import Text
-
-    from rvmon.report.style import MARKS
-
     words = {Verdict.PASS: "shown", Verdict.INCONCLUSIVE: "not shown, still possible at the end"}
     text = Text("cover goals:\n")
     for name, verdict in goals.items():
@@ -184,20 +171,11 @@ def _goals_text(goals: Mapping[str, Verdict]) -> Text:
 
 
 def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
-    from rich.text import Text
-
-    from rvmon.report.style import verdict_text
-
     sentence = f"\n{wrapped(why, width)}\n"
     return Text.assemble((f"{name} ", "bold"), verdict_text(verdict), sentence)
 
 
 def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:
-    from rich.text import Text
-
-    from rvmon.diagnostics import snippet
-    from rvmon.report.style import verdict_text
-
     first, *rest = instants_of(attempt)
     when = "\n  ".join([f"attempt {attempt.numbered}, {first}", *rest])
     if attempt.robustness is not None:
@@ -217,9 +195,6 @@ def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, wi
 
 
 def _runs_table(reports: Sequence[Report]) -> Table:
-    from rich import box
-    from rich.table import Table
-
     title = counted(len(reports), "recording")
     table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
     table.add_column("")

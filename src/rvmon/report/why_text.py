@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+
+from rich.text import Text
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.report.style import MARKS, verdict_text
@@ -14,9 +15,6 @@ from rvmon.report.wording import forecast_sentence, instants_of, told_reason
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Attempt
-
-if TYPE_CHECKING:
-    from rich.text import Text
 
 WIDTH = 80
 PLOT = 46
@@ -33,8 +31,6 @@ def why_lines(
     breakdown: Breakdown, requirement: Requirement, values: Mapping[str, Sequence[str]]
 ) -> Iterator[Text]:
     """The verdict with its reason, a row for the trigger and each part required, and values."""
-    from rich.text import Text
-
     attempt = breakdown.attempt
     yield Text.assemble((f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict))
     for line in _sentences(breakdown, requirement):
@@ -70,8 +66,6 @@ def values_told(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str
 
 
 def _columns(first: str, others: Sequence[str], style: str = "") -> Text:
-    from rich.text import Text
-
     cells = "".join(f"{other:<{PLOT // 2}}" for other in others)
     return Text(f"{first:<{WIDTH - PLOT}}{cells}".rstrip(), style=style)
 
@@ -91,8 +85,6 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
 
 def _axis(breakdown: Breakdown) -> Iterator[Text]:
     """The time axis with marks at the trigger and the decision."""
-    from rich.text import Text
-
     attempt = breakdown.attempt
     marks = [" "] * PLOT
     marks[_column(attempt.triggered, breakdown)] = "▼"
@@ -111,8 +103,6 @@ def _column(t: int, breakdown: Breakdown) -> int:
 
 
 def _row(part_truth: PartTruth, breakdown: Breakdown) -> Iterator[Text]:
-    from rich.text import Text
-
     room = WIDTH - PLOT - 2
     indent = "  " + "  " * min(part_truth.depth + 1, 6)
     lines = textwrap.wrap(part_truth.text, room - len(indent)) or [""]
