@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from math import ceil, floor, inf, prod
 
+from rvmon.diagnostics import Span
 from rvmon.spec.check.comparisons import compared
 from rvmon.spec.check.expressions import Checker
 from rvmon.spec.check.scope import EVERYWHERE, Quantity, Scope, Value
@@ -57,6 +59,7 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
         value = checker.value(item.expression, EVERYWHERE)
         if value is None:
             return None
+    point = _Point(checker, item.expression, isinstance(value, Quantity) and bool(value.labels))
     first: dict[str, items.BinSyntax] = {}
 
     def made(syntax: items.BinSyntax) -> Bin:
@@ -64,7 +67,7 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
         if earlier is not syntax:
             places = syntax.name.span, earlier.name.span
             raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
-        formula = present(_bin_formula(checker, item.expression, value, syntax))
+        formula = present(point.formula(syntax))
         if _is_empty(formula, value):
             checker.report(rules.empty_bin(syntax.span))
         return Bin(syntax.name.text, formula, syntax.kind, syntax.span)
@@ -176,78 +179,92 @@ def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
             return -inf, inf
 
 
-def _bin_formula(
-    checker: Checker,
-    expression: expressions.Expression | None,
-    value: Value | None,
-    bin_: items.BinSyntax,
-) -> Formula:
-    labelled = isinstance(value, Quantity) and bool(value.labels)
-    if bin_.values is None:
-        if expression is None or not labelled:
-            raise Refusal(rules.bin_without_values(bin_.span))
-        return _equals(checker, expression, expressions.Name(bin_.name.text, bin_.name.span))
-    if isinstance(bin_.values, expressions.Window):
-        return _in_window(checker, expression, bin_.values)
-    if isinstance(bin_.values, items.StepsSyntax):
-        return _stepped(checker, expression, bin_.values, labelled=labelled)
-    return _valued(checker, expression, bin_.values, labelled=labelled)
+@dataclass(frozen=True, slots=True)
+class _Point:
+    """A coverpoint, whose bins are formulas.
 
-
-def _valued(
-    checker: Checker,
-    expression: expressions.Expression | None,
-    wanted: expressions.Expression,
-    *,
-    labelled: bool,
-) -> Formula:
-    """That the expression has a value; without one, what is written is the formula."""
-    if labelled and expression is not None and isinstance(wanted, expressions.Name):
-        return _equals(checker, expression, wanted)
-    (found,) = checker.values((wanted,), EVERYWHERE)
-    if isinstance(found, Quantity) and found.constant is not None:
-        if expression is None:
-            raise Refusal(rules.bin_needs_expression(wanted.span))
-        return _equals(checker, expression, wanted)
-    formula = checker.formula(wanted, EVERYWHERE)
-    if isinstance(formula, Constant) and expression is not None:
-        holds = checker.formula(expression, EVERYWHERE)
-        return holds if formula.value else Unary(UnaryOp.NOT, holds, None, wanted.span)
-    return formula
-
-
-def _stepped(
-    checker: Checker,
-    expression: expressions.Expression | None,
-    steps: items.StepsSyntax,
-    *,
-    labelled: bool,
-) -> Formula:
-    """That the last update took the expression to the last value, and those before it to others.
-
-    From each value it came to the next without a third in between.
+    Attributes:
+        checker: of the file.
+        expression: what bins are values of; `None`: each is a formula by itself.
+        labelled: whether its values are labels.
     """
-    if expression is None:
-        raise Refusal(rules.bin_needs_expression(steps.span))
-    prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
-    before = expressions.Call(prev, (expression,), expression.span)
-    span = steps.span
-    made: Formula | None = None
-    entered: Formula | None = None
-    for start, end in pairwise(steps.values):
-        now = _valued(checker, expression, end, labelled=labelled)
-        was = _valued(checker, before, start, labelled=labelled)
-        if _alike(now, _valued(checker, expression, start, labelled=labelled)):
-            raise Refusal(rules.same_value(end.span))
-        rise = Unary(UnaryOp.RISE, now, None, span)
-        came = Binary(BinaryOp.AND, rise, was, None, span)
-        if made is not None and entered is not None:
-            stayed = Unary(UnaryOp.NOT, entered, None, span)
-            latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
-            came = Binary(BinaryOp.AND, came, latest, None, span)
-        made, entered = came, rise
-    assert made is not None, "there are two values at least"
-    return made
+
+    checker: Checker
+    expression: expressions.Expression | None
+    labelled: bool
+
+    def formula(self, bin_: items.BinSyntax) -> Formula:
+        """Where a bin is hit."""
+        match bin_.values:
+            case None if self.labelled:
+                return self._valued(expressions.Name(bin_.name.text, bin_.name.span))
+            case None:
+                raise Refusal(rules.bin_without_values(bin_.span))
+            case expressions.Window() as window:
+                return self._in_window(window)
+            case items.StepsSyntax() as steps:
+                return self._stepped(steps)
+            case wanted:
+                return self._valued(wanted)
+
+    def _valued(self, wanted: expressions.Expression) -> Formula:
+        """That the expression has a value; without one, what is written is the formula."""
+        expression = self.expression
+        if self.labelled and isinstance(wanted, expressions.Name):
+            return self._compared(CompareOp.EQ, wanted, wanted.span)
+        (found,) = self.checker.values((wanted,), EVERYWHERE)
+        if isinstance(found, Quantity) and found.constant is not None:
+            return self._compared(CompareOp.EQ, wanted, wanted.span)
+        formula = self.checker.formula(wanted, EVERYWHERE)
+        if isinstance(formula, Constant) and expression is not None:
+            holds = self.checker.formula(expression, EVERYWHERE)
+            return holds if formula.value else Unary(UnaryOp.NOT, holds, None, wanted.span)
+        return formula
+
+    def _stepped(self, steps: items.StepsSyntax) -> Formula:
+        """That the last update took the expression to the last value, those before to others.
+
+        From each value it came to the next without a third in between.
+        """
+        span, expression = steps.span, self.expression
+        if expression is None:
+            raise Refusal(rules.bin_needs_expression(span))
+        prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
+        call = expressions.Call(prev, (expression,), expression.span)
+        before = replace(self, expression=call)
+        made: Formula | None = None
+        entered: Formula | None = None
+        for start, end in pairwise(steps.values):
+            now, was = self._valued(end), before._valued(start)
+            if _alike(now, self._valued(start)):
+                raise Refusal(rules.same_value(end.span))
+            rise = Unary(UnaryOp.RISE, now, None, span)
+            came = Binary(BinaryOp.AND, rise, was, None, span)
+            if made is not None and entered is not None:
+                stayed = Unary(UnaryOp.NOT, entered, None, span)
+                latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
+                came = Binary(BinaryOp.AND, came, latest, None, span)
+            made, entered = came, rise
+        assert made is not None, "there are two values at least"
+        return made
+
+    def _in_window(self, window: expressions.Window) -> Formula:
+        """The bounds of a range as comparisons; `inf` bounds nothing."""
+        if self.expression is None or window.low is None:
+            raise Refusal(rules.bin_needs_expression(window.span))
+        above = CompareOp.GT if window.low_open else CompareOp.GE
+        low = self._compared(above, window.low, window.span)
+        if window.high is None:
+            return low
+        below = CompareOp.LT if window.high_open else CompareOp.LE
+        high = self._compared(below, window.high, window.span)
+        return Binary(BinaryOp.AND, low, high, None, window.span)
+
+    def _compared(self, op: CompareOp, other: expressions.Expression, span: Span) -> Formula:
+        if self.expression is None:
+            raise Refusal(rules.bin_needs_expression(other.span))
+        side = expressions.Comparison(op, self.expression, other, span, span)
+        return compared(self.checker, side, EVERYWHERE)
 
 
 def _alike(one: Formula, other: Formula) -> bool:
@@ -255,35 +272,12 @@ def _alike(one: Formula, other: Formula) -> bool:
     return format_formula(one) == format_formula(other)
 
 
-def _equals(
-    checker: Checker, expression: expressions.Expression, other: expressions.Expression
-) -> Formula:
-    equation = expressions.Comparison(CompareOp.EQ, expression, other, other.span, other.span)
-    return compared(checker, equation, EVERYWHERE)
-
-
-def _in_window(
-    checker: Checker, expression: expressions.Expression | None, window: expressions.Window
-) -> Formula:
-    """The bounds of a range as comparisons; `inf` bounds nothing."""
-    if expression is None or window.low is None:
-        raise Refusal(rules.bin_needs_expression(window.span))
-    above = CompareOp.GT if window.low_open else CompareOp.GE
-    low = expressions.Comparison(above, expression, window.low, window.span, window.span)
-    if window.high is None:
-        return compared(checker, low, EVERYWHERE)
-    below = CompareOp.LT if window.high_open else CompareOp.LE
-    high = expressions.Comparison(below, expression, window.high, window.span, window.span)
-    left, right = compared(checker, low, EVERYWHERE), compared(checker, high, EVERYWHERE)
-    return Binary(BinaryOp.AND, left, right, None, window.span)
-
-
 def _clauses(
     checker: Checker, clauses: Sequence[items.GoalClauses]
 ) -> tuple[Formula | None, int, int] | None:
     """Where it is sampled, the goal and the weight; `None` if one is wrong."""
     upon: Formula | None = None
-    goal = weight = 1
+    counts = {"goal": 1, "weight": 1}
     for clause in clauses:
         match clause:
             case items.SampledClause(trigger=trigger):
@@ -291,17 +285,13 @@ def _clauses(
                 upon = None if upon is None else checker.collected(present, upon)
                 if upon is None:
                     return None
-            case items.GoalClause(count=count):
-                if not _is_count(count, least=1):
-                    checker.report(rules.bad_goal(count.span))
+            case items.CountClause(word=word, count=count):
+                if not _is_count(count, least=int(word == "goal")):
+                    wrong = rules.bad_goal if word == "goal" else rules.bad_weight
+                    checker.report(wrong(count.span))
                     return None
-                goal = int(count.value or 1)
-            case items.WeightClause(count=count):
-                if not _is_count(count, least=0):
-                    checker.report(rules.bad_weight(count.span))
-                    return None
-                weight = int(count.value or 0)
-    return upon, goal, weight
+                counts[word] = int(count.value or 0)
+    return upon, counts["goal"], counts["weight"]
 
 
 def _is_count(number: expressions.Number, least: int) -> bool:

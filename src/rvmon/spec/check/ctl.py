@@ -5,6 +5,7 @@ Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.diagnostics import Span
@@ -210,7 +211,7 @@ def checked_property(
         if close and "." not in part.text:
             checker.report(rules.foreign_name(part.span, part.text, close))
     names = frozenset(part.text for part in foreign)
-    formula = checker.collected(_state, checker, expression, names)
+    formula = checker.collected(_States(checker, names).of, expression)
     span = expression.span
     return None if formula is None else Property(name, span.text, formula, span)
 
@@ -227,85 +228,79 @@ def _foreign(checker: Checker, expression: expressions.Expression) -> list[expre
     ]
 
 
-def _state(
-    checker: Checker, expression: expressions.Expression, foreign: frozenset[str]
-) -> StateFormula:
-    span = expression.span
-    match expression:
-        case expressions.Group(inner=inner):
-            return _state(checker, inner, foreign)
-        case expressions.Path(universal=universal, op=op, operand=operand):
-            held = _state(checker, operand, foreign)
-            if op is UnaryOp.NEXT and expression.window is not None:
-                raise Refusal(rules.next_window(expression.window.span))
-            interval = checker.interval(expression.window, EVERYWHERE)
-            return PathUnary(universal, op, held, None if op is UnaryOp.NEXT else interval, span)
-        case expressions.Quantified(universal=universal, path=path):
-            return _quantified(checker, universal, path, foreign)
-        case expressions.LeadsTo(left=left, right=right, window=window):
-            interval = checker.interval(window, EVERYWHERE)
-            first, second = _both(checker, left, right, foreign)
-            response = PathUnary(True, UnaryOp.EVENTUALLY, second, interval, right.span)
-            required = StateBinary(BinaryOp.IMPLIES, first, response, span)
-            return PathUnary(True, UnaryOp.ALWAYS, required, Interval(), span)
-    return _connected(checker, expression, foreign)
+@dataclass(frozen=True, slots=True)
+class _States:
+    """Makes state formulas of expressions.
 
+    Attributes:
+        checker: of the file.
+        foreign: names of a model, which the file does not declare.
+    """
 
-def _connected(
-    checker: Checker, expression: expressions.Expression, foreign: frozenset[str]
-) -> StateFormula:
-    """Connectives and atoms."""
-    span = expression.span
-    if not _needs_splitting(expression, foreign):
-        formula = checker.formula(expression, EVERYWHERE)
-        _refuse_bare_time(formula, expression)
-        return StateAtom(formula, span)
-    match expression:
-        case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
-            return StateNot(_state(checker, operand, foreign), span)
-        case expressions.Infix(op=op, left=left, right=right) if op.entry.tense is Tense.PRESENT:
-            return StateBinary(op, *_both(checker, left, right, foreign), span)
-        case expressions.Prefix() | expressions.Infix():
-            raise Refusal(rules.bare_time(expression.op_span))
-        case _ if any(isinstance(p, _PATHS) for p in expressions.expressions_in(expression)):
-            raise Refusal(rules.path_in_number(span))
-        case _:
-            return ModelAtom(span.text, span)
+    checker: Checker
+    foreign: frozenset[str]
 
+    def of(self, expression: expressions.Expression) -> StateFormula:
+        """The state formula.
 
-def _both(
-    checker: Checker,
-    left: expressions.Expression,
-    right: expressions.Expression,
-    foreign: frozenset[str],
-) -> tuple[StateFormula, StateFormula]:
-    return _state(checker, left, foreign), _state(checker, right, foreign)
+        Raises:
+            Refusal: it is none.
+            Reported: a part of it is wrong.
+        """
+        span = expression.span
+        match expression:
+            case expressions.Group(inner=inner):
+                return self.of(inner)
+            case expressions.Path(universal=universal, op=op, operand=operand):
+                held = self.of(operand)
+                if op is UnaryOp.NEXT and expression.window is not None:
+                    raise Refusal(rules.next_window(expression.window.span))
+                interval = self.checker.interval(expression.window, EVERYWHERE)
+                within = None if op is UnaryOp.NEXT else interval
+                return PathUnary(universal, op, held, within, span)
+            case expressions.Quantified(universal=universal, path=path):
+                return self._quantified(universal, path)
+            case expressions.LeadsTo(left=left, right=right, window=window):
+                interval = self.checker.interval(window, EVERYWHERE)
+                first, second = self.of(left), self.of(right)
+                response = PathUnary(True, UnaryOp.EVENTUALLY, second, interval, right.span)
+                required = StateBinary(BinaryOp.IMPLIES, first, response, span)
+                return PathUnary(True, UnaryOp.ALWAYS, required, Interval(), span)
+        if not self._needs_splitting(expression):
+            formula = self.checker.formula(expression, EVERYWHERE)
+            for part in subformulas(formula):
+                if isinstance(part, Unary | Binary) and part.op.entry.tense is not Tense.PRESENT:
+                    raise Refusal(rules.bare_time(part.span or span))
+            return StateAtom(formula, span)
+        match expression:
+            case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
+                return StateNot(self.of(operand), span)
+            case expressions.Infix(op=joint, left=left, right=right) if (
+                joint.entry.tense is Tense.PRESENT
+            ):
+                return StateBinary(joint, self.of(left), self.of(right), span)
+            case expressions.Prefix() | expressions.Infix():
+                raise Refusal(rules.bare_time(expression.op_span))
+            case _ if any(isinstance(p, _PATHS) for p in expressions.expressions_in(expression)):
+                raise Refusal(rules.path_in_number(span))
+            case _:
+                return ModelAtom(span.text, span)
 
+    def _quantified(self, universal: bool, path: expressions.Expression) -> PathBinary:
+        path = expressions.ungrouped(path)
+        if not isinstance(path, expressions.Infix) or path.op not in FUTURE:
+            raise Refusal(rules.no_path_formula(path.span))
+        left, right = self.of(path.left), self.of(path.right)
+        interval = self.checker.interval(path.window, EVERYWHERE)
+        return PathBinary(universal, path.op, left, right, interval, path.span)
 
-def _quantified(
-    checker: Checker, universal: bool, path: expressions.Expression, foreign: frozenset[str]
-) -> PathBinary:
-    while isinstance(path, expressions.Group):
-        path = path.inner
-    if not isinstance(path, expressions.Infix) or path.op not in FUTURE:
-        raise Refusal(rules.no_path_formula(path.span))
-    left, right = _both(checker, path.left, path.right, foreign)
-    interval = checker.interval(path.window, EVERYWHERE)
-    return PathBinary(universal, path.op, left, right, interval, path.span)
-
-
-def _needs_splitting(expression: expressions.Expression, foreign: frozenset[str]) -> bool:
-    """Whether path quantifiers or names of a model stand somewhere inside."""
-    return any(
-        isinstance(part, _PATHS) or (isinstance(part, expressions.Name) and part.text in foreign)
-        for part in expressions.expressions_in(expression)
-    )
-
-
-def _refuse_bare_time(formula: Formula, expression: expressions.Expression) -> None:
-    for part in subformulas(formula):
-        if isinstance(part, Unary | Binary) and part.op.entry.tense is not Tense.PRESENT:
-            raise Refusal(rules.bare_time(part.span or expression.span))
+    def _needs_splitting(self, expression: expressions.Expression) -> bool:
+        """Whether path quantifiers or names of a model stand somewhere inside."""
+        return any(
+            isinstance(part, _PATHS)
+            or (isinstance(part, expressions.Name) and part.text in self.foreign)
+            for part in expressions.expressions_in(expression)
+        )
 
 
 def property_of(checker: Checker, item: RequirementItem) -> Property | None:

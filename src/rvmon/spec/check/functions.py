@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.spec.check.scope import (
-    Age,
-    Operands,
-    Quantity,
-    Scope,
-    Value,
-)
+from rvmon.spec.check.scope import Age, Operands, Quantity, Scope, Value
 from rvmon.spec.check.windows import amount, is_extreme
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (

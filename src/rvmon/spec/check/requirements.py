@@ -25,7 +25,6 @@ from rvmon.spec.check.traps import (
     on_purpose,
     traps_at_start,
     traps_at_trigger,
-    ungrouped,
 )
 from rvmon.spec.checked.classify import (
     end_part,
@@ -61,9 +60,7 @@ from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import requirements as rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.syntax.expressions import (
-    Ident,
-)
+from rvmon.spec.syntax.expressions import Ident, ungrouped
 from rvmon.spec.syntax.items import (
     AtEndClause,
     Bare,

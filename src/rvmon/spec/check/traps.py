@@ -29,7 +29,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import Capture, Mode, TimeModel
 from rvmon.spec.print import format_duration, format_formula
 from rvmon.spec.rules import requirements as rules
-from rvmon.spec.syntax.expressions import Expression, Group, Immediately
+from rvmon.spec.syntax.expressions import Expression, Immediately, ungrouped
 from rvmon.spec.syntax.items import LetClause
 
 _FIRST = "at the first instant"
@@ -180,10 +180,3 @@ def at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
 def on_purpose(expression: Expression) -> bool:
     """Whether `immediately` says that one instant is meant."""
     return isinstance(ungrouped(expression), Immediately)
-
-
-def ungrouped(expression: Expression) -> Expression:
-    """An expression without the brackets around it."""
-    while isinstance(expression, Group):
-        expression = expression.inner
-    return expression

@@ -72,8 +72,9 @@ class Builder(ExpressionBuilder):
         "scope_between": lambda _, parts, span: items.ScopeClause(parts[2], parts[-1], True, span),
         "cover": lambda b, parts, span: items.CoverItem(b.ident(parts[1]), parts[2], span),
         "sampled": lambda _, parts, span: items.SampledClause(parts[1], span),
-        "goal": lambda b, parts, span: items.GoalClause(b.number(span, parts[1:]), span),
-        "weight": lambda b, parts, span: items.WeightClause(b.number(span, parts[1:]), span),
+        "count": lambda b, parts, span: items.CountClause(
+            str(parts[0]), b.number(span, parts[1:]), span
+        ),
         "unwanted": lambda _, parts, span: items.UnwantedClause(
             BinKind(str(parts[0])), parts[1], span
         ),

@@ -234,3 +234,10 @@ def _bounds(window: Window | None) -> tuple[Expression, ...]:
     if window is None:
         return ()
     return tuple(bound for bound in (window.low, window.high) if bound is not None)
+
+
+def ungrouped(expression: Expression) -> Expression:
+    """An expression without the brackets around it."""
+    while isinstance(expression, Group):
+        expression = expression.inner
+    return expression

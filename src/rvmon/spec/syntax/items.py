@@ -294,17 +294,10 @@ class SampledClause:
 
 
 @dataclass(frozen=True, slots=True)
-class GoalClause:
-    """`goal N`."""
+class CountClause:
+    """`goal N`, `weight N`."""
 
-    count: Number
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class WeightClause:
-    """`weight N`."""
-
+    word: str
     count: Number
     span: Span
 
@@ -318,7 +311,7 @@ class UnwantedClause:
     span: Span
 
 
-GoalClauses = SampledClause | GoalClause | WeightClause | UnwantedClause
+GoalClauses = SampledClause | CountClause | UnwantedClause
 
 
 @dataclass(frozen=True, slots=True)
