@@ -113,9 +113,13 @@ def post_analysis(
         spec.checked, questions, noted, end, names, spec.plans_of_truths, recording.outages
     )
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
+    shown: dict[str, dict[int, dict[str, str]]] = {}
+    for requirement, number, own in (*values.of_attempts(), *windows.of_attempts()):
+        if own:
+            shown.setdefault(requirement, {}).setdefault(number, {}).update(own)
     return replace(
         report,
-        values=_joined(values.told(), windows.told()),
+        values=shown,
         late=_arrived(late, seen) if late else {},
         misses={name: miss for name, miss in misses.items() if miss},
     )
@@ -134,7 +138,7 @@ class _Values:
             self._asked.setdefault(attempt.decided or 0, set()).update(names)
         self.names: Set[str] = {name for names in self._asked.values() for name in names}
         self.until = max(self._asked, default=0)
-        self._told: dict[int, Mapping[str, str]] = {}
+        self._known: dict[int, Mapping[str, str]] = {}
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
         """The pieces, unchanged; nothing is kept of one that was passed."""
@@ -143,21 +147,21 @@ class _Values:
         changes = RunChanges(self._spec.checked, self.names)
         waiting = sorted(self._asked, reverse=True)
 
-        def tell(until: int) -> None:
+        def note(until: int) -> None:
             while waiting and waiting[-1] <= until:
                 instant = waiting.pop()
-                self._told[instant] = self._values_at(instant, changes)
+                self._known[instant] = self._values_at(instant, changes)
 
         for piece in pieces:
             times = [piece.t] if isinstance(piece, Sample) else piece.times
             if waiting and len(times):
-                tell(int(times[0]) - 1)
+                note(int(times[0]) - 1)
                 changes.add(piece)
-                tell(int(times[-1]) - 1)  # of the last instant more may come
+                note(int(times[-1]) - 1)  # of the last instant more may come
                 for one in changes.by_name.values():
                     one.forget()
             yield piece
-        tell(self.until)
+        note(self.until)
 
     def _values_at(self, instant: int, changes: RunChanges) -> Mapping[str, str]:
         signals = self._spec.checked.signals
@@ -166,18 +170,13 @@ class _Values:
             for name in sorted(self._asked[instant])
         }
 
-    def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+    def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
-        from rvmon.report.tracks import concerned_names
-
-        told: dict[str, dict[int, Mapping[str, str]]] = {}
         for attempt, names in self._reads:
-            values = self._told[attempt.decided or 0]
+            values = self._known[attempt.decided or 0]
             order = concerned_names(self._spec.requirements[attempt.requirement])
-            told.setdefault(attempt.requirement, {})[attempt.number] = {
-                name: values[name] for name in order if name in names
-            }
-        return told
+            own = {name: values[name] for name in order if name in names}
+            yield attempt.requirement, attempt.number, own
 
 
 class _Windows:
@@ -215,31 +214,17 @@ class _Windows:
             yield piece
         self._values = run.told()
 
-    def told(self) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
+    def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
         from rvmon.analysis.window_values import unit_of
 
-        told: dict[str, dict[int, dict[str, str]]] = {}
-        for (requirement, number), own in self._asked.items():
-            told.setdefault(requirement, {})[number] = {
+        for (requirement, number), asked in self._asked.items():
+            own = {
                 format_window(one): value_text(value, unit_of(self._spec.checked, one) or "")
-                for t, one in own
+                for t, one in asked
                 if (value := self._values.get((t, one))) is not None
             }
-        return told
-
-
-def _joined(
-    *told: Mapping[str, Mapping[int, Mapping[str, str]]],
-) -> Mapping[str, Mapping[int, Mapping[str, str]]]:
-    """What is told of attempts, together."""
-    found: dict[str, dict[int, dict[str, str]]] = {}
-    for one in told:
-        for requirement, numbers in one.items():
-            for number, values in numbers.items():
-                if values:
-                    found.setdefault(requirement, {}).setdefault(number, {}).update(values)
-    return found
+            yield requirement, number, own
 
 
 def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
@@ -259,12 +244,12 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
             windows = windows_in(one.left, one.right)
             measured |= {name for window in windows for name in names_in(window)}
     signals = spec.checked.signals
-    told = {
+    signals_blamed = {
         name
         for name in blamed_names(requirement, attempt.blame) - measured
         if name in signals and signals[name].type.kind is not Kind.BOOL
     }
-    return told if len(told) <= MOST_VALUES else set()
+    return signals_blamed if len(signals_blamed) <= MOST_VALUES else set()
 
 
 def _first_failures(report: Report) -> Iterator[Attempt]:

@@ -8,13 +8,12 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from itertools import product
-from typing import NamedTuple
 
 from markupsafe import Markup
 
 from rvmon.coverage import Group, Item, TestRecord, combination
 from rvmon.coverage.questions import Step
-from rvmon.report.coverage_summary import LISTED, Summary, cell_text, is_grid, strategy_name
+from rvmon.report.coverage_summary import LISTED, Summary, cell_look, is_grid, strategy_name
 from rvmon.report.pages import Child, e, render, table_html
 from rvmon.report.table import VerdictTable
 from rvmon.spec.checked.goals import BinKind
@@ -201,28 +200,17 @@ def _is_open(summary: Summary, group: Group) -> bool:
     return len(own) <= LONG and any(one in own for one in (*summary.holes, *summary.illegal))
 
 
-class _Look(NamedTuple):
-    """The look of an item's cell: CSS class, percent of colour, and text."""
+def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, float | None, str]:
+    """The CSS class, percent of colour and text of an item's cell.
 
-    look: str
-    share: float | None
-    text: str
-
-
-def _look(summary: Summary, place: int, item: Item, most: int) -> _Look:
-    """The look of an item's cell; the colour is logarithmic in the hits, up to `most`."""
+    The colour is logarithmic in the hits, up to `most`.
+    """
     kind, count = summary.kind(place, item), int(summary.totals.counts[place])
-    text = cell_text(kind, item.goal, count)
-    match kind:
-        case BinKind.IGNORE:
-            return _Look("ignored", None, text)
-        case BinKind.ILLEGAL:
-            return _Look("illegal hit" if count else "illegal", None, text)
-        case BinKind.GOAL if count < item.goal:
-            return _Look("hole", None, text)
-        case BinKind.GOAL:
-            share = math.log(count) / math.log(most) if most > 1 else 1.0
-            return _Look("covered", PALE + (STRONG - PALE) * share, text)
+    look, text = cell_look(kind, item.goal, count)
+    if look != "covered":
+        return look, None, text
+    share = math.log(count) / math.log(most) if most > 1 else 1.0
+    return look, PALE + (STRONG - PALE) * share, text
 
 
 def _most_hits(summary: Summary, group: Group) -> int:
@@ -231,25 +219,11 @@ def _most_hits(summary: Summary, group: Group) -> int:
     return int(summary.totals.counts[start : start + len(group.items)].max(initial=0))
 
 
-class _Grid(NamedTuple):
-    """A cross as a table.
+def _grid(summary: Summary, group: Group) -> dict[str, object]:
+    """A cross as a table: what heads its rows and columns, and the most hits of an item.
 
-    Attributes:
-        down: the axes whose bins head the rows.
-        across: the last axis.
-        columns: its bins.
-        rows: per row, its heads with the rows that each spans, and its items with their places.
-        most: the most hits of an item.
+    Each row has its heads with the rows that each spans, and its items with their places.
     """
-
-    down: Sequence[str]
-    across: str
-    columns: Sequence[str]
-    rows: Sequence[tuple[Sequence[tuple[str, int]], Sequence[tuple[int, Item] | None]]]
-    most: int
-
-
-def _grid(summary: Summary, group: Group) -> _Grid:
     *down, (across, columns) = group.axes.items()
     places = {item.name: (place, item) for place, item in summary.places(group)}
     axes = [names for _, names in down]
@@ -257,7 +231,8 @@ def _grid(summary: Summary, group: Group) -> _Grid:
         (_heads(axes, number), [places.get(combination([*bins, name])) for name in columns])
         for number, bins in enumerate(product(*axes))
     ]
-    return _Grid([name for name, _ in down], across, columns, rows, _most_hits(summary, group))
+    shown = {"down": [name for name, _ in down], "across": across, "columns": columns}
+    return {**shown, "rows": rows, "most": _most_hits(summary, group)}
 
 
 def _heads(axes: Sequence[Sequence[str]], number: int) -> list[tuple[str, int]]:

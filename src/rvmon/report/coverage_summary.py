@@ -261,21 +261,22 @@ def is_grid(group: Group) -> bool:
     return bool(group.axes) and 0 < prod(map(len, group.axes.values())) <= MOST_COMBINATIONS
 
 
-def cell_text(kind: BinKind, goal: int, count: int) -> str:
-    """An item in a grid: its hits, with the goal if they are too few.
+def cell_look(kind: BinKind, goal: int, count: int) -> tuple[str, str]:
+    """An item in a grid: its look by name, and its hits, with the goal if they are too few.
 
-    >>> cell_text(BinKind.GOAL, 1, 7), cell_text(BinKind.GOAL, 3, 1)
-    ('7', '1/3')
-    >>> cell_text(BinKind.ILLEGAL, 1, 2), cell_text(BinKind.ILLEGAL, 1, 0)
-    ('2 !', '!')
+    >>> cell_look(BinKind.GOAL, 1, 7), cell_look(BinKind.GOAL, 3, 1)
+    (('covered', '7'), ('hole', '1/3'))
+    >>> cell_look(BinKind.ILLEGAL, 1, 2), cell_look(BinKind.ILLEGAL, 1, 0)
+    (('illegal hit', '2 !'), ('illegal', '!'))
     """
     match kind:
         case BinKind.IGNORE:
-            return "–"
+            return "ignored", "–"
         case BinKind.ILLEGAL:
-            return f"{count:,} !" if count else "!"
+            return ("illegal hit", f"{count:,} !") if count else ("illegal", "!")
         case BinKind.GOAL:
-            return f"{count:,}" if count >= goal or goal == 1 else f"{count:,}/{goal:,}"
+            text = f"{count:,}" if count >= goal or goal == 1 else f"{count:,}/{goal:,}"
+            return "covered" if count >= goal else "hole", text
 
 
 _OF_TEST = (

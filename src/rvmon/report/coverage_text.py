@@ -12,7 +12,7 @@ from rich.text import Text
 
 from rvmon.coverage import Group, combination
 from rvmon.coverage.questions import Comparison
-from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
+from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
 from rvmon.report.table import table_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import first_of
@@ -190,17 +190,19 @@ def _key(group: Group) -> str:
     return "  " + "   ".join(parts)
 
 
+_STYLES = {
+    **dict.fromkeys(("ignored", "illegal"), "dim"),
+    "illegal hit": "bold red",
+    "hole": "bold yellow",
+    "covered": "green",
+}
+
+
 def _cell(summary: Summary, group: Group, place: int) -> Text:
     item = group.items[summary.coverage.items[place][1]]
     kind, count = summary.kind(place, item), int(summary.totals.counts[place])
-    match kind:
-        case BinKind.IGNORE:
-            style = "dim"
-        case BinKind.ILLEGAL:
-            style = "bold red" if count else "dim"
-        case BinKind.GOAL:
-            style = "green" if count >= item.goal else "bold yellow"
-    return Text(cell_text(kind, item.goal, count), style=style)
+    look, text = cell_look(kind, item.goal, count)
+    return Text(text, style=_STYLES[look])
 
 
 def _bins(summary: Summary, group: Group) -> Table:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
@@ -44,23 +44,14 @@ def e(tag: str, attributes: Mapping[str, object] | None = None, *children: Child
     for name, value in (attributes or {}).items():
         if value is not None and value is not False:
             element.set(name, "" if value is True else shown(str(value)))
-    extend(element, children)
-    return element
-
-
-def extend(element: ET.Element, children: Iterable[Child]) -> None:
-    """Append children to an element."""
     for child in children:
-        if child is None:
-            continue
         if isinstance(child, ET.Element):
             element.append(child)
-            continue
-        text = shown(child.expandtabs(4))
-        if len(element):
-            element[-1].tail = (element[-1].tail or "") + text
-        else:
-            element.text = (element.text or "") + text
+        elif child is not None and len(element):
+            element[-1].tail = (element[-1].tail or "") + shown(child.expandtabs(4))
+        elif child is not None:
+            element.text = (element.text or "") + shown(child.expandtabs(4))
+    return element
 
 
 def to_html(element: ET.Element) -> str:

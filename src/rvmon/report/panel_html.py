@@ -85,15 +85,13 @@ def _changes(part_truth: PartTruth) -> Course:
 
 def has_unknown(panel: Panel) -> bool:
     """Whether a track of the panel has an unknown value in view."""
-    return any(_is_unknown(track, panel) for track in panel.tracks)
-
-
-def _is_unknown(track: Track, panel: Panel) -> bool:
-    if track.absent:
-        return True
     view = panel.view
-    inside = track.between(view.start, view.end).has_unknown
-    return inside or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
+    return any(
+        track.absent
+        or track.between(view.start, view.end).has_unknown
+        or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
+        for track in panel.tracks
+    )
 
 
 class SpecLines(NamedTuple):

@@ -107,12 +107,8 @@ MOST = 100
 """The most passing attempts that are compared."""
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """A run in which passing attempts of a requirement are looked for."""
-
-    run: JudgedRun
-    tracks: tuple[Track, ...]
+Candidate = tuple[JudgedRun, tuple[Track, ...]]
+"""A run in which passing attempts of a requirement are looked for, and its tracks."""
 
 
 def nearest_passing(
@@ -128,11 +124,17 @@ def nearest_passing(
     looks = range(LOOKS)
     instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
     own = [() if one.kind is TrackKind.EVENT else one.changes.values_at(instants) for one in tracks]
-    for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):
+    passing = (
+        (candidate, one)
+        for candidate in candidates
+        for one in candidate[0].report.attempts
+        if one.requirement == attempt.requirement and one.verdict is Verdict.PASS
+    )
+    for candidate, passed in islice(passing, MOST):
         shift = attempt.triggered - passed.triggered
         moved = [instant - shift for instant in instants]
         distance = 0.0
-        for mine, values, other in zip(tracks, own, candidate.tracks, strict=True):
+        for mine, values, other in zip(tracks, own, candidate[1], strict=True):
             if mine.kind is TrackKind.EVENT:
                 distance += abs(_first(mine, view, 0) - _first(other, view, shift))
             else:
@@ -142,21 +144,12 @@ def nearest_passing(
     return None if best is None else _laid_over(best[1], best[2], attempt)
 
 
-def _passing(
-    requirement: str, candidates: Sequence[Candidate]
-) -> Iterator[tuple[Candidate, Attempt]]:
-    for candidate in candidates:
-        for attempt in candidate.run.report.attempts:
-            if attempt.requirement == requirement and attempt.verdict is Verdict.PASS:
-                yield candidate, attempt
-
-
 def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
-    shift = failed.triggered - passed.triggered
-    moved = (replace(one, changes=one.changes.shifted(shift)) for one in candidate.tracks)
-    end = candidate.run.report.end
+    shift, (run, tracks) = failed.triggered - passed.triggered, candidate
+    moved = (replace(one, changes=one.changes.shifted(shift)) for one in tracks)
+    end = run.report.end
     return ReferenceAttempt(
-        name=candidate.run.name,
+        name=run.name,
         number=passed.number,
         tracks=tuple(moved),
         end=failed.triggered if end is None else end + shift,
@@ -237,9 +230,8 @@ class _Panels:
             yield Panel(panel_id(name, None), name, None, verdict, view, tracks, None, miss=miss)
         candidates: list[Candidate] = []
         if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
-            candidates.append(Candidate(run, tracks))
             others = (other for other in self._content.others if other.samples)
-            candidates.extend(Candidate(other, self._tracks(other, name)) for other in others)
+            candidates = [(run, tracks), *((one, self._tracks(one, name)) for one in others)]
         late = self._late(name, attempts)
         for attempt in attempts:
             came = None if attempt.in_doubt else late.get(attempt.number)

@@ -55,23 +55,14 @@ class Listed:
     error: str = ""
 
 
-class _Cell(NamedTuple):
-    """A verdict in the index, with its reason."""
-
-    requirement: str
-    verdict: Verdict
-    reason: str | None
-    is_known: bool
-
-
 class _Row(NamedTuple):
-    """A recording's row: its group, and the text that a search matches."""
+    """A recording's row: its group, the text that a search matches, and a cell per requirement."""
 
     one: Listed
     group: str
     searched: str
     why: str
-    cells: Sequence[_Cell]
+    cells: Sequence[tuple[str, Verdict, str | None, bool]]
 
 
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
@@ -144,13 +135,14 @@ def _row(one: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
     return _Row(one, _group(one, known), " ".join(asked).strip().lower(), why, cells)
 
 
-def _cell(report: Report, requirement: str, known: str) -> _Cell:
+def _cell(report: Report, requirement: str, known: str) -> tuple[str, Verdict, str | None, bool]:
+    """The requirement, its verdict with the reason, and whether its failure is known."""
     verdict = report.verdicts[requirement]
     reason = f"known: {known}" if known else None
     if reason is None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
         first = next(report.of(requirement, verdict), None)
         reason = None if first is None else first.reason
-    return _Cell(requirement, verdict, reason, bool(known))
+    return requirement, verdict, reason, bool(known)
 
 
 COMPARED = 10
