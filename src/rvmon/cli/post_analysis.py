@@ -172,6 +172,8 @@ class _Values:
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
+        from rvmon.report.tracks import concerned_names
+
         for attempt, names in self._reads:
             values = self._known[attempt.decided or 0]
             order = concerned_names(self._spec.requirements[attempt.requirement])
