@@ -110,7 +110,6 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 
 def _memory(checked: CheckedSpec) -> list[str]:
-    """What windows of the past keep."""
     return memory_lines(checked)
 
 

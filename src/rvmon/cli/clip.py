@@ -115,7 +115,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
-    """Where the piece goes to, and the reproducer."""
     out, case = arguments.out, arguments.reproducer
     if out is not None and out.endswith(ENDING) and case is None:
         out, case = None, out

@@ -124,7 +124,6 @@ def _campaign(coverage: Coverage, name: str) -> Coverage:
 
 
 def _groups(coverage: Coverage, name: str | None) -> Sequence[Group]:
-    """The groups whose items are listed."""
     groups = coverage.model.groups
     if name is None:
         return ()

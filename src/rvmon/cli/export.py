@@ -109,7 +109,6 @@ def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
 
 
 def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
-    """The automata of requirements, one after the other."""
     from rvmon.monitor import compile_spec
 
     chosen = compile_spec(spec.checked).chosen(ids)

@@ -306,7 +306,6 @@ def _arrived(
 
 
 def _silent(report: Report) -> list[str]:
-    """The requirements without attempts."""
     return [name for name in report.verdicts if report.is_silent(name)]
 
 

@@ -96,7 +96,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _refuse_unused(arguments: argparse.Namespace) -> None:
-    """Refuse options that would change nothing."""
     by_query = not (arguments.spec or arguments.suite)
     for option, value, used, why in (
         ("--query", arguments.query, by_query, "with --spec or --suite"),

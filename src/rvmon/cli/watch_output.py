@@ -214,7 +214,6 @@ def _need(verdict: Verdict) -> int:
 
 
 def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
-    """What is not shown, in one line."""
     counts = Counter(verdicts)
     listed = ", ".join(f"{counts[one]} {one.value}" for one in Verdict if counts[one])
     return [f"… and {len(verdicts)} more {of}: {listed}"] if verdicts else []

@@ -214,7 +214,6 @@ def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, flo
 
 
 def _most_hits(summary: Summary, group: Group) -> int:
-    """The most hits of an item of a group."""
     start = summary.starts[group.name]
     return int(summary.totals.counts[start : start + len(group.items)].max(initial=0))
 

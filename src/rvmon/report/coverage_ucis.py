@@ -116,7 +116,6 @@ def _contents(parent: ET.Element, summary: Summary, place: int) -> None:
 
 
 def _remarks(parent: ET.Element, summary: Summary, group: Group, item: Item) -> None:
-    """Attributes of an item: its text, and why it is unreachable."""
     why = "; ".join(summary.coverage.unreachable.get((group.name, item.name), ()))
     for key, text in (("text", item.text), ("unreachable", why)):
         if text:

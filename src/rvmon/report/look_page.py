@@ -54,7 +54,6 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
 
 
 def _lost(outage: Outage, start: int) -> str:
-    """An outage in words."""
     names = "everything" if outage.names is None else first_of(sorted(outage.names), _FEW)
     return f"{names} from {format_stamped(outage.since, start)} on: {outage.why}"
 

@@ -38,7 +38,6 @@ def _lines(requirement: Requirement) -> Iterator[str]:
 
 
 def _fixed(window: WindowValue) -> int:
-    """The bytes of a window, independent of the input."""
     return window.measured.fixed + window.measured.each * (window.most or 0)
 
 

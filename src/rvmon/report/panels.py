@@ -158,7 +158,6 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
 
 
 def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
-    """The distance of two signals, from 0 (equal) to 1."""
     pairs = list(zip(mine, other, strict=True))
     numbers = [abs(value) for value in (*mine, *other) if _is_number(value)]
     scale = max(numbers, default=0.0) or 1.0

@@ -108,7 +108,6 @@ def _failed(one: Listed) -> list[str]:
 
 
 def _group(one: Listed, known: KnownFailures) -> str:
-    """The group of a recording."""
     if one.report is None:
         return _BROKEN
     if known.failures(one.report) or one.report.illegal:

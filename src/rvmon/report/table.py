@@ -281,7 +281,6 @@ def escape(text: str) -> str:
 
 
 def _rows(table: VerdictTable, name: str) -> list[str]:
-    """The row of a requirement, and the row of intervals below it."""
     rows = [_row(_cells(table, name))]
     if table.shows_intervals:
         cells = [""] * (2 if table.checked else 1)

@@ -7,7 +7,6 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
@@ -29,23 +28,9 @@ class Terminal(Console):
         self, renderable: RenderableType, options: ConsoleOptions | None = None
     ) -> Iterable[Segment]:
         """Rich's segments, with unsafe characters of their text escaped."""
-        how = options or self.options
-        if isinstance(renderable, Text) and _fits(renderable, how):
-            segments = renderable.render(self, end=renderable.end)
-        else:
-            segments = super().render(renderable, options)
-        for segment in segments:
+        for segment in super().render(renderable, options):
             text = segment.text if segment.control else shown(segment.text)
             yield segment if text is segment.text else Segment(text, segment.style)
-
-
-def _fits(text: Text, options: ConsoleOptions) -> bool:
-    """Whether no line of a text needs to be folded, cut or aligned, so that a fast path applies."""
-    plain, justify = text.plain, text.justify or options.justify or "left"
-    if justify not in ("default", "left") or "\t" in plain or (text.style and not text.spans):
-        return False
-    width = options.max_width
-    return all(len(line) * 2 <= width or cell_len(line) <= width for line in plain.split("\n"))
 
 
 def plain_table(rows: Sequence[Sequence[str]]) -> str:

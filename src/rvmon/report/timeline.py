@@ -171,7 +171,6 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
 
 
 def _ring(place: float) -> ET.Element:
-    """A ring around the blamed sample."""
     return e("span", {"class": "mark offending", "style": f"left:{place:.2%}"})
 
 

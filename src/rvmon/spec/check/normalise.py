@@ -149,7 +149,6 @@ def scoped_consequent(consequent: Formula, closing: Formula | None, *, must_clos
 
 
 def _inside(opening: Formula | None, closing: Formula | None) -> Formula:
-    """Whether the scope is open."""
     if opening is None and closing is not None:
         return _not(Unary(UnaryOp.ONCE, closing, _ALL, closing.span))
     if opening is None or closing is None:

@@ -155,7 +155,6 @@ def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fractio
 
 
 def _scale(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
-    """Products and quotients."""
     (left, _), (right, _) = args
     multiply = op.entry.unit is UnitRule.PRODUCT
     unit = (product if multiply else quotient)(left.unit, right.unit)
@@ -206,7 +205,6 @@ def _bare_zero(value: Quantity) -> bool:
 
 
 def _is_whole(op: NumericOp, args: Sequence[Placed]) -> bool:
-    """Whether only whole numbers come in, and go out."""
     return op.entry.whole and all(_is_integral(value) for value, _ in args)
 
 

@@ -71,7 +71,6 @@ def _exact(
 
 
 def _library(count: int, unit: UnitRule, apply: Callable[..., float], doc: str) -> Operation:
-    """One of the C library's."""
     return Operation(count, count, unit, apply, False, doc, Exactness.LIBRARY)
 
 

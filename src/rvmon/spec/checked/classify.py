@@ -313,7 +313,6 @@ def _compared(formula: Compare) -> tuple[Hashable, bool]:
 
 
 def _events(formula: Compare) -> list[str]:
-    """The events whose fields are compared."""
     return [field.event for field in fields_in(formula.left, formula.right)]
 
 

@@ -123,8 +123,6 @@ class Operator:
 
 
 class _Sign(StrEnum):
-    """Operators by their signs."""
-
     entry: Operator
 
     def __new__(cls, entry: Operator) -> _Sign:

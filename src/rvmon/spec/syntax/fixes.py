@@ -151,7 +151,6 @@ def _held_fix(found: str, before: Span) -> str:
 
 
 def _dash_fix(before: str) -> str:
-    """What fixes a requirement whose name has dashes."""
     dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
     if not dashed:
         return ""
@@ -216,7 +215,6 @@ def _number_fix(found: str, before: Span) -> str:
 
 
 def _decimal_comma(text: str) -> str:
-    """What fixes a number that is written with a comma, if there is one."""
     comma = re.search(r"(?<![\w.,])(\d+),(\d+)(?![\w.,])", text)
     return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
 
