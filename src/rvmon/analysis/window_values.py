@@ -103,7 +103,7 @@ class WindowValues:
         """Take the next piece of the recording."""
         self._run.take(piece)
 
-    def told(self) -> Mapping[Asked, Scalar]:
+    def values(self) -> Mapping[Asked, Scalar]:
         """End the recording; returns the values that are known."""
         return {
             self._asked[int(attempt.requirement)]: value

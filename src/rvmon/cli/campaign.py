@@ -118,13 +118,13 @@ def add_commands(
         parser.set_defaults(run=handler, campaign=campaign, command=name, again=())
         own = (defaults or {}).get(name, {})
         metavar = "NAMES" if name == "run" else "NAME"
-        told = f"of {robots} (default: {own.get('robot', robot)})"
-        parser.add_argument("--robot", metavar=metavar, default=own.get("robot"), help=told)
+        about = f"of {robots} (default: {own.get('robot', robot)})"
+        parser.add_argument("--robot", metavar=metavar, default=own.get("robot"), help=about)
         if name not in ("replay", "shrink"):
             drawn = own.get("strategy", "those of the campaign" if name == "close" else "all")
-            told = f"of {strategies} (default: {drawn})"
+            about = f"of {strategies} (default: {drawn})"
             parser.add_argument(
-                "--strategy", metavar="NAMES", default=own.get("strategy"), help=told
+                "--strategy", metavar="NAMES", default=own.get("strategy"), help=about
             )
     add_run_options(parsers["run"])
     add_closing_options(parsers["close"])

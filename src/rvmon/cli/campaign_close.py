@@ -23,7 +23,7 @@ from rvmon.cdv.tables import to_json
 from rvmon.cli.campaign_run import written
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.files import write_whole
-from rvmon.report.folder import made
+from rvmon.report.folder import output_folder
 from rvmon.report.terminal import Terminal
 
 
@@ -47,7 +47,7 @@ def conduct_closing(
         What came of it, and how the suite stands against what was expected.
     """
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
-    folder = made(arguments.out) if arguments.out else None
+    folder = output_folder(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
     specs = campaign.requirements
     with bar("goals", 1.0) as show:

@@ -29,7 +29,7 @@ from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import write_whole
-from rvmon.report.folder import made
+from rvmon.report.folder import output_folder
 
 MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""
@@ -41,7 +41,7 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
     if arguments.list:
         say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
         return 0
-    folder = made(arguments.out) if arguments.out else None
+    folder = output_folder(arguments.out) if arguments.out else None
     report = _reported(campaign, robot, strategies, found, arguments)
     if arguments.format == "json":
         say_json(to_json(report.document()).decode().removesuffix("\n"))

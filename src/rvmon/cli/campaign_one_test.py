@@ -21,7 +21,7 @@ from rvmon.cli.output import busy, say_json, warn
 from rvmon.errors import UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.files import write_whole
-from rvmon.report.folder import made, refuse_no_file
+from rvmon.report.folder import output_folder, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
 from rvmon.session import Spec
@@ -34,7 +34,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
     robot = campaign.robots[job.robot]
     spec = campaign.requirements_of(job.robot)
     # A folder that cannot be written to is reported before anything is played.
-    folder = made(arguments.out) if arguments.out else None
+    folder = output_folder(arguments.out) if arguments.out else None
     if arguments.mcap is not None:
         refuse_mcap(arguments.mcap)
         refuse_no_file(arguments.mcap)
@@ -71,7 +71,9 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
 def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail."""
     job, requirement = _job(campaign, arguments), arguments.requirement
-    folder = made(arguments.out) if arguments.out else None  # reported before anything is played
+    folder = (
+        output_folder(arguments.out) if arguments.out else None
+    )  # reported before anything is played
     with busy("shrinking"):
         found = _smallest(campaign, job, requirement)
     if found is None:

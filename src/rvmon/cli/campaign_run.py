@@ -27,7 +27,7 @@ from rvmon.cdv.test import TestError
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError
-from rvmon.report.folder import made
+from rvmon.report.folder import output_folder
 from rvmon.report.terminal import Terminal
 from rvmon.session import Spec
 
@@ -84,7 +84,7 @@ def conduct(
         raise RvmonError("--shard leaves what it played in a folder: name it by --out")
     if arguments.shard is not None and arguments.evidence:
         raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
-    folder = made(arguments.out) if arguments.out else None
+    folder = output_folder(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
     with busy("generating tests"):
         if arguments.suite is not None:

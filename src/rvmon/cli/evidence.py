@@ -64,7 +64,7 @@ def add_parser(
     )
     add("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
     add("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
-    parser.set_defaults(run=run, made=campaign)
+    parser.set_defaults(run=run, campaign=campaign)
 
 
 Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
@@ -118,13 +118,13 @@ def _verify(
         unchecked.append("the matrix and the words of reasons: another rvmon wrote them")
     again: Again = _judged_again
     if about.judging is None:
-        if arguments.made is None:
+        if arguments.campaign is None:
             program = f"{' '.join(about.command[:1])} evidence {arguments.file}"
             unchecked.append(f"tests: the program that played them does: `{program}`")
             return
         from rvmon.cli.campaign_evidence import as_kept, played_again, programs_of
 
-        campaign = as_kept(arguments.made(arguments), kept)
+        campaign = as_kept(arguments.campaign(arguments), kept)
         again = partial(played_again, campaign)
         if not programs_of(campaign).items() <= about.programs.items():
             say(f"{campaign.name} has changed since: its tests are played as it is now")

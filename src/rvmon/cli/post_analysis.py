@@ -65,7 +65,7 @@ MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
 MOST_VALUES = 3
-"""Of failed parts that read more signals none is told: `rvmon why` has them all."""
+"""Of failed parts that read more signals none is shown: `rvmon why` has them all."""
 
 
 def post_analysis(
@@ -214,7 +214,7 @@ class _Windows:
         for piece in pieces:
             run.take(piece)
             yield piece
-        self._values = run.told()
+        self._values = run.values()
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""

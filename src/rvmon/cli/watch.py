@@ -108,7 +108,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
-    arguments.made = _age(arguments.spec)  # before it is read: no change is missed
+    arguments.age = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)
     if arguments.state is not None:
         return _watch_kept(arguments, spec)
@@ -309,8 +309,8 @@ def _follow(
                 feeding.join(_TURN)
             if shown.broken is not None:
                 raise shown.broken
-            if (age := _age(arguments.spec)) != arguments.made:
-                arguments.made = age
+            if (age := _age(arguments.spec)) != arguments.age:
+                arguments.age = age
                 try:
                     _replace(arguments, live)
                     shown.note(f"{arguments.spec} has changed: the new one holds from here on")

@@ -94,13 +94,13 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     assert report.end is not None, "a recording with an attempt has an end"
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
-    from rvmon.report.why_text import values_told, why_lines
+    from rvmon.report.why_text import attempt_values, why_lines
 
     requirement = spec.requirements[name]
     changes = changes_of(spec.checked, samples)
     tracks = tracks_of(spec.checked, requirement, changes, report.absent)
-    values = values_told(tracks, attempt, report.end)
-    values |= _windows_told(spec.checked, attempt, samples, report, recording.names)
+    values = attempt_values(tracks, attempt, report.end)
+    values |= _window_values(spec.checked, attempt, samples, report, recording.names)
     if arguments.format == "json":
         import msgspec
 
@@ -115,7 +115,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     return 0
 
 
-def _windows_told(
+def _window_values(
     checked: CheckedSpec,
     attempt: Attempt,
     samples: HeldRecording,
@@ -133,7 +133,7 @@ def _windows_told(
     run = WindowValues(checked, asked, report.origin, Trace((), names, report.end, samples.outages))
     for piece in samples.pieces:
         run.take(piece)
-    values = run.told()
+    values = run.values()
     return {
         format_window(one): [
             value_text(values.get((t, one)), unit_of(checked, one) or "") for t in instants

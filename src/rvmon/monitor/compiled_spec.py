@@ -13,7 +13,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from rvmon.files import cache_folder, keep, read_kept, this_rvmon
-from rvmon.spec.checked.plain_data import told_apart
+from rvmon.spec.checked.plain_data import identity_text
 from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class Place:
         if folder is None:
             self._path = None
             return
-        content = json.dumps([this_rvmon(), told_apart(spec), *how])
+        content = json.dumps([this_rvmon(), identity_text(spec), *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon import native
 from rvmon.errors import SnapshotError
 from rvmon.monitor.planned import PlannedCore
-from rvmon.spec.checked.plain_data import told_apart
+from rvmon.spec.checked.plain_data import identity_text
 from rvmon.verdict import LAW
 
 if TYPE_CHECKING:
@@ -155,4 +155,4 @@ def digest_of(compiled: CompiledSpec) -> str:
 
 def digest(checked: CheckedSpec) -> str:
     """A hash of the meaning of a specification, independent of its layout and comments."""
-    return hashlib.sha256(told_apart(checked, without=_LEFT_OUT).encode()).hexdigest()
+    return hashlib.sha256(identity_text(checked, without=_LEFT_OUT).encode()).hexdigest()

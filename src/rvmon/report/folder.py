@@ -8,7 +8,7 @@ from rvmon.errors import RvmonError, writing
 from rvmon.files import write_whole
 
 
-def made(folder: str | Path) -> Path:
+def output_folder(folder: str | Path) -> Path:
     """Make a folder if it does not exist, and check that files can be written there.
 
     Raises:

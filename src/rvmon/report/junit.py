@@ -40,7 +40,7 @@ def junit_xml(
                 _accept(cases[-1], known.expected(report)[name])
         for one in report.illegal:
             cases.append(ET.Element("testcase", name=shown(f"{one.group}: {one.item}")))
-            ET.SubElement(cases[-1], "failure", message=shown(one.told(report.origin)))
+            ET.SubElement(cases[-1], "failure", message=shown(one.sentence(report.origin)))
         add_suite(root, report.trace or spec.name, cases)
     for trace, message in broken:
         case = ET.Element("testcase", name="recording")

@@ -44,9 +44,9 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
             table.add_column(justify=justify, overflow="fold")
         table.columns[-1].no_wrap = True
         for column in columns:
-            kind, rate, gap, told = facts(column)
+            kind, rate, gap, about = facts(column)
             rate = f"{rate}, gap {gap}" if gap else rate
-            table.add_row(_short(column.name, title), kind, told, rate, spark(column, profile))
+            table.add_row(_short(column.name, title), kind, about, rate, spark(column, profile))
         yield table
     for why in dict.fromkeys(profile.left_out.values()):
         names = [name for name, reason in profile.left_out.items() if reason == why]
@@ -178,7 +178,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         "look.html",
         title=f"{profile.path.rpartition('/')[2]} – rvmon look",
         profile=profile,
-        told=f"{profile.samples:,} samples in {duration_text(span)}, "
+        about=f"{profile.samples:,} samples in {duration_text(span)}, "
         f"{len(profile.columns):,} names.",
         lost=[f"Lost: {_lost(one, profile.start)}." for one in profile.outages],
         marks=_marks(profile.start, profile.end),
@@ -208,7 +208,7 @@ def _row(column: Column, title: str, profile: Profile) -> dict[str, object]:
     return {
         "name": column.name,
         "short": _short(column.name, title),
-        "told": ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one),
+        "about": ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one),
         "range": values,
         "drawing": None if is_constant(column) else _drawing(column, profile),
     }

@@ -15,7 +15,7 @@ from rvmon.report.style import MARKS
 from rvmon.report.time_axis import moment, with_moments
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
-from rvmon.report.wording import told_reason, without_attempts
+from rvmon.report.wording import reason_text, without_attempts
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Blame
@@ -162,6 +162,6 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
         return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
-    why = told_reason(attempt, panel.late)
+    why = reason_text(attempt, panel.late)
     reason = f": {with_moments(why, panel.view)}" if why else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

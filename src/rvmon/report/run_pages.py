@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rvmon.files import write_whole
-from rvmon.report.folder import made
+from rvmon.report.folder import output_folder
 from rvmon.report.pages import render
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
@@ -177,7 +177,7 @@ def write_run_pages(
     Raises:
         RvmonError: the folder cannot be written to.
     """
-    made(folder)
+    output_folder(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]
     others = [_judged(report, read) for report in passing[:COMPARED]]
     several = len(reports) + len(broken) > 1

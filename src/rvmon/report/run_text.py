@@ -113,7 +113,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
         console.print(_goals_text(report.goals))
     _print_coverage(report.coverage, console)
     for one in report.illegal:
-        console.print(one.told(report.origin), style="bold red", markup=False)
+        console.print(one.sentence(report.origin), style="bold red", markup=False)
     if report.health:
         console.print("input health:")
     for names, fact in health_facts(report.health, report.origin):

@@ -117,18 +117,18 @@ class Track:
         return self.changes[self.changes.behind(first - 1) : self.changes.behind(last)]
 
 
-def signals_told(tracks: Iterable[Track], instant: int) -> dict[str, str]:
+def signal_texts(tracks: Iterable[Track], instant: int) -> dict[str, str]:
     """By signal, its value at an instant with its unit; events are left out.
 
     >>> force = Track("force", TrackKind.NUMBER, Course.of([(0, 40.5), (9, None)]), "N")
-    >>> signals_told([force], 3), signals_told([force], 9)
+    >>> signal_texts([force], 3), signal_texts([force], 9)
     ({'force': '40.5 N'}, {'force': 'not known'})
     """
-    told = {}
+    texts = {}
     for track in tracks:
         if track.kind is not TrackKind.EVENT:
-            told[track.name] = value_text(track.value_at(instant), track.unit)
-    return told
+            texts[track.name] = value_text(track.value_at(instant), track.unit)
+    return texts
 
 
 PLACES = 400

@@ -10,8 +10,8 @@ from rich.text import Text
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
-from rvmon.report.tracks import Track, signals_told
-from rvmon.report.wording import forecast_sentence, instants_of, told_reason
+from rvmon.report.tracks import Track, signal_texts
+from rvmon.report.wording import forecast_sentence, instants_of, reason_text
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_instant
 from rvmon.verdict.attempt import Attempt
@@ -48,11 +48,11 @@ def why_lines(
         yield Text("")
         instants = ["at the trigger", "at the end"][: len(next(iter(values.values())))]
         yield _columns("  values", instants, "bold")
-        for name, told in values.items():
-            yield _columns(f"    {name}", told)
+        for name, texts in values.items():
+            yield _columns(f"    {name}", texts)
 
 
-def values_told(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
+def attempt_values(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
     """By signal, its value at the trigger, and at the end of the attempt if that is later.
 
     Args:
@@ -61,8 +61,8 @@ def values_told(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str
         end: the last instant of the run, ticks, where an open attempt ends.
     """
     last = end if attempt.decided is None else attempt.decided
-    told = [signals_told(tracks, t) for t in sorted({attempt.triggered, last})]
-    return {name: [one[name] for one in told] for name in told[0]}
+    texts = [signal_texts(tracks, t) for t in sorted({attempt.triggered, last})]
+    return {name: [one[name] for one in texts] for name in texts[0]}
 
 
 def _columns(first: str, others: Sequence[str], style: str = "") -> Text:
@@ -78,7 +78,7 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield told_reason(attempt, breakdown.late)
+        yield reason_text(attempt, breakdown.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
 

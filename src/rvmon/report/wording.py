@@ -48,10 +48,10 @@ def full_reason(attempt: Attempt, report: Report) -> str:
     """The reason of an attempt with the report's values at its decision and late response."""
     late = report.late.get(attempt.requirement, {}).get(attempt.number)
     values = report.values.get(attempt.requirement, {}).get(attempt.number, {})
-    return told_reason(attempt, late, values)
+    return reason_text(attempt, late, values)
 
 
-def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
+def reason_text(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
     """The reason of an attempt, with values at its decision, and how late the response came.
 
     Args:
@@ -64,15 +64,15 @@ def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = 
     >>> second = 10**9
     >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
-    >>> told_reason(failed, 3 * second + 20_000_000)
+    >>> reason_text(failed, 3 * second + 20_000_000)
     'no `a`; it came at 3.02 s, 20 ms after the deadline'
-    >>> told_reason(failed, 5 * second + 500_000_000)
+    >>> reason_text(failed, 5 * second + 500_000_000)
     'no `a`; it came at 5.5 s, 2.5 s after the deadline'
-    >>> told_reason(failed, None, {"speed": "3 m/s", "mode": "idle"})
+    >>> reason_text(failed, None, {"speed": "3 m/s", "mode": "idle"})
     'no `a` (speed = 3 m/s, mode = idle)'
     """
-    told = ", ".join(f"{name} = {value}" for name, value in values.items())
-    reason = f"{attempt.reason} ({told})" if told else attempt.reason
+    listed = ", ".join(f"{name} = {value}" for name, value in values.items())
+    reason = f"{attempt.reason} ({listed})" if listed else attempt.reason
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:
         return reason
     span = duration_text(came - attempt.blame.window[1])
@@ -80,11 +80,11 @@ def told_reason(attempt: Attempt, came: int | None, values: Mapping[str, str] = 
     return f"{reason}; it came at {when}, {span} after the deadline"
 
 
-def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, str]]:
+def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, str]]:
     """Entries of input health in words, as pairs of names and fact.
 
     Args:
-        found: the entries of a run.
+        entries: of a run.
         origin: its first instant, ticks.
 
     >>> speed = Health(HealthKind.NAN, "speed", 3, 2 * TICKS_PER_SECOND, ("R1",))
@@ -94,7 +94,7 @@ def health_facts(found: Sequence[Health], origin: int) -> Iterator[tuple[str, st
     x ignored: unknown
     """
     ignored: dict[str, list[str]] = {}
-    for one in found:
+    for one in entries:
         if one.kind is HealthKind.IGNORED:
             ignored.setdefault(one.remark, []).append(one.name)
         elif one.is_doubt:

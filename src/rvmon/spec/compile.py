@@ -94,11 +94,11 @@ def compilation(
         files = overridden(files, constants, findings)
         resolved = resolve(files, findings)
         checked = check(resolved, findings)
-        if not _errors(findings.found):
+        if not _errors(findings.diagnostics):
             findings.extend(unused_names(resolved, checked))
-        if not files[0].items and not findings.found:
+        if not files[0].items and not findings.diagnostics:
             findings.add(empty_file(Span(source, 0, 0)))
-    found = sorted(findings.found, key=lambda finding: _place(finding, source))
+    found = sorted(findings.diagnostics, key=lambda finding: _place(finding, source))
     if findings.more:
         found.append(too_many(MOST, broken=_errors(found)))
     return Compilation(files, checked, tuple(found))

@@ -63,10 +63,10 @@ class IllegalHit:
     count: int
     first: int
 
-    def told(self, origin: int) -> str:
+    def sentence(self, origin: int) -> str:
         """One sentence; `origin` is the instant shown as 0 s, ticks.
 
-        >>> print(IllegalHit("phase", "back", 2, 3 * 10**9).told(0))
+        >>> print(IllegalHit("phase", "back", 2, 3 * 10**9).sentence(0))
         illegal: `back` of `phase` was hit at 3 s, 2 times in all
         """
         often = f", {self.count} times in all" if self.count > 1 else ""

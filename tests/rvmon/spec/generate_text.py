@@ -81,7 +81,7 @@ def syntax_of(text: str) -> Hashable | None:
     """
     findings = Findings()
     parsed = parse_spec(Source("<string>", text), findings)
-    return None if findings.found else _bare(parsed.items)
+    return None if findings.diagnostics else _bare(parsed.items)
 
 
 def _bare(node: Any) -> Hashable:

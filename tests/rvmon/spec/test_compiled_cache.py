@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.spec.checked.plain_data import from_plain, to_plain, told_apart
+from rvmon.spec.checked.plain_data import from_plain, identity_text, to_plain
 from rvmon.spec.compile import compile_text
 from rvmon.spec.compiled_cache import compile_cached
 from rvmon.testing.generate.spec import Profile, random_spec
@@ -51,10 +51,10 @@ def test_random_specifications_are_told_apart():
     known = {}
     for seed in range(200):
         spec = random_spec(random.Random(seed), Profile())
-        assert told_apart(from_plain(to_plain(spec))) == told_apart(spec)
-        assert known.setdefault(told_apart(spec), spec) == spec
+        assert identity_text(from_plain(to_plain(spec))) == identity_text(spec)
+        assert known.setdefault(identity_text(spec), spec) == spec
     moved, _ = compile_text("# a comment\n" + TEXT, name="b.rv")
-    assert told_apart(moved) == told_apart(compile_text(TEXT, name="b.rv")[0])
+    assert identity_text(moved) == identity_text(compile_text(TEXT, name="b.rv")[0])
 
 
 def test_the_second_time_it_is_read(folder):

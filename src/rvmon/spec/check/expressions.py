@@ -138,13 +138,13 @@ class Checker:
     ) -> Value:
         """An operation on numbers, or on choices between them."""
 
-        def made(values: Sequence[Value]) -> Value:
+        def calculate(values: Sequence[Value]) -> Value:
             if (instant := moved(op, values)) is not None:
                 return instant
             pairs = zip(values, args, strict=True)
             return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
 
-        return spread(self.values(args, scope), span, made)
+        return spread(self.values(args, scope), span, calculate)
 
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
         """What the expressions stand for.

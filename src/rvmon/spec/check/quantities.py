@@ -242,18 +242,18 @@ MOST_OUTCOMES = 64
 """Between so many numbers an expression may choose."""
 
 
-def spread(values: Sequence[Value], span: Span, made: Callable[[Sequence[Value]], Value]) -> Value:
+def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:
     """What is made of values, some of which may be choices.
 
     Raises:
-        Refusal: they have too many outcomes, or what `made` says.
+        Refusal: they have too many outcomes, or what `make` says.
     """
     outcomes = 1
     for value in values:
         outcomes *= _outcomes(value)
     if outcomes > MOST_OUTCOMES:
         raise Refusal(rules.many_outcomes(span, MOST_OUTCOMES))
-    return _spread(values, made)
+    return _spread(values, make)
 
 
 def _outcomes(value: Value) -> int:
@@ -262,15 +262,15 @@ def _outcomes(value: Value) -> int:
     return 1
 
 
-def _spread(values: Sequence[Value], made: Callable[[Sequence[Value]], Value]) -> Value:
+def _spread(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -> Value:
     for number, value in enumerate(values):
         if isinstance(value, Chosen):
             before, behind = values[:number], values[number + 1 :]
             sides = [
-                _spread((*before, side, *behind), made) for side in (value.chosen, value.otherwise)
+                _spread((*before, side, *behind), make) for side in (value.chosen, value.otherwise)
             ]
             return Chosen(value.condition, *sides)
-    return made(values)
+    return make(values)
 
 
 def decided(value: Value, span: Span) -> Formula:

@@ -117,7 +117,7 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
     return made
 
 
-def told_apart(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
+def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
     """A text that two specifications share if they are equal but for where things stand in files.
 
     It is the same in all processes.

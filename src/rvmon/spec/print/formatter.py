@@ -105,8 +105,8 @@ def format_text(text: str, *, name: str = "<string>") -> str:
     """
     findings = Findings()
     parse_spec(Source(name, text), findings)
-    if findings.found:
-        raise SpecError(findings.found, render_full(findings.found))
+    if findings.diagnostics:
+        raise SpecError(findings.diagnostics, render_full(findings.diagnostics))
     places = split_items(text)
     if not places:
         remarks = "\n".join(_gap_lines(text.split("\n"))).strip("\n")

@@ -97,11 +97,11 @@ class Findings:
     """Findings in the order in which they were made, none twice.
 
     Attributes:
-        found: at most so many errors, and as many warnings.
+        diagnostics: at most so many errors, and as many warnings.
         more: whether there were more.
     """
 
-    found: list[Diagnostic] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
     more: bool = False
     _seen: set[tuple[object, ...]] = field(default_factory=set)
     _counts: Counter[Severity] = field(default_factory=Counter)
@@ -123,7 +123,7 @@ class Findings:
             return
         self._seen.add(key)
         self._counts[finding.severity] += 1
-        self.found.append(finding)
+        self.diagnostics.append(finding)
 
     def extend(self, findings: Iterable[Diagnostic]) -> None:
         """Keep several."""
