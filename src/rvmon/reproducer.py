@@ -167,7 +167,7 @@ def _expect_inside(case: Case) -> None:
     """
     findings = Findings()
     load_files(Source(case.spec, text_of_file(case.spec)), Path(case.spec).parent, findings)
-    for finding in findings.found:
+    for finding in findings.diagnostics:
         raise RvmonError(f"{finding.message}: import it by a path from the file that does")
 
 

@@ -71,9 +71,8 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
 def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     """Shrink a test file, show what is left, and return an exit code: 1 if it does not fail."""
     job, requirement = _job(campaign, arguments), arguments.requirement
-    folder = (
-        output_folder(arguments.out) if arguments.out else None
-    )  # reported before anything is played
+    # A folder that cannot be written to is reported before anything is played.
+    folder = output_folder(arguments.out) if arguments.out else None
     with busy("shrinking"):
         found = _smallest(campaign, job, requirement)
     if found is None:

@@ -62,7 +62,7 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
     point = _Point(checker, item.expression, isinstance(value, Quantity) and bool(value.labels))
     first: dict[str, items.BinSyntax] = {}
 
-    def checked_bin(syntax: items.BinSyntax) -> Bin:
+    def bin_of(syntax: items.BinSyntax) -> Bin:
         earlier = first.setdefault(syntax.name.text, syntax)
         if earlier is not syntax:
             places = syntax.name.span, earlier.name.span
@@ -72,9 +72,7 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
             checker.report(rules.empty_bin(syntax.span))
         return Bin(syntax.name.text, formula, syntax.kind, syntax.span)
 
-    bins = [
-        one for syntax in item.bins if (one := checker.collected(checked_bin, syntax)) is not None
-    ]
+    bins = [one for syntax in item.bins if (one := checker.collected(bin_of, syntax)) is not None]
     wrong = len(bins) < len(item.bins)
     found = _clauses(checker, item.clauses)
     for clause in item.clauses:
