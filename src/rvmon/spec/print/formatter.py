@@ -40,16 +40,14 @@ def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
 
 
 def _row(pieces: Sequence[Piece]) -> Row:
-    kinds = [piece.kind for piece in pieces]
-    depths = [piece.depth for piece in pieces]
-    cuts = [1]
-    for cut in (("COLON",), ("ROLE",), ("IGNORE_NAN", "STALE_AFTER")):
-        found = [n for n, kind in enumerate(kinds) if kind in cut and depths[n] == 0]
-        cuts.append(found[0] if found else -1)
+    def first(kinds: Sequence[str], otherwise: int) -> int:
+        alone = (n for n, piece in enumerate(pieces) if piece.kind in kinds and not piece.depth)
+        return next(alone, otherwise)
+
     end = len(pieces)
-    stale = cuts[3] if cuts[3] >= 0 else end
-    role = cuts[2] if cuts[2] >= 0 else stale
-    colon = cuts[1] if cuts[1] >= 0 else role
+    stale = first(("IGNORE_NAN", "STALE_AFTER"), end)
+    role = first(("ROLE",), stale)
+    colon = first(("COLON",), role)
     texts = (pieces[1:colon], pieces[colon:role], pieces[role:stale], pieces[stale:end])
     return pieces[0].text, *map(text_of, texts)  # type: ignore[return-value]  # four of them
 

@@ -20,6 +20,8 @@ _CANONICAL = {
 _REWRITTEN = (*OPERATOR_TERMINALS, "NOT", "INFINITE", "COMPARE")
 _NUMBER = re.compile(r"(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)[ \t]*(.*)", re.DOTALL)
 _COMMENT = re.compile(r"#[^\n]*")
+_OPENING = ("LPAR", "LSQB", "LBRACE", "CALL")
+_CLOSING = ("RPAR", "RSQB", "RBRACE")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,20 +54,32 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
     interactive: Any = grammar().parse_interactive(text, start="item")
     tokens = list(interactive.iter_parse())
     pieces: list[Piece] = []
+    brackets: list[int] = []
     place = 0
     for token in tokens:
         gap = text[place : token.start_pos]
         above = [comment.rstrip() for comment in _COMMENT.findall(gap)]
         if pieces and above and "\n" not in gap[: gap.index("#")]:
             pieces[-1] = replace(pieces[-1], behind=above.pop(0))
-        pieces.append(Piece(token.type, _canonical(token.type, str(token)), tuple(above)))
+        if pieces and pieces[-1].kind == "AT_END" and token.type != "COLON":
+            colon = Piece("COLON", ":", behind=pieces[-1].behind)
+            pieces[-1:] = replace(pieces[-1], behind=""), colon
+        if token.type in _CLOSING:
+            brackets.pop()
+        elif token.type == "COMMA" and brackets and pieces[brackets[-1]].kind == "LPAR":
+            # A round bracket with a comma of its own opens a window; nothing else has one there.
+            pieces[brackets[-1]] = replace(pieces[brackets[-1]], opens_window=True)
+        canonical = _canonical(token.type, str(token))
+        pieces.append(Piece(token.type, canonical, tuple(above), depth=len(brackets)))
+        if token.type in _OPENING:
+            brackets.append(len(pieces) - 1)
         place = token.end_pos
     rest = text[place:]
     comment = re.match(r"[ \t]*(#[^\n]*)", rest)
     if comment:
         pieces[-1] = replace(pieces[-1], behind=comment[1].rstrip())
         rest = rest[comment.end() :]
-    return _with_colon(_with_windows(_with_depth(pieces))), rest
+    return pieces, rest
 
 
 def _canonical(kind: str, text: str) -> str:
@@ -82,63 +96,12 @@ def _canonical(kind: str, text: str) -> str:
     return words
 
 
-_OPENING = ("LPAR", "LSQB", "LBRACE", "CALL")
-_CLOSING = ("RPAR", "RSQB", "RBRACE")
-
-
-def _with_depth(pieces: Sequence[Piece]) -> list[Piece]:
-    found = []
-    depth = 0
-    for piece in pieces:
-        depth -= piece.kind in _CLOSING
-        found.append(replace(piece, depth=depth))
-        depth += piece.kind in _OPENING
-    return found
-
-
-def _with_windows(pieces: list[Piece]) -> list[Piece]:
-    """A round bracket with a comma of its own opens a window; nothing else has one there."""
-    open_brackets: list[int] = []
-    for number, piece in enumerate(pieces):
-        if piece.kind in _OPENING:
-            open_brackets.append(number)
-        elif piece.kind in _CLOSING:
-            open_brackets.pop()
-        elif piece.kind == "COMMA" and open_brackets:
-            opening = open_brackets[-1]
-            if pieces[opening].kind == "LPAR":
-                pieces[opening] = replace(pieces[opening], opens_window=True)
-    return pieces
-
-
-def _with_colon(pieces: list[Piece]) -> list[Piece]:
-    """`at end` is followed by a colon."""
-    found: list[Piece] = []
-    for piece in pieces:
-        if found and found[-1].kind == "AT_END" and piece.kind != "COLON":
-            comment = found[-1].behind  # it ends the line of the colon then
-            found[-1] = replace(found[-1], behind="")
-            found.append(Piece("COLON", ":", behind=comment))
-        found.append(piece)
-    return found
-
-
 WIDTH = 100
 """Longer lines are broken where operators or commas allow it."""
 
-_OPERATORS = (
-    ("LEADS_TO",),
-    ("IFF",),
-    ("IMPLIES",),
-    ("OR",),
-    ("XOR",),
-    ("AND",),
-    ("INFIX",),
-)
+_OPERATORS = ("LEADS_TO", "IFF", "IMPLIES", "OR", "XOR", "AND", "INFIX")
 """Where long formulas are broken: the loosest operator first."""
 
-_NO_SPACE_AFTER = ("LPAR", "LSQB", "LBRACE", "CALL")
-_NO_SPACE_BEFORE = ("RPAR", "RSQB", "RBRACE", "COMMA", "COLON")
 _TAKES_WINDOW = ("TEMPORAL", "INFIX", "PATH", "CTL", "QUANTIFIER", "LEADS_TO")
 _PLAIN = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")
 _OPERANDS = ("NAME", "NUMBER", "RPAR", "RSQB", "TRUTH", "START", "END", "STRING")
@@ -176,7 +139,7 @@ def text_of(pieces: Sequence[Piece]) -> str:
 
 
 def _spaced(left: Piece, right: Piece) -> bool:
-    if left.kind in _NO_SPACE_AFTER or right.kind in _NO_SPACE_BEFORE:
+    if left.kind in _OPENING or right.kind in (*_CLOSING, "COMMA", "COLON"):
         return False
     window = right.kind == "LSQB" or right.opens_window
     return not (window and left.kind in _TAKES_WINDOW)
@@ -226,21 +189,13 @@ def _a_line_per_bin(pieces: Sequence[Piece], indent: int) -> list[str]:
 
 def _cut_at_operators(pieces: Sequence[Piece]) -> list[Sequence[Piece]]:
     """Cut before the loosest operators that stand within the fewest brackets."""
-    kinds = {kind for group in _OPERATORS for kind in group}
-    inner = pieces[1:]
-    depths = [piece.depth for piece in inner if piece.kind in kinds]
-    if not depths:
-        return []
-    depth = min(depths)
-    for group in _OPERATORS:
-        cuts = [
-            number
-            for number, piece in enumerate(inner, 1)
-            if piece.kind in group and piece.depth == depth
-        ]
-        if cuts:
-            return [pieces[a:b] for a, b in pairwise([0, *cuts, len(pieces)])]
-    return []
+    places = [
+        (piece.depth, _OPERATORS.index(piece.kind), number)
+        for number, piece in enumerate(pieces)
+        if number and piece.kind in _OPERATORS
+    ]
+    cuts = [number for *how, number in places if tuple(how) == min(places)[:2]]
+    return [pieces[a:b] for a, b in pairwise([0, *cuts, len(pieces)])] if cuts else []
 
 
 def _cut_at_commas(pieces: Sequence[Piece], indent: int) -> list[Sequence[Piece]]:
