@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+from rich.text import Text
 
 from rvmon.verdict import Verdict
-
-if TYPE_CHECKING:
-    from rich.text import Text
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +46,5 @@ def verdict_colours() -> str:
 
 def verdict_text(verdict: Verdict) -> Text:
     """A verdict as styled text for the terminal: its letter, then its sign."""
-    from rich.text import Text
-
     mark = MARKS[verdict]
     return Text(f"{verdict.value:<2} {mark.sign}", style=mark.terminal)

@@ -6,17 +6,16 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
 
 from rvmon.confidence import interval, interval_text
 from rvmon.report.style import MARKS
 from rvmon.texts import shown_line
 from rvmon.verdict import Verdict
-
-if TYPE_CHECKING:
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
 
 Counts = Mapping[Verdict, int]
 """By verdict, the number of runs."""
@@ -124,9 +123,6 @@ def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None
         beside: by label, tables whose counts stand in further lines of each row; matched by
             requirement and by name of the group.
     """
-    from rich.console import Group
-    from rich.text import Text
-
     beside = beside or {}
     width = _width(table, *beside.values())
     abreast = max(1, ABREAST // width)
@@ -159,10 +155,6 @@ def _grid(
     *,
     with_checked: bool,
 ) -> Table:
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
     shown = {group.name for group in groups}
     others = {
         f"  {label}": one
@@ -190,16 +182,12 @@ def _grid(
 
 
 def _checked_cell(table: VerdictTable, name: str, *, dim: bool) -> Text:
-    from rich.text import Text
-
     shown = checked_text(table.checked[name]) if name in table.checked else ""
     return Text(shown, style="dim" if dim else "")
 
 
 def _counts_cell(table: VerdictTable, group: str, name: str, width: int, *, dim: bool) -> Text:
     """The counts of a group, and below them the intervals of their shares."""
-    from rich.text import Text
-
     cell = Text()
     counts, runs = next(
         ((one.counts.get(name), one.runs) for one in table.groups if one.name == group), (None, 0)
