@@ -1,4 +1,4 @@
-# ruff: noqa: D102, ARG002 - each method is named for a rule of the grammar
+# ruff: noqa: D102 - each method is named for a rule of the grammar
 """From the parser's tree of an item to the syntax tree."""
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ class Builder(ExpressionBuilder):
 
     makers: ClassVar[Mapping[str, Maker]] = {
         **ExpressionBuilder.makers,
+        "import_item": lambda _, parts, span: items.ImportItem(
+            _string(parts[1]), parts[1].type == "NAME", span
+        ),
         "time_held": lambda _b, _parts, span: items.TimeItem(TimeModel.HELD, None, span),
         "time_sampled": lambda _b, _parts, span: items.TimeItem(TimeModel.SAMPLED, None, span),
         "time_clocked": lambda _, parts, span: items.TimeItem(TimeModel.CLOCKED, parts[-1], span),
@@ -45,9 +48,13 @@ class Builder(ExpressionBuilder):
         "ignored": lambda _b, _parts, span: span,
         "stale": lambda _b, parts, _span: parts[1],
         "event_name": lambda b, parts, _: items.EventSyntax(b.ident(parts[0]), ()),
+        "event_call": lambda b, parts, _: items.EventSyntax(b.called(parts[0]), tuple(parts[1:])),
         "field": lambda b, parts, _: items.FieldSyntax(b.ident(parts[0]), parts[1]),
         "define_name": lambda b, parts, span: items.DefineItem(
             b.ident(parts[1]), None, parts[2], span
+        ),
+        "define_call": lambda b, parts, span: items.DefineItem(
+            b.called(parts[1]), parts[2], parts[-1], span
         ),
         "constant": lambda b, parts, span: items.ConstItem(b.ident(parts[1]), parts[2], span),
         "property": lambda b, parts, span: items.PropertyItem(b.ident(parts[1]), parts[2], span),
@@ -71,6 +78,10 @@ class Builder(ExpressionBuilder):
         ),
         "scope_between": lambda _, parts, span: items.ScopeClause(parts[2], parts[-1], True, span),
         "cover": lambda b, parts, span: items.CoverItem(b.ident(parts[1]), parts[2], span),
+        "cross": lambda b, parts, span: items.CrossItem(
+            b.ident(parts[1]), parts[2], tuple(parts[3:]), span
+        ),
+        "steps": lambda _, parts, span: items.StepsSyntax(tuple(parts[::2]), span),
         "sampled": lambda _, parts, span: items.SampledClause(parts[1], span),
         "count": lambda b, parts, span: items.CountClause(
             str(parts[0]), b.number(span, parts[1:]), span
@@ -84,10 +95,6 @@ class Builder(ExpressionBuilder):
         title = _string(children[2]) if len(children) > 2 else ""
         return items.Header(self.ident(children[1]), title, self.span(meta))
 
-    def import_item(self, meta: Meta, children: Children) -> items.ImportItem:
-        target = children[1]
-        return items.ImportItem(_string(target), target.type == "NAME", self.span(meta))
-
     def real_type(self, meta: Meta, children: Children) -> items.TypeSyntax:
         units = [child.strip() for child in children if child.type == "UNIT"]
         return items.TypeSyntax("real", units[0] if units else "", (), self.span(meta))
@@ -99,19 +106,9 @@ class Builder(ExpressionBuilder):
         stale = first_of([part for part in rest if not isinstance(part, Role | Span)])
         return items.SignalItem(names, type_, role, ignored, stale, self.span(meta))
 
-    def event_call(self, meta: Meta, children: Children) -> items.EventSyntax:
-        token, *fields = children
-        return items.EventSyntax(self.called(token), tuple(_of(items.FieldSyntax, fields)))
-
     def events(self, meta: Meta, children: Children) -> items.EventItem:
         role = first_of(_of(Role, children))
         return items.EventItem(tuple(_of(items.EventSyntax, children)), role, self.span(meta))
-
-    def define_call(self, meta: Meta, children: Children) -> items.DefineItem:
-        name = self.called(children[1])
-        return items.DefineItem(name, children[2], children[-1], self.span(meta))
-
-    # Requirements.
 
     def requirement(self, meta: Meta, children: Children) -> items.RequirementItem:
         _, name, *rest = children
@@ -140,20 +137,12 @@ class Builder(ExpressionBuilder):
         kind = kinds[0] if kinds else BinKind.GOAL
         return items.BinSyntax(self.ident(names[0]), values, kind, self.span(meta))
 
-    def steps(self, meta: Meta, children: Children) -> items.StepsSyntax:
-        values = tuple(child for child in children if not isinstance(child, Token))
-        return items.StepsSyntax(values, self.span(meta))
-
     def coverpoint(self, meta: Meta, children: Children) -> items.CoverpointItem:
         _, name, *rest = children
         bins = tuple(_of(items.BinSyntax, rest))
         expression = None if isinstance(rest[0], items.BinSyntax) else rest[0]
         clauses = tuple(rest[len(bins) + (expression is not None) :])
         return items.CoverpointItem(self.ident(name), expression, bins, clauses, self.span(meta))
-
-    def cross(self, meta: Meta, children: Children) -> items.CrossItem:
-        _, name, points, *clauses = children
-        return items.CrossItem(self.ident(name), points, tuple(clauses), self.span(meta))
 
 
 def _triggered(mode: Mode, children: Children) -> tuple[items.Triggered, Children]:

@@ -49,6 +49,17 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         "edge": lambda _, parts, span: expressions.Edge(Bound(parts[0]), span),
         "group": lambda _, parts, span: expressions.Group(parts[0], span),
         "minus": lambda _, parts, span: expressions.Operation(NumericOp.NEG, (parts[1],), span),
+        "arithmetic": lambda _, parts, span: expressions.Operation(
+            NumericOp.of(str(parts[1])), (parts[0], parts[2]), span
+        ),
+        "call": lambda b, parts, span: expressions.Call(b.called(parts[0]), tuple(parts[1:]), span),
+        "choice": lambda _, parts, span: expressions.Choice(parts[1], parts[3], parts[5], span),
+        "quantified": lambda _, parts, span: expressions.Quantified(
+            parts[0] == "A", parts[1], span
+        ),
+        "leads_to": lambda _, parts, span: expressions.LeadsTo(
+            parts[0], parts[-1], first_of(parts[2:-1]), span
+        ),
     }
 
     def __init__(self, source: Source, offset: int) -> None:
@@ -86,14 +97,6 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         value = Fraction(decimal) if small or not decimal else None
         return expressions.Number(value, text[len(digits) :].strip(), span)
 
-    def call(self, meta: Meta, children: Children) -> expressions.Call:
-        token, *args = children
-        return expressions.Call(self.called(token), tuple(args), self.span(meta))
-
-    def arithmetic(self, meta: Meta, children: Children) -> expressions.Operation:
-        left, op, right = children
-        return expressions.Operation(NumericOp.of(str(op)), (left, right), self.span(meta))
-
     def comparison(self, meta: Meta, children: Children) -> expressions.Comparison:
         if len(children) > 3:
             left, first, middle, second, right, *_ = children
@@ -112,10 +115,6 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         either = expressions.Group(either, span)
         denied = any(isinstance(child, Token) for child in children)
         return expressions.Prefix(UnaryOp.NOT, either, None, span, span) if denied else either
-
-    def choice(self, meta: Meta, children: Children) -> expressions.Choice:
-        _, condition, _, chosen, _, otherwise = children
-        return expressions.Choice(condition, chosen, otherwise, self.span(meta))
 
     def prefix(
         self, meta: Meta, children: Children
@@ -207,14 +206,6 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
             op = UnaryOp.of(token[1])
         spans = self.span(token), self.span(meta)
         return expressions.Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
-
-    def quantified(self, meta: Meta, children: Children) -> expressions.Quantified:
-        token, path = children
-        return expressions.Quantified(token == "A", path, self.span(meta))
-
-    def leads_to(self, meta: Meta, children: Children) -> expressions.LeadsTo:
-        left, _, *window, right = children
-        return expressions.LeadsTo(left, right, first_of(window), self.span(meta))
 
     def at_most(self, meta: Meta, children: Children) -> expressions.Window:
         (bound,) = (child for child in children if not isinstance(child, Token))
