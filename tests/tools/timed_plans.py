@@ -18,9 +18,8 @@ from rvmon.timed.model.expressions import (
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Asked, LeadsToFormula, Network
 from rvmon.timed.search.linear import ways_of
-from rvmon.timed.search.lowered import Plan
+from rvmon.timed.search.lowered import Plan, Seek, Sought
 from rvmon.timed.search.meter import Policy
-from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
 

@@ -97,7 +97,7 @@ def post_analysis(
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent and not values.names and not windows.names:
         return report
-    from rvmon.analysis.near_miss import miss_in, parts_asked
+    from rvmon.analysis.subformulas import miss_in, parts_asked
     from rvmon.analysis.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]

@@ -6,8 +6,7 @@ import argparse
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from rvmon.analysis.near_miss import why_not_triggered
-from rvmon.analysis.subformulas import dissect
+from rvmon.analysis.subformulas import dissect, why_not_triggered
 from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
 from rvmon.cli.options import EVALUATED, constants_of, declare
 from rvmon.cli.output import busy, say_json, shown_while_reading

@@ -11,10 +11,9 @@ from math import prod
 from rvmon.core.atoms import Atom, Atoms, Names, Programs
 from rvmon.core.automata import Automata
 from rvmon.core.forms import add_form
-from rvmon.core.judges import Judges
+from rvmon.core.judges import SHARED, Judges, Unit
 from rvmon.core.nodes import Nodes
 from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed
-from rvmon.core.unit import SHARED, Unit
 from rvmon.errors import RvmonError
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import Plan, Uses

@@ -1,15 +1,40 @@
 """Forecasts: whether every, or no, continuation of a trace satisfies a residual (LTL3).
 
-Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4), 2011.
+A clause of a residual is a state of a nondeterministic automaton: a step leads to any clause of its
+progression whose literals some letter satisfies. A path is accepting if no unbounded `U` is
+postponed for ever.
+
+Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4), 2011;
+generalised Büchi acceptance after Gerth, Peled, Vardi and Wolper 1995; strongly connected
+components for emptiness, after Couvreur 1999.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
 
-from rvmon.logic.emptiness import Start, TooLargeError, is_satisfiable, start_of
-from rvmon.logic.progress import Duals
-from rvmon.logic.residual import FAILS, HOLDS, Residual, TooManyClausesError
+from rvmon.logic.automaton import location_of, normalise
+from rvmon.logic.clock_regions import (
+    NEVER,
+    Ages,
+    Cuts,
+    after,
+    bounds,
+    point_zone,
+    projected,
+    region_bounds,
+    regions_between,
+    widened,
+    with_new_clock,
+    within,
+)
+from rvmon.logic.formula import Literal, Sense, Until
+from rvmon.logic.progress import Duals, step
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Clause, Residual, TooManyClausesError
+from rvmon.logic.state_formula import Elapsed, State
 
 MOST_CLAUSES = 60
 """The most clauses of a residual, and of its negation."""
@@ -78,3 +103,219 @@ class Forecaster:
             except TooLargeError:
                 self._known[key] = True
         return self._known[key]
+
+
+MOST_TRIED = 200
+"""The most combinations of clock regions tried in one search, long clauses counted extra."""
+
+_MOST_APART = 100
+"""The same when differences of clocks are kept, which distinguishes more states."""
+
+_FEW_ATOMS = 8
+"""A step of a clause with `n` times this many atoms counts `n`² more: progression is quadratic."""
+
+MOST_OF_A_STEP = 100
+"""The most clauses of one step of a clause."""
+
+
+class TooLargeError(Exception):
+    """The search exceeds its limits."""
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A state of the search: one clause of a residual, with a zone of its clock ages.
+
+    Ages are in ticks; in clocked time, in multiples of the gap between positions.
+    """
+
+    residual: Residual
+    ages: Ages
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """An edge of the search; `fair` unless the oldest clock stays in a bounded region."""
+
+    source: int
+    target: int
+    fair: bool
+
+
+Start = tuple[_State, ...]
+"""One state per clause of a residual; a continuation has to satisfy one of them."""
+
+
+def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
+    """The start states of a search, a key for residuals of equal future; `None` if it is true.
+
+    Args:
+        residual: over known propositions, as `rvmon.logic.progress.Duals` makes them.
+        ages: of its clocks at the last position, ticks.
+        gap: ticks between two positions; `None` if it varies.
+    """
+    if any(not clause for clause in residual):
+        return None
+    search = _Search(gap, differences=True)
+    known = point_zone([age // search.unit for age in ages])
+    return tuple(search.state(clause, known) for clause in residual)
+
+
+def is_satisfiable(start: Start, gap: int | None) -> bool:
+    """Whether some infinite continuation satisfies one of the start states.
+
+    False is exact. True may be wrong for bounded windows, because in wide regions ages are
+    over-approximated by their differences.
+
+    Args:
+        start: from `start_of`.
+        gap: the same as there.
+
+    Raises:
+        TooLargeError: the search exceeds its limits even without differences of clocks.
+    """
+    try:
+        return _Search(gap, differences=True).run(start)
+    except TooLargeError:
+        return _Search(gap, differences=False).run(start)
+
+
+class _Search:
+    def __init__(self, gap: int | None, *, differences: bool) -> None:
+        self.unit = gap or 1
+        self.longest = NEVER if gap is None else 1
+        self.differences = differences
+        self.most = _MOST_APART if differences else MOST_TRIED
+        self.index: dict[_State, int] = {}
+        self.states: list[_State] = []
+        self.tried = 0
+
+    def run(self, start: Start) -> bool:
+        for state in start:
+            self.enter(state)
+        moves: list[_Move] = []
+        current = 0
+        while current < len(self.states):
+            for target, fair in self.successors(self.states[current]):
+                if target is None:
+                    return True
+                moves.append(_Move(current, target, fair))
+            current += 1
+        return self.has_accepting_cycle(moves)
+
+    def state(self, clause: Clause, ages: Ages) -> _State:
+        """The state of a clause; the last clock of `ages` is the one that `normalise` calls NOW."""
+        made, sources = normalise(frozenset([clause]), len(ages) - 2)
+        own = projected(ages, sources)
+        return _State(made, widened(own, self.cuts(made), differences=self.differences))
+
+    def enter(self, state: _State) -> int:
+        """The number of a state."""
+        found = self.index.get(state)
+        if found is None:
+            found = self.index[state] = len(self.states)
+            self.states.append(state)
+        return found
+
+    def cuts(self, residual: Residual) -> list[list[int]]:
+        """The ages at which clocks enter their next region, in units, rounded up."""
+        return [[-(-cut // self.unit) for cut in own] for own in location_of(residual).cuts]
+
+    def successors(self, state: _State) -> Iterator[tuple[int | None, bool]]:
+        """The states after one position (`None`: satisfied), and whether the move is fair."""
+        cuts = self.cuts(state.residual)
+        cost = sum((len(clause) // _FEW_ATOMS) ** 2 for clause in state.residual)
+        for ages in self.ages_after(cuts, state.ages):
+            self.tried += cost
+            shown = [bounds(ages, clock)[0] for clock in range(len(cuts))]
+            try:
+                in_ticks = [age * self.unit for age in shown]
+                reached = step(state.residual, in_ticks, _left_open, MOST_OF_A_STEP)
+            except TooManyClausesError:
+                raise TooLargeError from None
+            waits = bool(cuts) and bisect_right(cuts[0], shown[0]) < len(cuts[0])
+            for clause in reached:
+                pending = _without_literals(clause)
+                if pending is None:
+                    continue
+                if not pending:
+                    yield None, True
+                    return
+                target = self.enter(self.state(pending, with_new_clock(ages)))
+                oldest_stays = waits and any(clock == 0 for _, clock in pending)
+                yield target, not oldest_stays
+
+    def ages_after(self, cuts: Cuts, ages: Ages) -> Iterator[Ages]:
+        """The zones at the next position, one per combination of regions."""
+        later = after(ages, self.longest)
+        spans = []
+        for clock, own in enumerate(cuts):
+            spans.append(regions_between(own, *bounds(later, clock)))
+        for regions in product(*spans):
+            self.tried += 1
+            if self.tried > self.most:
+                raise TooLargeError
+            places = [region_bounds(own, at) for own, at in zip(cuts, regions, strict=True)]
+            found = within(later, places)
+            if found is not None:
+                yield found
+
+    def has_accepting_cycle(self, moves: Sequence[_Move]) -> bool:
+        """Whether some fair cycle postpones no unbounded `U` for ever.
+
+        Per strongly connected component: a promise kept by all its moves is postponed for ever.
+        """
+        promised = [_promises(state) for state in self.states]
+        if any(m.fair and m.source == m.target and not promised[m.target] for m in moves):
+            return True
+        import networkx as nx
+
+        graph = nx.DiGraph()
+        graph.add_edges_from((move.source, move.target) for move in moves)
+        component = {
+            state: number
+            for number, found in enumerate(nx.strongly_connected_components(graph))
+            for state in found
+        }
+        kept: dict[int, frozenset[Until]] = {}
+        fair: set[int] = set()
+        for move in moves:
+            number = component[move.source]
+            if number != component[move.target]:
+                continue
+            own = promised[move.target]
+            kept[number] = kept.get(number, own) & own
+            if move.fair:
+                fair.add(number)
+        return any(not kept[number] for number in fair)
+
+
+def _left_open(literal: Literal) -> Residual:
+    return frozenset([frozenset([(literal, NO_CLOCK)])])
+
+
+def _without_literals(clause: Clause) -> Clause | None:
+    """The clause without its literals; `None` if no letter satisfies these.
+
+    `Elapsed(0)` is always true here: a continuation has no outages, so its positions exist.
+    """
+    seen: dict[State, Sense] = {}
+    pending = []
+    for node, clock in clause:
+        if not isinstance(node, Literal):
+            pending.append((node, clock))
+            continue
+        is_blank = node.proposition.leaf == Elapsed(0) and node.sense is not Sense.TRUE
+        if is_blank or seen.setdefault(node.proposition, node.sense) is not node.sense:
+            return None
+    return frozenset(pending)
+
+
+def _promises(state: _State) -> frozenset[Until]:
+    """The unbounded `U` formulas that a state postpones."""
+    return frozenset(
+        node
+        for clause in state.residual
+        for node, clock in clause
+        if isinstance(node, Until) and clock == NO_CLOCK
+    )

@@ -7,8 +7,14 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TypeGuard
 
-from rvmon.analysis.near_miss import miss_in, parts_asked
-from rvmon.analysis.subformulas import PartTruth, late_in, part_truths_of, waits_of
+from rvmon.analysis.subformulas import (
+    PartTruth,
+    late_in,
+    miss_in,
+    part_truths_of,
+    parts_asked,
+    waits_of,
+)
 from rvmon.analysis.truths import Question, Seen, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.report.changes import Changes, changes_of

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.analysis.near_miss import why_not_triggered
+from rvmon.analysis.subformulas import why_not_triggered
 from rvmon.trace.sample import Sample
 
 SPEC = """

@@ -6,7 +6,7 @@ import random
 import pytest
 
 import rvmon
-from rvmon.analysis.near_miss import why_not_triggered
+from rvmon.analysis.subformulas import why_not_triggered
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
 from rvmon.readers import recording

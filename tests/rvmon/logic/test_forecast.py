@@ -45,7 +45,7 @@ def test_what_is_still_possible(formula, time):
 def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
     """What is not searched to the end is not forecast; what is, is forecast as ever."""
     for name in ("MOST_TRIED", "_MOST_APART"):
-        monkeypatch.setattr(f"rvmon.logic.emptiness.{name}", most)
+        monkeypatch.setattr(f"rvmon.logic.forecast.{name}", most)
     said = []
     for formula, forecast in CASES.items():
         monitor = loads(HEAD.format("held", formula)).monitor()

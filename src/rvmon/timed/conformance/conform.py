@@ -36,9 +36,9 @@ from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Action, Position, Run
 from rvmon.timed.runs.space import check_start
+from rvmon.timed.search.lowered import Seek, Sought
 from rvmon.timed.search.meter import UNLIMITED, Budget, Meter
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.search.watcher import Watcher
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_UNIT

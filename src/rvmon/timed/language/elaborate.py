@@ -10,10 +10,9 @@ from rvmon.texts import did_you_mean
 from rvmon.timed.language import automaton_syntax, syntax
 from rvmon.timed.language.automaton_syntax import Document, SignalText
 from rvmon.timed.language.declare import Findings, Parts, declare
-from rvmon.timed.language.diagonals import Diagonals
+from rvmon.timed.language.diagonals import Diagonals, without_lower_bounds
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import automaton_of, location_names, processes_of
-from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.operations import as_real, assuming, is_real
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver

@@ -39,9 +39,9 @@ from rvmon.timed.observation.observer import Observed
 from rvmon.timed.observation.propositions import NotExpressibleError
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import check_start
+from rvmon.timed.search.lowered import Seek, Sought
 from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.sought import Seek, Sought
 from rvmon.trace.time import TICKS_PER_UNIT
 
 MET_IN_THE_END = "none stays open for ever while time passes on"

@@ -26,7 +26,7 @@ from rvmon.timed.model.expressions import Expression
 from rvmon.timed.model.fractions import GRID, number_in
 from rvmon.timed.model.network import Location, Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.constraints import Atom
+from rvmon.timed.runs.run import Atom
 from rvmon.timed.runs.space import Move, Space, State, pieces_of
 
 CHECK_EVERY = 256

@@ -39,7 +39,7 @@ from rvmon.timed.model.expressions import (
 from rvmon.timed.model.guards import alternatives_of
 from rvmon.timed.model.network import Edge, Guard, Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.constraints import Atom, bound_of
+from rvmon.timed.runs.run import Atom, bound_of
 
 AtomMaker = Callable[[Locations, Values], tuple[Atom, ...]]
 """The clock bounds of a guard or invariant, given the variables."""

@@ -19,8 +19,18 @@ from math import ceil, inf, isqrt
 
 from rvmon.timed.model.network import Network
 from rvmon.timed.runs.concrete import Rules
-from rvmon.timed.runs.constraints import Atom, Constraint, Timing, Zone
-from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.timed.runs.run import (
+    Action,
+    Atom,
+    Constraint,
+    Ending,
+    Position,
+    Run,
+    RunStep,
+    Timing,
+    Window,
+    Zone,
+)
 from rvmon.timed.runs.space import Move, State
 
 

@@ -27,9 +27,9 @@ from rvmon.timed.runs.concrete import Rules
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import Space, check_start
 from rvmon.timed.search.clock_bounds import value_range
+from rvmon.timed.search.lowered import Seek, Sought
 from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.sought import Seek, Sought
 
 FARTHEST = 1_000_000
 """A clock that goes beyond so many units is said to do so; a larger bound is not looked for."""

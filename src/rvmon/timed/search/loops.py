@@ -15,7 +15,7 @@ from itertools import product
 from math import inf
 from typing import TYPE_CHECKING
 
-from rvmon.timed.runs.constraints import Zone, close, universe
+from rvmon.timed.runs.run import Zone, close, universe
 from rvmon.timed.runs.timing import TimedStep, on_grid, timing_of
 
 if TYPE_CHECKING:

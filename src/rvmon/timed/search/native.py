@@ -15,8 +15,7 @@ from rvmon.native.sources import ZONES_FOLDER
 from rvmon.timed.model.guards import together
 from rvmon.timed.model.network import Guard, Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.constraints import STRICT, Atom, Zone
-from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.runs.run import STRICT, Atom, Ending, Run, Zone
 from rvmon.timed.runs.space import Space, State, atoms_of, pieces_of
 from rvmon.timed.runs.timing import (
     PathStep,
@@ -28,9 +27,8 @@ from rvmon.timed.runs.timing import (
     timing_of,
 )
 from rvmon.timed.search.loops import time_passes
-from rvmon.timed.search.lowered import Plan
+from rvmon.timed.search.lowered import Plan, Seek, Sought
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.sought import Seek, Sought
 
 if TYPE_CHECKING:
     from rvmon.native import _zones

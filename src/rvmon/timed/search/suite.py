@@ -29,9 +29,9 @@ from rvmon.timed.model.expressions import (
 from rvmon.timed.model.network import Network, check_clocks
 from rvmon.timed.runs.run import Run
 from rvmon.timed.runs.space import check_start
+from rvmon.timed.search.lowered import Seek, Sought
 from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.sought import Seek, Sought
 
 
 class Criterion(StrEnum):

@@ -40,9 +40,9 @@ from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.space import check_start
 from rvmon.timed.search.linear import check_linear, ways_of
+from rvmon.timed.search.lowered import Seek, Sought
 from rvmon.timed.search.meter import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.sought import Seek, Sought
 
 
 @dataclass(frozen=True, slots=True)

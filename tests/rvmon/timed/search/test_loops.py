@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from rvmon.timed.runs.constraints import bound_of, universe
+from rvmon.timed.runs.run import bound_of, universe
 from rvmon.timed.runs.timing import TimedStep, timing_of
 from rvmon.timed.search.loops import surely_passes, time_passes
 

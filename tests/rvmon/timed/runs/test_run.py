@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.constraints import Timing, close
+from rvmon.timed.runs.run import Timing, close
 from rvmon.timed.search.verify import verify
 
 
