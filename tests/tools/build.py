@@ -205,7 +205,7 @@ def _said(word: str) -> tuple[str, Value]:
     name, sign, text = word.partition("=")
     if not sign:
         return name.lstrip("-?"), {"-": False, "?": None}.get(name[0], True)
-    if name in NUMBERS or name == "unread":
+    if name in (*NUMBERS, "z", "unread"):
         return name, float(text)
     payloads = [
         {

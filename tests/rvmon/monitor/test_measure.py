@@ -7,79 +7,43 @@ import pytest
 
 import rvmon
 from rvmon.readers.source import Source
-from rvmon.session import Spec
-from rvmon.spec.checked.formula import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    EventAtom,
-    Interval,
-    Literal,
-    SignalValue,
-    Unary,
-    UnaryOp,
-)
-from rvmon.spec.checked.specification import (
-    CheckedSpec,
-    Event,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
-from rvmon.spec.print import format_formula
-from rvmon.trace.schema import Kind
 
 PAIRS = 40
-UNARY = (
-    *(UnaryOp.NOT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY),
-    *(UnaryOp.NEXT, UnaryOp.PREVIOUS),
-)
-BINARY = (BinaryOp.AND, BinaryOp.OR, BinaryOp.UNTIL, BinaryOp.SINCE, BinaryOp.RELEASE)
-WINDOWED = {*UNARY[1:5], *BINARY[2:]}
+COMPARED = ("<", "<=", "==", "!=", ">=", ">")
+STEPS = ("X", "Y")
+TIMED = ("F", "G", "O", "H", "U", "S", "R")
 
 
-def random_formula(rng, time, depth):
-    """A formula over two numbers and an event."""
+def random_formula(rng, depth, others):
+    """The text of a formula over two numbers and an event, with other operators beside."""
     if not depth:
-        if rng.random() < 0.2:
-            return EventAtom("e")
-        op = rng.choice(tuple(CompareOp))
-        return Compare(op, SignalValue(rng.choice("xy")), Literal(rng.randint(-3, 3)))
-    op = rng.choice((*UNARY, *BINARY) if time is TimeModel.SAMPLED else (*UNARY[:5], *BINARY))
+        number = f"{rng.choice('xy')} {rng.choice(COMPARED)} {rng.randint(-3, 3)}"
+        return "e" if rng.random() < 0.2 else number
+    op = rng.choice(("not", "and", "or", *TIMED, *others))
     low = rng.choice((0, 0, 2))
-    window = Interval(low, rng.choice((None, low, low + 3))) if op in WINDOWED else None
-    one = random_formula(rng, time, depth - 1)
-    if op in UNARY:
-        return Unary(op, one, window)
-    return Binary(op, one, random_formula(rng, time, rng.randrange(depth)), window)
+    high = rng.choice(("inf)", f"{low} ns]", f"{low + 3} ns]"))
+    window = f"[{low} ns, {high}" if op in TIMED else ""
+    one = random_formula(rng, depth - 1, others)
+    if op in ("not", *STEPS, *TIMED[:4]):
+        return f"({op}{window} ({one}))"
+    return f"(({one}) {op}{window} ({random_formula(rng, rng.randrange(depth), others)}))"
 
 
-def random_case(rng, time, rows=(1, 25), events=0.3, unknown=0.0):
-    """A specification, the stamps of a trace and its columns."""
-    bounds = [BoundAtom(bound) for bound in Bound]
-    trigger = rng.choice((*bounds, random_formula(rng, time, 0)))
-    mode = rng.choice((Mode.UPON, Mode.WHENEVER)) if isinstance(trigger, Compare) else Mode.UPON
-    required = random_formula(rng, time, rng.randint(0, 3))
-    spec = CheckedSpec(
-        name="whole",
-        title="",
-        time=time,
-        signals={name: Signal(name, Type(Kind.REAL)) for name in "xy"},
-        events={"e": Event("e")},
-        requirements={"R": Requirement("R", mode, trigger, required)},
+def random_case(rng, time, unknown):
+    """A specification, and a trace of many rows as columns, in which little occurs."""
+    trigger = rng.choice(("upon start", "upon end", "upon x > 1", "whenever y <= 0", "upon e"))
+    required = random_formula(rng, rng.randint(0, 3), STEPS if time == "sampled" else ())
+    spec = rvmon.loads(
+        f"spec whole\ntime {time}\nsignal x, y : real\nevent e\n"
+        f"requirement R\n  {trigger}\n  then {required}\n"
     )
     gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
-    times = np.cumsum(rng.choices(gaps, k=rng.randint(*rows)))
+    times = np.cumsum(rng.choices(gaps, k=rng.randint(70, 300)))
     columns = {
         name: [np.nan if rng.random() < unknown else float(rng.randint(-4, 4)) for _ in times]
         for name in "xy"
     }
-    columns["e"] = [rng.random() < events for _ in times]
+    columns["e"] = [rng.random() < 0.01 for _ in times]
     return spec, times.tolist(), columns
 
 
@@ -101,17 +65,16 @@ def figures_of(margins):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
+@pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("unknown", [0.0, 0.01])
 def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time, unknown):
     """What is laid out by column gives the figures that it gives row by row."""
     for number in range(PAIRS // 4):
         rng = random.Random(f"long {time} {number}")
-        spec, times, columns = random_case(rng, time, (70, 300), 0.01, unknown)
-        found = Spec(spec).robustness(arrays_of(times, columns))
-        expected = Spec(spec).robustness(rows_of(times, columns))
-        case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}"
-        assert figures_of(found) == figures_of(expected), case
+        spec, times, columns = random_case(rng, time, unknown)
+        found = spec.robustness(arrays_of(times, columns))
+        expected = spec.robustness(rows_of(times, columns))
+        assert figures_of(found) == figures_of(expected), f"{spec}\n{times}\n{columns}"
 
 
 def test_what_is_judged_is_measured_beside():
@@ -156,9 +119,8 @@ def test_what_becomes_stale_is_measured_sample_by_sample():
 
 def test_a_stream_of_arrays_is_a_sequence():
     """One figure is picked like any other element, several are a stream."""
-    spec = Spec(random_case(random.Random(1), TimeModel.SAMPLED)[0])
-    columns = {"x": [1.0, 2.0, 3.0], "y": [0.0, 0.0, 0.0], "e": [False, False, False]}
-    stream = spec.robustness(arrays_of([0, 1, 2], columns)).streams["R"]
+    spec = rvmon.loads(TEXT.format("sampled", ""))
+    stream = spec.robustness(arrays_of([0, 1, 2], {"x": [1.0, 2.0, 3.0]})).streams["R"]
     assert len(stream) == 3
     assert list(stream[1:]) == list(stream)[1:]
     assert stream[-1] == list(stream)[-1]

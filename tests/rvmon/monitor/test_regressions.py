@@ -91,6 +91,81 @@ CASES = {
     for steps in ("3!; 8!", "3!; 6!; 8!", "6!; 8!")
 }
 
+ALIKE = {
+    "an event that was not known occurs at the next position": (
+        *("upon e then p", "0 ?e p; 1 e -p; 2 -e -p; 3 ?e p; 4 e -p"),
+    ),
+    "an invariant alone goes on after each failure": (
+        *("whenever p then q", "0 p q; 1 -q; 2 q; 3 -q; 4 q; 5 -p; 6 p -q"),
+    ),
+    "what comes when an episode is over takes nothing from the values it captured": (
+        *("whenever p then within 6 ns y == v let v = z", "0 p z=1 y=0; 1 -p z=2; 2 ?p; 4 y=1; 5"),
+    ),
+    "an episode of values not known any more that was over when the trigger was lost": (
+        "whenever p then eventually y == v let v = z at end fail",
+        "0 p z=1 y=0; 1 ?p z=2; 2 -p; 3 ?p; 4",
+    ),
+    "an episode with captured values goes on after a failure": (
+        *("whenever p then y == v let v = z", "0 p z=1 y=1; 1 y=0; 2 y=1; 3; 4 y=0"),
+    ),
+    "an episode fails and goes on while an attempt of the one before is open": (
+        *("whenever p then q and (F[0 ns, 5 ns] r)", "0 p q -r; 1 -p; 2 p; 3 -q; 4 q; 5"),
+    ),
+    "an episode of a known trigger that began before what is required was born": (
+        *("whenever p then eventually y > 3 at end fail", "0 p; 1 y=0; 2 y=1"),
+    ),
+    "a window opened between two samples": ("upon start then true U[2 ns, 4 ns] true", "0; 1; 4"),
+    "a window opened by advance": ("upon start then always[3 ns, 5 ns] false", "0; 2; 3!; 5"),
+    "an instance that is made while another has an occurrence": (
+        *("upon g then true for each v in g.k", "-2 g=-2; 0 g=-1"),
+    ),
+    "two instances before the first tick of the clock": (
+        *("upon g.k > -1 then p for each v in g.k", "7 -p; 8 g=1,0"),
+    ),
+    "an episode that ran before the instance was there": (
+        *("whenever p then fall(q) for each v in g.k", "0 p; 1 g=0"),
+    ),
+    "an occurrence that is over at the end": ("upon end then g.k < v let v = y", "0 g=-1 y=1"),
+    "a sample that no tick has shown yet": ("upon end then p let v = y", "0; 3 p"),
+    "time that has come to zero, behind the end": ("upon end then F[0 ns, 0 ns] false", "-3; 0!"),
+    "values that may be others in an episode that may be over": (
+        *("whenever p then F[0 ns, 9 ns] y > v let v = z at end strong", "0 p z=1; 1 ?p"),
+    ),
+    "values that may be others in an episode that is over": (
+        *("whenever p then F[0 ns, 9 ns] y > v let v = z at end strong", "0 p; 1 ?p; 2 -p"),
+    ),
+    "an event that is unknown to one reading only": (
+        *("upon start then (F[0 ns, 2 ns] e) and (G[1 ns, 3 ns] p)", "0 ?e p; 2 ?p; 3 p"),
+    ),
+}
+"""Those that each time model has: the requirement, and what is told."""
+
+CASES |= (
+    {
+        f"{name}, {time}, to {end}": (time, *case, end)
+        for name, case in ALIKE.items()
+        for time in ("held", "sampled", "sampled every 4 ns")
+        for end in (None, 2, 9)
+    }
+    | {
+        f"the position before, asked for the future: {required}": ("sampled", required, told, 9)
+        for required, told in (
+            (
+                "upon start then (Y F[0 ns, 1 ns] q) or not (Y F[0 ns, 1 ns] p)",
+                "0 p -q; 1 -p q; 2 p -q",
+            ),
+            ("whenever p then Y (F[0 ns, 1 ns] q)", "0 p q; 1; 2"),
+        )
+    }
+    | {
+        f"a captured attempt moves with each sample, {time}": (time, required, "0; 1", 2)
+        for time, required in (
+            ("held", "upon start then G[1 ns, 1 ns] p let v = y"),
+            ("sampled", "upon start then next true let v = y"),
+        )
+    }
+)
+
 
 @pytest.mark.law
 @pytest.mark.parametrize("form", FORMS)
@@ -100,11 +175,12 @@ def test_forms_agree_with_the_law(name, form):
     time, requirement, told, end = CASES[name]
     spec = rvmon.loads(
         f"spec s\ntime {time}\nsignal p, q, r : bool\nsignal unread : real stale after 1 ns\n"
-        f"signal x : real stale after 1 ns\nevent e\nevent g(k: int, m: int)\n"
+        f"signal x : real stale after 1 ns\nsignal y, z : real\nevent e\nevent g(k: int, m: int)\n"
         f"requirement R1\n  {requirement}\n"
     )
-    case = Case(spec.checked, actions(told), end)
-    assert not disagreements(case, Maker(form), online=True)
+    for instant in (None, 2, 9) if end is None else (end,):
+        case = Case(spec.checked, actions(told), instant)
+        assert not disagreements(case, Maker(form), online=True)
 
 
 @pytest.mark.law
@@ -201,3 +277,37 @@ def test_time_that_passes_without_a_sample_hides_no_further_attempt():
     monitor.step_ns(7, {})
     attempts = monitor.finish_ns().attempts
     assert [(one.triggered, one.decided) for one in attempts] == [(-3, 1), (2, 6), (7, None)]
+
+
+def test_what_is_read_twice_is_born_when_both_can_be_told():
+    """With one value nothing was judged of its change, though all of the value itself."""
+    spec = rvmon.loads(
+        "spec s\nsignal v : real\nrequirement R1\n  always (delta(v) <= 1 and v <= 2)\n"
+        "requirement R2\n  always v <= 2\n"
+    )
+    report = spec.evaluate({"t_ns": [0], "v": [1.0]})
+    assert report.verdicts == {"R1": "I", "R2": "P"}
+
+
+@pytest.mark.parametrize(("first", "expected"), [(0.5, "P"), (1.0, "P"), (1.1, "F")])
+def test_an_age_counts_from_the_beginning_before_the_first_update(first, expected):
+    """Nothing was due before; a sensor that begins too late has been silent."""
+    spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n  always age(x) <= 1 s\n")
+    report = spec.evaluate([(0, {"y": 1.0}), (first, {"x": 1.0})])
+    assert report.verdicts["R"] == expected
+
+
+@pytest.mark.parametrize(
+    ("trigger", "expected"),
+    [
+        ("p and lost", "I"),
+        ("p and not lost", "I"),
+        ("not p and lost", "NT"),
+        ("lost since[1 s, inf) p", "I"),
+    ],
+)
+def test_a_trigger_that_reads_what_has_no_source_may_have_been_true(trigger, expected):
+    """It is neither false nor passed over, as what comes later would be."""
+    text = f"spec s\nsignal p, lost : bool\nrequirement R\n  upon {trigger}\n  then not p\n"
+    report = rvmon.loads(text).evaluate({"t": [0, 1], "p": [True, True]}, allow_missing=["lost"])
+    assert report.verdicts["R"] == expected
