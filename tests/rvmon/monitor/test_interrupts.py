@@ -2,6 +2,7 @@
 
 import dis
 import sys
+from collections.abc import Iterator
 from types import CodeType, FrameType
 from typing import Any
 
@@ -89,15 +90,32 @@ def _begun(spec: rvmon.Spec) -> Monitor:
     return monitor
 
 
-def _struck(monitor: Any, strike: _Strike, make: type[dict[str, object]] = _Odd) -> None:
+def _struck(monitor: Any, strike: _Strike) -> None:
     """A step in which R1 fails, an attempt of R2 begins and one ends; it concerns no other."""
-    row = make({"x": 4.0, "e": True, "p": True})
+    row = _Odd({"x": 4.0, "e": True, "p": True})
     before = sys.gettrace()
     sys.settrace(strike)
     try:
         monitor.step_ns(3 * _S, row)
     finally:
         sys.settrace(before)
+
+
+def _passed(spec: rvmon.Spec) -> tuple[list[Place], Monitor]:
+    """Where the step can be interrupted, and a monitor that took it whole."""
+    for _ in range(2):  # the second time what a specification keeps for its monitors is there
+        monitor, strike = _begun(spec), _Strike()
+        _struck(monitor, strike)
+    return [*strike.passed], monitor
+
+
+def _interrupted(spec: rvmon.Spec, places: list[Place]) -> Iterator[Monitor]:
+    """For each of these places a monitor whose step was interrupted there."""
+    for place in places:
+        monitor = _begun(spec)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        yield monitor
 
 
 def _judged_on(monitor: Monitor) -> Report:
@@ -122,16 +140,10 @@ def _untouched(report: Report) -> list[Attempt]:
 def test_an_interrupt_leaves_the_monitor_open() -> None:
     """Whatever place of the code it strikes, later calls are taken, and judged right."""
     spec = rvmon.loads(_SPEC)
-    for _ in range(2):  # the second time what a specification keeps for its monitors is there
-        whole = _Strike()
-        monitor = _begun(spec)
-        _struck(monitor, whole)
-        expected = _untouched(_judged_on(monitor))
-    assert len(whole.passed) > 50
-    for place in [*whole.passed]:
-        monitor = _begun(spec)
-        with pytest.raises(KeyboardInterrupt):
-            _struck(monitor, _Strike(place))
+    places, whole = _passed(spec)
+    expected = _untouched(_judged_on(whole))
+    assert len(places) > 50
+    for monitor in _interrupted(spec, places):
         assert _untouched(_judged_on(monitor)) == expected
 
 
@@ -153,38 +165,26 @@ def test_after_a_torn_step_nothing_passes() -> None:
     """A step is judged in full, or not at all, or what has not failed is inconclusive."""
     spec = rvmon.loads(_SPEC)
     skipped = _ended(_begun(spec))
-    for _ in range(2):
-        places = _Strike()
-        monitor = _begun(spec)
-        _struck(monitor, places)
-        whole = _ended(monitor)
+    places, monitor = _passed(spec)
+    whole = _ended(monitor)
     assert skipped.verdicts["R1"] == "P"
     assert whole.verdicts["R1"] == "F"
     torn = 0
-    struck = [*places.passed]
-    for place in struck:
-        monitor = _begun(spec)
-        with pytest.raises(KeyboardInterrupt):
-            _struck(monitor, _Strike(place))
+    for monitor in _interrupted(spec, places):
         report = _ended(monitor)
         torn += _is_torn(report)
         assert _is_torn(report) or report in (skipped, whole)
         monitor.reset()
         monitor.step_ns(0, {"x": 1.0})
         assert monitor.finish_ns(1).verdicts["R1"] == "P"
-    assert torn > len(struck) / 2
+    assert torn > len(places) / 2
 
 
 def test_a_snapshot_keeps_that_a_step_was_torn() -> None:
     """What goes on from it says the same."""
     spec = rvmon.loads(_SPEC)
-    for _ in range(2):
-        places = _Strike()
-        _struck(_begun(spec), places)
-    for place in [*places.passed][::9]:
-        monitor = _begun(spec)
-        with pytest.raises(KeyboardInterrupt):
-            _struck(monitor, _Strike(place))
+    places, _ = _passed(spec)
+    for monitor in _interrupted(spec, places[::9]):
         other = spec.restore(monitor.snapshot())
         assert other.verdicts == monitor.verdicts
         assert other.finish_ns(3 * _S + 1) == monitor.finish_ns(3 * _S + 1)
@@ -207,14 +207,9 @@ def test_what_a_sample_raises_itself_tears_nothing() -> None:
 def test_a_torn_run_is_told_in_every_output() -> None:
     """The terminal names the instant; JUnit skips what is inconclusive."""
     spec = rvmon.loads(_SPEC)
-    for _ in range(2):
-        places = _Strike()
-        _struck(_begun(spec), places)
+    places, _ = _passed(spec)
     lines = set()
-    for place in places.passed:
-        monitor = _begun(spec)
-        with pytest.raises(KeyboardInterrupt):
-            _struck(monitor, _Strike(place))
+    for monitor in _interrupted(spec, places):
         report = monitor.finish_ns(4 * _S)
         facts = health_facts(report.health, report.origin)
         found = [f"{names}  {fact}" for names, fact in facts if "interrupted" in fact]
