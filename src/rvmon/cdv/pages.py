@@ -16,9 +16,7 @@ from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.output import RUNS, TESTS, typed
 from rvmon.cdv.plan import Job, Played, Results
 from rvmon.cdv.play import Bench, Recorded, spooled
-from rvmon.cdv.shrink import (
-    failure_of,
-)
+from rvmon.cdv.shrink import failure_of
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
@@ -97,16 +95,17 @@ def replay_page(
 
 def _facts(replay: Replay, robot: str, spec: Spec) -> list[tuple[str, str]]:
     test, run = replay.test, replay.recorded.run
-    facts = [("test", test.name)]
-    if test.text:
-        facts.append(("purpose", test.text))
-    facts += [("robot", robot), ("specification", spec.checked.name)]
-    if test.mutation is not None:
-        facts.append(("planted fault", test.mutation))
-    facts += [("seed", str(test.seed)), *run.facts]
-    if run.error is not None:
-        facts.append(("robot crashed", run.error))
-    return facts
+    facts = [
+        ("test", test.name),
+        ("purpose", test.text or None),
+        ("robot", robot),
+        ("specification", spec.checked.name),
+        ("planted fault", test.mutation),
+        ("seed", str(test.seed)),
+        *run.facts,
+        ("robot crashed", run.error),
+    ]
+    return [(name, fact) for name, fact in facts if fact is not None]
 
 
 REPORT = "report.html"

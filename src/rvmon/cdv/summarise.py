@@ -159,12 +159,11 @@ def _errors(played: Sequence[Played]) -> dict[Ending, dict[str, str]]:
     return found
 
 
-def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> dict[str, Counts]:
-    all_of_them = list(outcomes)
-    counts: dict[str, Counts] = {}
-    for name in requirements:
-        seen = Counter(one.verdicts[name] for one in all_of_them)
-        counts[name] = {verdict: seen[verdict] for verdict in Verdict}
+def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> Mapping[str, Counts]:
+    counts = {name: dict.fromkeys(Verdict, 0) for name in requirements}
+    for one in outcomes:
+        for name in requirements:
+            counts[name][one.verdicts[name]] += 1
     return counts
 
 
@@ -190,8 +189,5 @@ def _sought(group: Group) -> list[str]:
 
 
 def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
-    sums: dict[str, float] = {}
-    for one in outcomes:
-        for name, figure in one.figures.items():
-            sums[name] = sums.get(name, 0) + figure
-    return sums
+    names = dict.fromkeys(name for one in outcomes for name in one.figures)
+    return {name: sum(one.figures.get(name, 0) for one in outcomes) for name in names}

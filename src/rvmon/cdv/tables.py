@@ -273,19 +273,8 @@ def _share(block: BlockCoverage) -> str:
     return percent_text(block.covered, block.statements) if block.statements else ""
 
 
-def _nothing_more(folder: Path, strategies: frozenset[str]) -> None:
-    """Write no further files."""
-
-
 RobotTest = tuple[str, str]
 """Names of a robot and of a test."""
-
-
-def _no_sections(
-    _tests: Mapping[RobotTest, Test], _pages: Mapping[RobotTest, str]
-) -> list[Element | Markup]:
-    """Show nothing more."""
-    return []
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,6 +311,6 @@ class Presentation:
     )
     sections: Callable[
         [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[Element | Markup]
-    ] = _no_sections
+    ] = lambda _tests, _pages: ()
     foremost: Sequence[str] = ()
-    write_more: Callable[[Path, frozenset[str]], None] = _nothing_more
+    write_more: Callable[[Path, frozenset[str]], None] = lambda _folder, _strategies: None

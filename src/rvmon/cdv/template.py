@@ -84,11 +84,6 @@ class Template(
     limits: tuple[Limit, ...] = ()
 
 
-def template_to_json(template: Template[Any]) -> bytes:
-    """A template as indented JSON."""
-    return msgspec.json.format(msgspec.json.encode(template), indent=2) + b"\n"
-
-
 def load_template(path: str | Path, action: Any) -> Template[Any]:
     """Read a template.
 
@@ -106,7 +101,7 @@ def load_template(path: str | Path, action: Any) -> Template[Any]:
 def save_template(template: Template[Any], folder: str | Path) -> Path:
     """Write a template to `folder/<name>.json` and return that path."""
     path = Path(folder) / f"{template.name}.json"
-    write_whole(path, template_to_json(template))
+    write_whole(path, msgspec.json.format(msgspec.json.encode(template), indent=2) + b"\n")
     return path
 
 

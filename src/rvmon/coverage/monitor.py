@@ -15,13 +15,11 @@ from rvmon import native
 from rvmon.core.plan import pack
 from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
 from rvmon.coverage.requirements import WatchedRequirements
-from rvmon.errors import UnknownNameError
 from rvmon.logic.formula import Factory
 from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.logic.state_formula import FALSE
 from rvmon.logic.three_valued import Reader
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
-from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import PlannedCore, planned_as
 from rvmon.monitor.recording import RecordingRun
@@ -180,9 +178,6 @@ class SpecCoverage:
         Raises:
             UnknownNameError: `settle` is neither `now` nor `next`.
         """
-        if settle not in WAYS_TO_SETTLE:
-            ways = ", ".join(WAYS_TO_SETTLE)
-            raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
         return CoverageMonitor(_Watched(self, requirements=requirements), settle, sources)
 
     def of(

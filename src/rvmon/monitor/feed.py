@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic, TypeVar
 
 from rvmon import native
-from rvmon.errors import SnapshotError, TraceError
+from rvmon.errors import SnapshotError, TraceError, UnknownNameError
 from rvmon.monitor.health import Losses, of_intake
 from rvmon.monitor.intake import Intake, Turn, Validator, refuse_earlier
 from rvmon.monitor.planned import PlannedCore
@@ -17,7 +17,11 @@ from rvmon.trace.time import ticks_of_seconds
 
 
 class Feed:
-    """Validates samples, holds back the incomplete ones, and passes the others to the core."""
+    """Validates samples, holds back the incomplete ones, and passes the others to the core.
+
+    Raises:
+        UnknownNameError: `settle`, when a sample counts as complete, is neither `now` nor `next`.
+    """
 
     def __init__(
         self,
@@ -27,6 +31,8 @@ class Feed:
         sources: frozenset[str] | None,
         settle: str,
     ) -> None:
+        if settle not in ("now", "next"):
+            raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
         delay = checked.max_delay or 0
         self._intake = Intake(delay, checked.events) if delay or settle == "next" else None
         self.losses = Losses(checked, planned, core, self._intake)

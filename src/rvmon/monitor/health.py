@@ -39,35 +39,29 @@ class HealthLog:
             self.began = t
         for name, value in values.items():
             if value is None or value != value:
-                self._add(name, name, value, t)
+                self._note(name, name, value, t)
             elif type(value) is dict or type(value) is tuple:
                 for payload in payloads_of(value):
                     for field, scalar in (payload or {}).items():
                         if scalar is None or scalar != scalar:
-                            self._add(f"{name}.{field}", name, scalar, t)
+                            self._note(f"{name}.{field}", name, scalar, t)
 
-    def add(self, kind: HealthKind, shown: str, name: str, times: NDArray[Any]) -> None:
-        """Count unknown values of a signal, or of a field `shown` of event `name`.
+    def _note(self, shown: str, name: str, value: object, t: int) -> None:
+        self.add(HealthKind.NONE if value is None else HealthKind.NAN, shown, name, 1, t)
+
+    def add(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
+        """Count further unknown values of a signal, or of a field `shown` of event `name`.
 
         Args:
             kind: the kind of unknown value.
             shown: the name to report.
             name: the signal or event.
-            times: int64[n] ticks, ascending.
+            count: of the values.
+            first: the instant of the first of them, ticks.
         """
-        if len(times):
-            count, first = self._seen.get((kind, shown, name), (0, int(times[0])))
-            self._seen[kind, shown, name] = (count + len(times), first)
-
-    def add_count(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
-        """Set the count of a name, for which nothing was counted before; `first` is in ticks."""
         if count:
-            self._seen[kind, shown, name] = (count, first)
-
-    def _add(self, shown: str, name: str, value: object, t: int) -> None:
-        key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
-        count, first = self._seen.get(key, (0, t))
-        self._seen[key] = (count + 1, first)
+            before, since = self._seen.get((kind, shown, name), (0, first))
+            self._seen[kind, shown, name] = (before + count, since)
 
     def entries(
         self,
@@ -150,12 +144,16 @@ class Findings:
         columns = dict(batch.signals)
         for event, one in batch.events.items():
             columns |= {f"{event}.{field}": cells for field, cells in one.fields.items()}
-            self._log.add(HealthKind.NONE, event, event, one.unknown_at(times))
+            self._add(HealthKind.NONE, event, event, one.unknown_at(times))
         for shown, cells in columns.items():
             is_signal = shown in batch.signals
             name = shown if is_signal else shown.rpartition(".")[0]
             for is_nan, at in unknown_rows(batch, cells, is_signal=is_signal):
-                self._log.add(HealthKind.NAN if is_nan else HealthKind.NONE, shown, name, at)
+                self._add(HealthKind.NAN if is_nan else HealthKind.NONE, shown, name, at)
+
+    def _add(self, kind: HealthKind, shown: str, name: str, at: NDArray[Any]) -> None:
+        if len(at):
+            self._log.add(kind, shown, name, len(at), int(at[0]))
 
     def _arrived(self, name: str, t: int) -> None:
         self._first[name] = t
@@ -179,8 +177,8 @@ def health_of_run(
         came, none_count, none_first, nan_count, nan_first = found
         if shown in planned.packed.signals:
             first[name] = None if came < -TIME_LIMIT else came
-        log.add_count(HealthKind.NONE, shown, name, none_count, none_first)
-        log.add_count(HealthKind.NAN, shown, name, nan_count, nan_first)
+        log.add(HealthKind.NONE, shown, name, none_count, none_first)
+        log.add(HealthKind.NAN, shown, name, nan_count, nan_first)
     return log.entries(planned, run, absent, first, further)
 
 

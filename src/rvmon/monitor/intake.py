@@ -14,9 +14,6 @@ from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
 
-WAYS_TO_SETTLE = ("now", "next")
-"""When a sample counts as complete: at once, or when the next stamp arrives."""
-
 MOST_HELD = 65_536
 """The most samples held back for late ones; beyond it, the oldest are judged early."""
 

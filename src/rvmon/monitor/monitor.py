@@ -9,11 +9,10 @@ from heapq import nsmallest
 from typing import Any, NoReturn
 
 from rvmon import native
-from rvmon.errors import RvmonError, SnapshotError, TraceError, UnknownNameError
+from rvmon.errors import RvmonError, SnapshotError, TraceError
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.health import health_of_run
-from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
 from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.snapshot import Options, document_of, restored_state, snapshot_of
@@ -336,9 +335,6 @@ def build_monitor(
     """
     if keep is not None and (type(keep) is not int or keep < 0):
         raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
-    if settle not in WAYS_TO_SETTLE:
-        ways = ", ".join(WAYS_TO_SETTLE)
-        raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
     given = None if sources is None else frozenset(sources)
     planned = planned_core(compiled, requirements_asked(compiled.checked, only))
     return Monitor(planned, compiled, Options(settle, given, keep))

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, overload
 
-from rvmon.errors import TraceError, UnknownNameError
+from rvmon.errors import TraceError
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
-from rvmon.monitor.intake import WAYS_TO_SETTLE
 from rvmon.monitor.listeners import OneCall
 from rvmon.monitor.planned import planned_core
 from rvmon.native import Bounds, Figure
@@ -162,9 +161,6 @@ class RobustnessMonitor(FedMonitor[Measured]):
         *,
         streams: bool = False,
     ) -> None:
-        if settle not in WAYS_TO_SETTLE:
-            ways = ", ".join(WAYS_TO_SETTLE)
-            raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
         checked = compiled.checked
         self._planned = planned_core(compiled, only, measured=True)
         absent = frozenset() if sources is None else frozenset(self._planned.numbers) - sources

@@ -95,13 +95,13 @@ class Mutator:
         self._learned = learned
         self._type = described
         self._fixed = fixed
-        self._fields = [
-            field
+        self._fields = {
+            field.encode_name: field.type
             for field in described.fields
             if field.name not in (*fixed, *_KEPT)
             and _can_change(field.type)
             and not described.array_like
-        ]
+        }
 
     def mutated(
         self, test: Test, others: Sequence[Test], rng: random.Random, drawn: list[Draw]
@@ -120,7 +120,7 @@ class Mutator:
             for _ in range(rng.choice(CHANGES)):
                 field = self._learned.choose(rng, "field", self._places(value), choices)
                 donor = _built(rng.choice(others), self._type) if others else value
-                found = self._type_of(field)
+                found = self._fields[field]
                 value[field] = (
                     rng.randrange(_SEEDS)
                     if field == "seed"
@@ -139,12 +139,9 @@ class Mutator:
         """The fields that can be changed, sequences as often as they have elements."""
         sizes = {
             name: len(whole) if isinstance(whole := value[name], list | tuple) else 1
-            for name in (field.encode_name for field in self._fields)
+            for name in self._fields
         }
         return [name for name, size in sizes.items() for _ in range(max(1, size))]
-
-    def _type_of(self, name: str) -> inspect.Type:
-        return next(field.type for field in self._fields if field.encode_name == name)
 
     def _changed(
         self,

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import zip_longest
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code import Code
@@ -111,22 +112,17 @@ def _states(one: Recorded) -> tuple[tuple[int, Values], ...]:
     return tuple((t_ns, {"state": state}) for t_ns, state in one.run.states)
 
 
+_OVER: tuple[int, Values] = (2**63, {})
+"""Stands for a sample behind the last one."""
+
+
 def _of_samples(
     was: tuple[tuple[int, Values], ...], now: tuple[tuple[int, Values], ...]
 ) -> tuple[int, str, str, str] | None:
-    for (t_was, values_was), (t_now, values_now) in zip(was, now, strict=False):
-        if t_was < t_now:
-            return _first(t_was, values_was, {})
-        if t_now < t_was:
-            return _first(t_now, {}, values_now)
-        if found := _first(t_was, values_was, values_now):
+    for (t_was, before), (t_now, after) in zip_longest(was, now, fillvalue=_OVER):
+        t_ns = min(t_was, t_now)
+        if found := _first(t_ns, before if t_was == t_ns else {}, after if t_now == t_ns else {}):
             return found
-    if len(was) > len(now):
-        t_ns, values = was[len(now)]
-        return _first(t_ns, values, {})
-    if len(now) > len(was):
-        t_ns, values = now[len(was)]
-        return _first(t_ns, {}, values)
     return None
 
 

@@ -72,27 +72,26 @@ class MutationReport:
         return [
             one
             for one in self.suites[suite].spec_tried
-            if not (one.test or one.proved)
-            and (self.shows_held_out or one.mutant.third != HELD_OUT)
+            if self._shows(one) and not (one.test or one.proved)
         ]
 
     def shown(self, suite: str) -> list[Tried]:
         """The mutants that are shown one by one."""
-        tried = self.suites[suite].tried
-        return [one for one in tried if self.shows_held_out or one.mutant.third != HELD_OUT]
+        return list(filter(self._shows, self.suites[suite].tried))
+
+    def _shows(self, one: Tried | SpecTried) -> bool:
+        return self.shows_held_out or one.mutant.third != HELD_OUT
 
     def kills(self, suite: str) -> list[tuple[str, str, str]]:
         """Those of them that are killed, and the mutants of requirements: name, change, by what."""
-        code = [one for one in self.shown(suite) if one.killed]
-        spec = [
-            one
+        killed: list[tuple[Mutant | SpecMutant, str]]
+        killed = [(one.mutant, killer(one)) for one in self.shown(suite) if one.killed]
+        killed += [
+            (one.mutant, f"{one.test}: {one.was}, now {one.now}")
             for one in self.suites[suite].spec_tried
-            if one.test and (self.shows_held_out or one.mutant.third != HELD_OUT)
+            if one.test and self._shows(one)
         ]
-        return [(one.mutant.identity, one.mutant.brief, killer(one)) for one in code] + [
-            (one.mutant.identity, one.mutant.brief, f"{one.test}: {one.was}, now {one.now}")
-            for one in spec
-        ]
+        return [(mutant.identity, mutant.brief, what) for mutant, what in killed]
 
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
         """Those of them that survive and are not known to be equivalent, by what may be missing."""

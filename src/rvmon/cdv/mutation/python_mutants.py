@@ -180,12 +180,10 @@ def _changes(
                 continue
             if isinstance(target, ast.Constant | ast.Set):
                 # A constant says nothing by itself.
-                before, after = (_line(code, target.lineno) for code in (source, changed))
+                before, after = (
+                    code.splitlines()[target.lineno - 1].strip() for code in (source, changed)
+                )
             yield kind, before, after, changed
-
-
-def _line(source: str, number: int) -> str:
-    return source.splitlines()[number - 1].strip()
 
 
 def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:
