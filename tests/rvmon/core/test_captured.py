@@ -6,7 +6,6 @@ import re
 from dataclasses import replace
 
 import pytest
-from tests.tools.build import actions
 from tests.tools.compare import outcomes
 from tests.tools.differential import disagreements
 from tests.tools.forms import FORMS, Maker
@@ -115,28 +114,6 @@ def test_what_came_since_the_last_tick_belongs_to_the_instance_that_begins_at_th
     assert [(one.triggered, one.captured, one.verdict) for one in decided] == [
         (12, {"key": -2}, "P")
     ]
-
-
-@pytest.mark.parametrize(
-    ("requirement", "samples"),
-    [
-        # What the trigger was at the last tick is not what came behind that.
-        ("upon p or g.k == key then true", "0; 2 ?g; 3 g=1"),
-        ("upon p or g.k == key then true", "0 g=?; 1; 3 g=1"),
-        # Nor is it where the trigger is an edge only because the past of it never holds.
-        ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0 ?g; 2; 3 g=0"),
-        ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0; 1 g; 2 g=1; 9"),
-        # What came since the last tick did not occur at it.
-        ("upon g then key >= h.m", "0; 4 h=/0; 5 g=0; 7"),
-    ],
-)
-def test_an_instance_that_begins_between_ticks_stands_as_at_the_last_one(requirement, samples):
-    """What is decided is what the law says, of the same instances."""
-    spec = rvmon.loads(
-        "spec s\ntime sampled every 3 ns\nsignal p : bool\nevent g(k: int)\nevent h(m: real)\n"
-        f"requirement R\n  {requirement}\n  for each key in g.k\n"
-    )
-    assert disagreements(Case(spec.checked, actions(samples)), Maker()) == []
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ NAMES = """signal p, q : bool
 signal x : real
 event e
 event g(k: int)
+event h(m: real)
 """
 
 
@@ -94,6 +95,53 @@ CASES["an episode with a value that may be over at the last sample"] = case_of(
     *("sampled", "whenever e then F[2 ns, inf) q\n  let v = x\n  at end: strong"),
     *("0 e -q x=3; 4 e x=1; 8 e x=2; 12 ?e", 15),
 )
+
+CASES |= {
+    f"what was captured is in doubt: {name}": case_of(time, f"{required} let v = {value}", told)
+    for name, time, required, value, told in (
+        (
+            "the trigger is what is required",
+            "sampled",
+            "whenever e then always e",
+            "x",
+            "-3 e; 0 ?e",
+        ),
+        ("nothing can fail", "held", "whenever e then always[2 ns, inf) true", "g.k", "0 ?e; 1"),
+        *(
+            (name, "sampled", f"whenever (q or g.k == i) then {owed} for each i in g.k", "x", told)
+            for name, owed in (
+                ("it fails where it begins", "start"),
+                ("it looks back where it begins", "previous false"),
+            )
+            for told in ("0 q; 1 ?q; 3 g=1",)
+        ),
+        (
+            *("the end fails what has not ended", "held"),
+            *("whenever (once e) or g then true at end strong for each i in g.k", "x"),
+            "0 g=?; 1 g=6 e",
+        ),
+        (
+            *("a key that is not known", "held", "whenever true then true for each i in g.k"),
+            *("g.k", "0; 1 g=?"),
+        ),
+    )
+}
+
+CASES |= {
+    f"an instance that begins between ticks stands as at the last one: {required}, {told}": case_of(
+        "sampled every 3 ns", f"{required} for each key in g.k", told
+    )
+    for required, told in (
+        # What the trigger was at the last tick is not what came behind that.
+        ("upon p or g.k == key then true", "0; 2 ?g; 3 g=1"),
+        ("upon p or g.k == key then true", "0 g=?; 1; 3 g=1"),
+        # Nor is it where the trigger is an edge only because the past of it never holds.
+        ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0 ?g; 2; 3 g=0"),
+        ("upon (once[1 ns, 1 ns] true) or g.k == key then true", "0; 1 g; 2 g=1; 9"),
+        # What came since the last tick did not occur at it.
+        ("upon g then key >= h.m", "0; 4 h=/0; 5 g=0; 7"),
+    )
+}
 
 BESIDE = "\nrequirement Q upon e then true"
 

@@ -9,11 +9,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.rvmon.laws.tried import TRIED
 from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
-from tests.tools.compare import Outcome, outcomes
-from tests.tools.late import after_late, is_touched, stretch_of
-from tests.tools.law import judge, word
+from tests.tools.compare import outcomes
+from tests.tools.late import after_late, is_touched
+from tests.tools.law import judge
 
-from rvmon.spec.checked.specification import Mode, TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.strategies import cases
@@ -22,9 +22,9 @@ from rvmon.verdict import Verdict
 
 
 @st.composite
-def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
+def late_cases(draw: st.DrawFn) -> tuple[Case, Case, Sample]:
     """A case as it was, and as it was judged without one of its samples; not the last."""
-    whole = draw(cases(profile, TraceProfile(advances=False)))
+    whole = draw(cases(Profile(), TraceProfile(advances=False)))
     assume(len(whole.samples) > 1)
     late = whole.samples[draw(st.integers(0, len(whole.samples) - 2))]
     judged = tuple(sample for sample in whole.samples if sample is not late)
@@ -33,7 +33,7 @@ def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
 
 @pytest.mark.law
 @TRIED
-@given(late_cases(Profile()))
+@given(late_cases())
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
     """What is P or NT is so with the late sample in its place too; what is F stays."""
     whole, judged, late = cases_
@@ -48,7 +48,7 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
 
 @pytest.mark.law
 @TRIED
-@given(late_cases(Profile()))
+@given(late_cases())
 def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
     """A requirement that is not touched has the same attempts without the late sample."""
     whole, judged, late = cases_
@@ -59,47 +59,6 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
     with_late, without = (outcomes(judge(one)) for one in (whole, judged))
     kept = [{k: v for k, v in one.items() if not touched[k[0]]} for one in (with_late, without)]
     assert kept[0] == kept[1]
-
-
-@pytest.mark.law
-@TRIED
-@given(late_cases(Profile(requirements=1)))
-def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
-    """Outside of the stretch what is known of a name is what would have been known."""
-    whole, judged, late = cases_
-    assume(late.t >= judged.samples[0].t)
-    found = {letter.instant: letter for letter in word(judged).letters}
-    pairs = [(one, found[one.instant]) for one in word(whole).letters if one.instant in found]
-    for name in (*judged.spec.signals, *judged.spec.events):
-        first, last = (None, None)
-        if name in late.values:
-            first, last = stretch_of(judged.spec, name, judged.samples, late)
-        for one, other in pairs:
-            inside = first is not None and first <= one.instant
-            if inside and (last is None or one.instant <= last):
-                continue
-            states = [{**letter.signals, **letter.events}[name] for letter in (one, other)]
-            assert states[0] == states[1]
-
-
-@pytest.mark.law
-@TRIED
-@given(late_cases(Profile(requirements=1, past=False, for_each=False)))
-def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
-    """An attempt that begins behind it, and looks back at nothing, is judged as ever."""
-    whole, judged, late = cases_
-    spec = judged.spec
-    [required] = spec.requirements.values()
-    assume(late.t >= judged.samples[0].t and required.mode is Mode.UPON)
-    ends = [stretch_of(spec, name, judged.samples, late)[1] for name in late.values]
-    assume(None not in ends)
-    last = max([late.t, *(end for end in ends if end is not None)]) + (spec.period or 1)
-
-    def behind(case: Case) -> list[Outcome]:
-        found = outcomes(judge(case)).items()
-        return [one for (_, in_doubt, _), one in found if one.triggered > last and not in_doubt]
-
-    assert behind(whole) == behind(judged)
 
 
 @pytest.mark.parametrize("time", TimeModel)

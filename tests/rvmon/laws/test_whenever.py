@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from tests.rvmon.laws.tried import ONE, TRIED, judge
+from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
 
@@ -19,13 +19,10 @@ from rvmon.testing.generate import signals
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.strategies import specs, traces
-from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
 from rvmon.verdict.report import Report
 
 pytestmark = pytest.mark.law
-
-ALL_KNOWN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
 @TRIED
@@ -41,18 +38,9 @@ def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
     upon = replace(whenever, mode=Mode.UPON, consequent=weak)
     # Every signal has a value from the first sample on and none is ever lost.
     spec = replace(spec, signals=signals())
-    case = data.draw(traces(spec, TraceProfile(unknowns=False)))
-    actions = tuple(
-        Sample(action.t, {**ALL_KNOWN, **action.values})
-        if isinstance(action, Sample) and action is case.samples[0]
-        else action
-        for action in case.actions
-    )
+    case = known_from_the_first(data.draw(traces(spec, TraceProfile(unknowns=False))))
     # A trigger over payloads, `prev` and the like may be unknown all the same.
-    told = [
-        replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
-        for r in (whenever, upon)
-    ]
+    told = [replace(case, spec=replace(spec, requirements={r.id: r})) for r in (whenever, upon)]
     assume(_known(told[0]))
     assert up_to_failure(judge(told[0])) == up_to_failure(judge(told[1]))
 

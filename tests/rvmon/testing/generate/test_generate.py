@@ -16,13 +16,12 @@ from tests.tools.differential import Campaign, case_of
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
-from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
-from rvmon.testing.generate.formula import Shape, formula
+from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Unary, UnaryOp
+from rvmon.spec.checked.specification import EndPolicy, TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse
-from rvmon.testing.law.syntax import intervals, subformulas
+from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 
@@ -47,31 +46,19 @@ def test_verdicts_are_mixed(time: TimeModel) -> None:
 
 
 def test_everything_occurs() -> None:
-    """All operators, kinds of interval, modes, policies and triggers are among the cases."""
-    seen: Counter[object] = Counter()
+    """Pulses, levels, values that are lost or become stale, absent sources, calls of all kinds."""
+    seen: Counter[str] = Counter()
     for time in TimeModel:
         for case in some_cases(time, 600):
             for found in case.spec.requirements.values():
-                seen.update([found.mode, found.at_end, ("pulse", found.pulse)])
-                seen.update(
-                    ["let"] * bool(found.captures) + ["each"] * (found.for_each is not None)
-                )
-                for part in subformulas(found.consequent):
-                    seen[getattr(part, "op", type(part))] += not isinstance(part, Compare)
-                for window in intervals(found.consequent):
-                    seen["later"] += window.low > 0
-                    seen["unbounded"] += window.high is None
-                    seen["point"] += window.low == window.high
-                    seen["zero"] += window.low == 0
+                seen[f"pulse {found.pulse}"] += 1
             seen["none"] += any(None in sample.values.values() for sample in case.samples)
             seen["stale"] += any(s.stale_after is not None for s in case.spec.signals.values())
             seen["absent"] += case.names is not None
             seen["advance"] += bool(case.advances)
             seen["finish"] += case.end is not None
-    wanted = [*UnaryOp, *BinaryOp, *Mode, *EndPolicy, ("pulse", True), ("pulse", False), "let"]
-    wanted += ["each", "later", "unbounded", "point", "zero", "none", "stale", "absent"]
-    wanted += ["advance", "finish"]
-    assert {thing: seen[thing] for thing in wanted if seen[thing] < 10} == {}
+    assert len(seen) == 7
+    assert min(seen.values()) >= 10
 
 
 def test_operators_meet_everything() -> None:
@@ -86,22 +73,6 @@ def test_operators_meet_everything() -> None:
         return {(one.operator, one.window, getattr(one, name)) for one in all_ for name in others}
 
     assert pairs(possible()) - pairs(found) == set()
-
-
-def depth(formula: Formula) -> int:
-    match formula:
-        case Unary(operand=operand):
-            return 1 + depth(operand)
-        case Binary(left=left, right=right):
-            return 1 + max(depth(left), depth(right))
-        case _:
-            return 0
-
-
-def test_depth() -> None:
-    """Operators nest up to the depth asked for, and no deeper."""
-    found = [depth(formula(random.Random(seed), Shape(), 4)) for seed in range(400)]
-    assert max(found) == 4
 
 
 def test_next_stays_outside_held_time() -> None:
@@ -155,20 +126,12 @@ def test_traces_for_other_specs() -> None:
 @settings(max_examples=30, deadline=None)
 @given(case=cases())
 def test_strategy_gives_sound_cases(case: Case) -> None:
-    """What Hypothesis draws can be judged, and its samples rise."""
+    """What Hypothesis draws can be judged; samples rise, none below an `advance` before it."""
     times = [sample.t for sample in case.samples]
     assert times == sorted(set(times))
+    told = [one.t if isinstance(one, Sample) else one for one in case.actions]
+    assert told == sorted(told)
     assert set(judge(case).verdicts) == set(case.spec.requirements)
-
-
-def test_actions_in_order() -> None:
-    """No sample comes before an `advance` that was told earlier."""
-    for seed in range(200):
-        reached = -10
-        for action in case_of(seed, Profile(), TraceProfile()).actions:
-            instant = action.t if isinstance(action, Sample) else action
-            assert instant >= reached
-            reached = instant
 
 
 def test_features_can_be_left_out() -> None:
