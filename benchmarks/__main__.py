@@ -23,7 +23,6 @@ BENCHMARKS = {
 
 
 def main(argv: Sequence[str]) -> int:
-    """List them, or run one."""
     if not argv or argv[0] not in BENCHMARKS:
         print(f"{__doc__}\n")
         print("\n".join(f"  {name:14}{about}" for name, about in BENCHMARKS.items()))

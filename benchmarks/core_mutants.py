@@ -277,7 +277,6 @@ def draw(found: Iterable[Mutant], options: argparse.Namespace) -> list[Mutant]:
 
 
 def main(words: list[str]) -> int:
-    """Draw, try and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.core_mutants")
     parser.add_argument("files", nargs="*", help="names of files of the core; default: all")
     parser.add_argument("--count", type=int, default=30, help="of each file")

@@ -79,7 +79,6 @@ def parse(argv: Sequence[str]) -> tuple[argparse.Namespace, dict[str, list[Any]]
 
 
 def main(argv: Sequence[str]) -> int:
-    """Compare, and print the figures."""
     options, settings = parse(argv)
     wrong = 0
     for name in options.comparisons:

@@ -354,7 +354,6 @@ def _as_ours(path: str) -> str:
 
 
 def measured(path: Path, form: str) -> str:
-    """A row of the table."""
     digest = hashlib.sha256(path.read_bytes()).hexdigest()[:12]
     schema = Schema({}, {})
     start = time.process_time()
@@ -370,7 +369,6 @@ def measured(path: Path, form: str) -> str:
 
 
 def main(argv: list[str]) -> int:
-    """Compare and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--only", nargs="+", choices=TOOLS, default=TOOLS, metavar="FORMAT")
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")

@@ -62,7 +62,6 @@ SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "
 
 
 def cost(options: argparse.Namespace) -> None:
-    """Measure and print."""
     if options.only:
         name, size = options.only
         for network, query in _queries(name, int(size)):
@@ -168,7 +167,6 @@ def _end(network: Network, query: Query, budget: Budget) -> str:
 
 
 def originals(options: argparse.Namespace) -> None:
-    """Read, decide, count and print."""
     models, seen = known(), set[str]()
     read, reasons, queries = 0, Counter[tuple[str, str]](), Counter[str]()
     for path in sorted(options.folder.rglob("*.xml")):
@@ -195,7 +193,6 @@ def originals(options: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    """Measure, or read; and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="what", required=True)
     own, beside = commands.add_parser("cost"), commands.add_parser("tchecker")

@@ -19,7 +19,6 @@ from benchmarks.timing.race import ONLINE
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and print."""
     parser = parser_of(__doc__, ONLINE)
     parser.add_argument("--kinds", nargs="*", metavar="WORD", help="ours alone, by requirement")
     kinds.add_options(parser)

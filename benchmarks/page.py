@@ -122,7 +122,6 @@ class Findings:
 
 
 def machine() -> str:
-    """Processor, cores, system and interpreter."""
     name = platform.processor() or platform.machine()
     for line in _lines(Path("/proc/cpuinfo")):
         if line.startswith("model name"):

@@ -17,7 +17,6 @@ from benchmarks.results import RECORDINGS, parser_of, show
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and print."""
     return show("recordings", argv, parser_of(__doc__, RECORDINGS).parse_args(argv))
 
 

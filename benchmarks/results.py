@@ -26,7 +26,6 @@ SECTIONS = (*race.ONLINE, *RECORDINGS, "cliffs", "differences")
 
 
 def run(size: Size, sections: Sequence[str], command: str, r2u2: Path | None) -> Findings:
-    """Measure all chosen sections."""
     began = time.monotonic()
     environment = prepare()
     results, agreements = race.run(size, sections, environment, r2u2)
@@ -87,7 +86,6 @@ def show(program: str, argv: Sequence[str], options: argparse.Namespace) -> int:
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and write the page."""
     parser = parser_of(__doc__, SECTIONS)
     parser.set_defaults(out=OUT)
     return show("results", argv, parser.parse_args(argv))

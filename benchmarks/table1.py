@@ -82,7 +82,6 @@ def _count(played: Sequence[Played]) -> Counter[Cell]:
 
 
 def _published() -> dict[Cell, int]:
-    """The paper's figures, all cells."""
     return {
         (group.name, requirement, verdict): figure
         for group in paper_table().groups
@@ -181,7 +180,6 @@ def _conforms(network: Network, test: AbstractTest, mutation: str | None) -> boo
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Play and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("what", choices=("bands", "policies", "conformance"))
     parser.add_argument("--seeds", type=int, default=20, help="campaigns")

@@ -188,7 +188,6 @@ def _cpu_s() -> float:
 
 
 def shrinking(options: argparse.Namespace) -> int:
-    """Shrink and print."""
     times, left = [], []
     for test, found, seconds in islice(failures(options.seed), options.failures):
         times.append(seconds)
@@ -225,7 +224,6 @@ TASKS = {"faults": faults, "gates": gates, "closing": closing, "shrinking": shri
 
 
 def main() -> int:
-    """Play and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("what", choices=tuple(TASKS))
     parser.add_argument("--seed", type=int, default=1, help="the first")

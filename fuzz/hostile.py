@@ -66,7 +66,6 @@ STEPS = (0, *(1, 50_000_000, 123_456_789, 300_000_000, 300_000_001, 900_000_000)
 
 
 def made(rng: random.Random) -> bytes:
-    """One input of the target `recording`."""
     form, model = rng.randrange(len(ENDS)), rng.randrange(len(TIMES))
     lines = _csv(rng) if ENDS[form] == ".csv" else _json(rng)
     text = rng.choice(("\n", "\n", "\n", "\r\n")).join(lines) + rng.choice(("\n", ""))

@@ -18,7 +18,6 @@ EVERY = 200
 
 
 def main(name: str, folder: Path, options: list[str]) -> None:
-    """Fuzz until libFuzzer ends the process."""
     with atheris.instrument_imports(include=["rvmon"]):
         from fuzz.targets import ANSWERS, run, seeds
 

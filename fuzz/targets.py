@@ -132,7 +132,6 @@ def model_text(data: bytes) -> str:
 
 
 def model_xml(data: bytes) -> str:
-    """The same in UPPAAL's form."""
     return _model(data, "m.xml")
 
 
@@ -148,17 +147,14 @@ def _messages(data: bytes, name: str) -> str:
 
 
 def bag(data: bytes) -> str:
-    """A bag of ROS 1."""
     return _messages(data, "r.bag")
 
 
 def mcap(data: bytes) -> str:
-    """An MCAP file."""
     return _messages(data, "r.mcap")
 
 
 def parquet(data: bytes) -> str:
-    """A Parquet file."""
     return _messages(data, "r.parquet")
 
 

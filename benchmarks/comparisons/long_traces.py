@@ -172,7 +172,6 @@ def of_report(report: Report) -> Told:
 
 
 def judge_long(seed: int, own: Long, numbers: range) -> Found:
-    """Have both judge traces."""
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
         case = _case(seed, number, own.samples)

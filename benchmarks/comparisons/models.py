@@ -74,7 +74,6 @@ def judge_queries(seed: int, numbers: range) -> Found:
 
 
 def judge_logics(seed: int, numbers: range) -> Found:
-    """Formulas of CTL and LTL."""
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
         network, random = _network(seed, number), Random(number)

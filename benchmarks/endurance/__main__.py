@@ -15,7 +15,6 @@ WHAT = {"soak": soak.main, "kills": kills.main}
 
 
 def main(argv: Sequence[str]) -> int:
-    """Run one of them."""
     if argv and argv[0] in WHAT:
         return WHAT[argv[0]](argv[1:])
     print(__doc__)

@@ -103,7 +103,6 @@ def killed(door: str, folder: Path, kills: int, seed: int) -> Counter[str]:
 
 
 def main_of_publisher(door: str, where: str) -> None:
-    """Publish for ever."""
     send = {"mqtt": _send_mqtt, "dds": _send_dds, "ros1": _send_ros1}[door](where)
     for number in itertools.count():
         send(number)

@@ -85,7 +85,6 @@ SECONDS = re.compile(rb'("seconds": ?|simulated in |\bin )[\d.]+|"spent": ?[\d.]
 
 
 def inputs(folder: Path) -> None:
-    """Write the specification and the recordings."""
     rules = (f"requirement R{n}\n  upon e then within {n} s p\n" for n in range(1, 9))
     (folder / "s.rv").write_text(SPEC + "".join(rules))
     for name, rows in (("few.csv", 300), ("t.csv", 20_000), ("many.csv", 1_500_000)):
@@ -333,7 +332,6 @@ WRONG = (
 
 
 def main(argv: Sequence[str]) -> int:
-    """Kill, count and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--kills", type=int, default=50, help="of each kind")
     parser.add_argument("--seed", type=int, default=1)

@@ -145,7 +145,6 @@ def live_in_python(seconds: int, first: int, only: Sequence[str]) -> tuple[Lived
 
 
 def program(folder: Path, names: Sequence[str]) -> Path:
-    """Compile what feeds the core."""
     compiled = rvmon.loads(SPEC)._compiled
     planned = planned_core(compiled, names)
     (folder / "pattern.h").write_text("\n".join(_header(planned)))
@@ -190,7 +189,6 @@ def _header(planned: PlannedCore) -> Iterator[str]:
 
 
 def _number(value: float) -> str:
-    """A number as C initialises it."""
     if isinstance(value, int):
         return f"{{RV_WHOLE, {{.whole = {int(value)}}}}}"
     return f"{{RV_REAL, {{.real = {value!r}}}}}"

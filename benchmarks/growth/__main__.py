@@ -29,7 +29,6 @@ from benchmarks.growth import automata, cliffs, large, scale
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("what", choices=("cliffs", "large", "scale", "coverage", "automata"))
     parser.add_argument("--rows", type=int, default=20_000, help="cliffs: of a stream")

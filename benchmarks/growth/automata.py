@@ -52,7 +52,6 @@ def nesting(part: Formula) -> int:
 
 
 def measure(options: argparse.Namespace) -> int:
-    """Draw, build, measure, print."""
     seconds: list[tuple[float, str]] = []
     automata: list[tuple[Automaton, Automaton]] = []
     forecasts: list[tuple[float, str]] = []

@@ -97,7 +97,6 @@ Command = Callable[[], list[str]]
 
 
 def large(options: argparse.Namespace) -> None:
-    """Write the inputs, run the processes."""
     with tempfile.TemporaryDirectory() as name:
         for title, command in inputs(Path(name)):
             if options.only in title:
@@ -149,7 +148,6 @@ def inputs(folder: Path) -> Iterator[tuple[str, Command]]:
 
 
 def rows(name: str, count: int) -> str:
-    """So many rows of a file."""
     first, line = ROWS[name]
     return first + "".join(
         line.format(

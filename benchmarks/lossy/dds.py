@@ -131,7 +131,6 @@ class _Mouth:
         return self._process.stdout.readline() == "True\n"
 
     def close(self) -> None:
-        """End the process."""
         self._process.kill()
         self._process.communicate()
 

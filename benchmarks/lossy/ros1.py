@@ -58,7 +58,6 @@ class _Begun:
         return judged
 
     def close(self) -> None:
-        """End the process."""
         self._process.communicate()
 
 

@@ -19,7 +19,6 @@ from benchmarks.peers.environment import prepare
 
 
 def main(argv: Sequence[str]) -> int:
-    """Ask and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("what", choices=("differences", "faults"))
     if parser.parse_args(argv).what == "faults":

@@ -93,7 +93,6 @@ def resident_kib() -> int:
 
 
 def rows_of(columns: Columns, number: Callable[[Any], Any] = lambda cell: cell) -> list[Any]:
-    """The rows of columns, by name."""
     cells = zip(*columns.values(), strict=True)
     return [dict(zip(columns, map(number, row), strict=True)) for row in cells]
 
@@ -138,7 +137,6 @@ class Reelay(Adapter):
         ]
 
     def laid(self, columns: Columns) -> list[Any]:
-        """Rows by name."""
         return rows_of(columns)
 
     def ready(self, formula: str, kind: str, laid: list[Any]) -> Pass:
@@ -208,7 +206,6 @@ class Rtamt(Adapter):
         return lambda t, row: spec.update(*([name, [[t, value]]] for name, value in row.items()))
 
     def laid(self, columns: Columns) -> list[Any]:
-        """Rows with their number, as pairs."""
         return [(t, list(row.items())) for t, row in enumerate(rows_of(columns, float))]
 
     def ready(self, formula: str, kind: str, laid: list[Any]) -> Pass:
@@ -312,7 +309,6 @@ class Sentil(Adapter):
         return told
 
     def laid(self, columns: Columns) -> Columns:
-        """The columns."""
         return columns
 
     def ready(self, formula: str, kind: str, laid: Columns) -> Pass:

@@ -57,7 +57,6 @@ class Peer(AbstractContextManager["Peer"]):
         return answer
 
     def close(self) -> None:
-        """End the process."""
         process, self._process = self._process, None
         if process is not None:
             process.communicate()

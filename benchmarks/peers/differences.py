@@ -61,7 +61,6 @@ DIFFERENCES = tuple(_read())
 
 
 def answer(difference: Difference, environment: Environment) -> list[Cell] | str:
-    """What the peer says today."""
     _, adapter, kind = difference.peer
     columns = {spelling(name): list(one) for name, one in difference.same.columns.items()}
     with Peer(environment.python, adapter) as peer:

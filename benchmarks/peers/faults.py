@@ -190,7 +190,6 @@ def keyed() -> dict[str, float]:
 
 
 def tables(environment: Environment) -> None:
-    """Print the tables."""
     logging.disable()  # what `rvmon watch` says of each verdict
     there = {way: one[1:] for way, one in PEERS.items() if one[0] in environment.versions}
     for fault in FAULTS:

@@ -51,7 +51,6 @@ class Question:
 
     @property
     def ticks(self) -> int:
-        """The length of the trace."""
         return len(next(iter(self.columns.values())))
 
 
@@ -136,12 +135,10 @@ Judge = Callable[[CheckedSpec, Sequence[Sample], int], Report]
 
 
 def ask_oracle(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
-    """Judge by the reference oracle."""
     return evaluate(spec, samples, advances=(end,))
 
 
 def ask_monitor(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
-    """Judge by a monitor."""
     monitor = Spec(spec).monitor()
     for sample in samples:
         monitor.step_ns(sample.t, sample.values)

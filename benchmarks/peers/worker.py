@@ -17,7 +17,6 @@ from typing import Any
 
 
 def main(path: str, name: str) -> None:
-    """Answer until the input ends."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
     sys.path.pop(0)  # this folder: its names are not meant for the peers

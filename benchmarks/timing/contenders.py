@@ -57,16 +57,13 @@ class Worker:
     request: Request
 
     def prepare(self, workload: Workload, rows: int) -> None:
-        """Send the formulas and the rows."""
         self.peer.ask("load", **self.request(workload, rows))
 
     def run(self) -> Pass:
-        """One pass."""
         answer = self.peer.ask("run")
         return Pass(answer["cpu_ns"], tuple(answer["violated"]))
 
     def close(self) -> None:
-        """End the process."""
         self.peer.close()
 
 

@@ -205,13 +205,11 @@ def _reelay_violated(printed: str) -> int | None:
 
 
 def table(size: Size, environment: Environment) -> tuple[str, ...]:
-    """What whole files take."""
     with tempfile.TemporaryDirectory() as folder:
         return tuple(rows(size, environment, Path(folder)))
 
 
 def rows(size: Size, environment: Environment, folder: Path) -> Iterator[str]:
-    """The lines of the table."""
     yield "| files | by | wall (least to most) | CPU | memory | the first over this | failures |"
     yield "|---|---|---|---|---|---|---|"
     tasks, refused = [*_tasks(size, environment, folder)], list[Task]()

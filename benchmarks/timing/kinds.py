@@ -183,7 +183,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def measure(options: argparse.Namespace) -> int:
-    """Measure and print."""
     print("| requirement | ns a sample |\n|---|---|")
     figures: list[float] = []
     for name, spec, rows, only, filled in lines(options.rows, options.time, options.unknown):

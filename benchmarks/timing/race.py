@@ -108,5 +108,4 @@ _BEGAN = time.monotonic()
 
 
 def say(text: str) -> None:
-    """Tell what is under way."""
     print(f"{time.monotonic() - _BEGAN:4.0f} s  {text}", file=sys.stderr, flush=True)

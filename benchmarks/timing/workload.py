@@ -35,7 +35,6 @@ class Workload:
 
     @property
     def rows(self) -> int:
-        """The length of the trace."""
         return len(next(iter(self.columns.values())))
 
     @property
