@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         checked, found = _checked(text, name, constants)
         findings += found
         broken += checked is None
-        remarks += [] if checked is None else _memory(checked)
+        remarks += [] if checked is None else memory_lines(checked)
         if arguments.binding is not None and checked is not None:
             remarks += _bound(arguments.binding, checked)
         if arguments.analyse and checked is not None:
@@ -107,10 +107,6 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
     analysis = analyse(compile_spec(checked), seconds=seconds)
     return analysis.findings, analysis_lines(analysis, checked)
-
-
-def _memory(checked: CheckedSpec) -> list[str]:
-    return memory_lines(checked)
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:

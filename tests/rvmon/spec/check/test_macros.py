@@ -12,43 +12,36 @@ def printed(spec):
     return format_formula(spec.requirements["R"].consequent)
 
 
-def test_macro_with_parameters(checked):
-    """Arguments are formulas, numbers, durations or labels alike."""
-    spec = checked(
-        "define soon(p, lim) = within lim p\n"
-        "define near(z, l) = z < l\n"
-        "define is(l) = state == l\n"
-        "requirement R upon start then soon(near(d, 5 cm) and is(idle), 2 * 500 ms)"
-    )
-    assert printed(spec) == "within 1 s (d < 0.05 m and state == idle)"
-
-
-def test_arguments_keep_their_own_names(checked):
-    """A parameter of the same name as a signal in the argument does not capture it."""
-    spec = checked(
-        "define both(a, b) = a and next_to(b, a)\n"
-        "define next_to(a, b) = not a or b\n"
-        "requirement R upon start then eventually both(b, a)"
-    )
-    assert printed(spec) == "eventually (b and (not a or b))"
+@pytest.mark.parametrize(
+    ("defined", "required", "expected"),
+    [
+        (
+            "define soon(p, lim) = within lim p\ndefine near(z, l) = z < l\n"
+            "define is(l) = state == l",
+            "upon start then soon(near(d, 5 cm) and is(idle), 2 * 500 ms)",
+            "within 1 s (d < 0.05 m and state == idle)",
+        ),
+        # A parameter of the same name as a signal in the argument does not capture it.
+        (
+            "define both(a, b) = a and next_to(b, a)\ndefine next_to(a, b) = not a or b",
+            "upon start then eventually both(b, a)",
+            "eventually (b and (not a or b))",
+        ),
+        # An argument may read what `let` names at its use.
+        ("define soon(p) = within 1 s p", "upon e then soon(d > v) let v = d", "within 1 s d > v"),
+        # A macro may stand in its own argument.
+        ("define m(p) = not p", "upon start then eventually m(m(a))", "eventually not not a"),
+    ],
+)
+def test_macros_with_parameters(checked, defined, required, expected):
+    """Arguments are formulas, numbers, durations or labels alike, and keep their own names."""
+    assert printed(checked(f"{defined}\nrequirement R {required}")) == expected
 
 
 def test_macro_does_not_see_names_of_its_use(codes):
     """What `let` names is unknown inside a macro."""
     text = "define far = d > v\nrequirement R upon e then within 1 s far let v = d"
     assert codes(text) == ["RV012"]
-
-
-def test_argument_may_use_let(checked):
-    """An argument may read what `let` names at its use."""
-    spec = checked("define soon(p) = within 1 s p\nrequirement R upon e then soon(d > v) let v = d")
-    assert printed(spec) == "within 1 s d > v"
-
-
-def test_nested_use_of_one_macro_is_no_recursion(checked):
-    """A macro may stand in its own argument."""
-    spec = checked("define m(p) = not p\nrequirement R upon start then eventually m(m(a))")
-    assert printed(spec) == "eventually not not a"
 
 
 @pytest.mark.parametrize(
