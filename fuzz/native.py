@@ -35,7 +35,7 @@ from rvmon.core.plan import pack
 from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import planned_core
 from rvmon.monitor.plans import plan_alone
 from rvmon.testing.generate.spec import Profile, random_spec

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rvmon.diagnostics import Diagnostic
     from rvmon.errors import RvmonError, SpecError, TraceError
-    from rvmon.monitor import Monitor
+    from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec, load, loads
     from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
@@ -55,7 +55,7 @@ __all__ = [
 _HOMES = {
     "Attempt": "rvmon.session",
     "Diagnostic": "rvmon.diagnostics",
-    "Monitor": "rvmon.monitor",
+    "Monitor": "rvmon.monitor.monitor",
     "Report": "rvmon.session",
     "Requirement": "rvmon.spec.checked.specification",
     "Sample": "rvmon.trace.sample",

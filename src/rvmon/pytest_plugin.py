@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pytest
 
 if TYPE_CHECKING:
-    from rvmon.monitor import Monitor
+    from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
     from rvmon.verdict import Verdict
     from rvmon.verdict.report import Report

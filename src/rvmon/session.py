@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
-    from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.monitor.compiled_spec import CompiledSpec
+    from rvmon.monitor.monitor import Monitor
     from rvmon.monitor.planned import PlannedCore
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
@@ -123,7 +124,7 @@ class Spec:
             UnknownNameError: `only`, `settle` or `sources` names what does not exist.
             RvmonError: a requirement is beyond the core, or `keep` is no count.
         """
-        from rvmon.monitor import build_monitor
+        from rvmon.monitor.monitor import build_monitor
 
         asked = sources_asked(self.checked, sources)
         return build_monitor(self._compiled, only=only, settle=settle, sources=asked, keep=keep)

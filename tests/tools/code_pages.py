@@ -10,7 +10,7 @@ from rvmon.analysis.codes import every_page
 from rvmon.analysis.examples import analyse
 from rvmon.diagnostics import Diagnostic, render_full
 from rvmon.errors import ModelError, SpecError
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.spec.compile import compile_text
 from rvmon.timed.conformance.conform import conform
 from rvmon.timed.language.load import load_network, loads_network

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.errors import RvmonError, TimeOrderError
-from rvmon.monitor import CompiledSpec, Monitor, build_monitor, compile_spec
-from rvmon.monitor.monitor import restore
+from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
+from rvmon.monitor.monitor import Monitor, build_monitor, restore
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import CheckedSpec

@@ -9,7 +9,7 @@ from dataclasses import fields
 from typing import Any
 
 from rvmon import native
-from rvmon.monitor import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.trace import Case

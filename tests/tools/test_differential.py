@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import pytest
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.monitor import Monitor
+from rvmon.monitor.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import UnaryOp
 from rvmon.testing.generate.spec import Profile

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import planned_core
 from rvmon.readers.source import Source
 from rvmon.spec.checked.classify import subformulas

@@ -102,7 +102,7 @@ def _checked(
 def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic], list[str]]:
     """What an analysis finds, and in words the timelines of conflicts and what was not decided."""
     from rvmon.analysis.examples import analyse
-    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.report.explain_text import analysis_lines
 
     analysis = analyse(compile_spec(checked), seconds=seconds)

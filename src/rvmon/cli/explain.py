@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         code = arguments.subject
         say(code_list() if code == "codes" else page_of(code), end="")
         return 0
-    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.session import load
 
     spec = load(arguments.subject, const=constants_of(arguments.const))

@@ -90,7 +90,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
 
 def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
     from rvmon.export.c_files import c_files
-    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.monitor.plans import plan_alone
 
     if output is None:
@@ -109,7 +109,7 @@ def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
 
 
 def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
-    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled_spec import compile_spec
 
     chosen = compile_spec(spec.checked).chosen(ids)
     if form == "hoa":

@@ -243,7 +243,7 @@ class _Watched:
 class CoverageMonitor:
     """Measures the coverage of a stream of samples; made by `SpecCoverage.monitor`.
 
-    Times and errors are as for `rvmon.monitor.Monitor`: seconds, or ticks in the methods that end
+    Times and errors are as for `rvmon.Monitor`: seconds, or ticks in the methods that end
     in `_ns`.
     """
 

@@ -13,7 +13,7 @@ from rvmon.execute.journal import add, begin, entries
 from rvmon.trace.time import whole_ticks
 
 if TYPE_CHECKING:
-    from rvmon.monitor import Monitor
+    from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
 

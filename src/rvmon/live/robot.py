@@ -18,7 +18,7 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report_json import seconds
 
 if TYPE_CHECKING:
-    from rvmon.monitor import Monitor
+    from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
     from rvmon.verdict.report import Report
 

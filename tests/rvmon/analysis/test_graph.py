@@ -10,7 +10,7 @@ from rvmon.analysis.example import Budget
 from rvmon.analysis.examples import shortest_examples, verdict_of
 from rvmon.analysis.graph import ANY, cubes_of, graph_of
 from rvmon.analysis.vacuity import possible
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec
 

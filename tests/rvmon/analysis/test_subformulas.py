@@ -8,7 +8,8 @@ from tests.tools import build
 from rvmon.analysis.spans import hold, joined, outside, within
 from rvmon.analysis.subformulas import dissect
 from rvmon.analysis.truths import look_through, parts_of, subformulas, truths_of_parts
-from rvmon.monitor import build_monitor, compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.monitor.monitor import build_monitor
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace, show_case

@@ -6,7 +6,7 @@ import pytest
 
 from rvmon.analysis.choices import SILENT
 from rvmon.analysis.examples import Player, _choices
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec
 from rvmon.trace.sample import Sample

@@ -7,7 +7,8 @@ from dataclasses import fields
 import pytest
 from tests.tools.drive import feed
 
-from rvmon.monitor import CompiledSpec, build_monitor
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.monitor import build_monitor
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.native import Monitor as Run

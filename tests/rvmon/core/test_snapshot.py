@@ -15,7 +15,7 @@ from tests.tools.forms import Compiler
 from tests.tools.put_away import Twins, forged, put_away
 from tests.tools.special_specs import random_chain
 
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import PlannedCore
 from rvmon.monitor.records import report_of_run
 from rvmon.spec.checked.specification import TimeModel

@@ -18,8 +18,7 @@ from rvmon.logic.formula import Factory
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.normal_form import Lowering
 from rvmon.logic.plan import WatchGroup
-from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled_spec import Kept
+from rvmon.monitor.compiled_spec import Kept, compile_spec
 from rvmon.monitor.planned import planned_as
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.watching import known_truths

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.export.c_files import core_files, plan_files, prefix_of
-from rvmon.monitor import CompiledSpec, compile_spec
+from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.records import NUMBER, RECORD

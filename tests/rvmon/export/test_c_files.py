@@ -13,7 +13,7 @@ from tests.tools.hostile import FORGERIES, hostile_names
 import rvmon
 from rvmon.core.plan import pack
 from rvmon.export.c_files import FEWEST, c_files, identifiers
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.plans import plan_alone
 from rvmon.native import memory_of
 from rvmon.spec.checked.specification import TimeModel

@@ -14,7 +14,7 @@ from tests.tools.ltl3 import Tableau
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.export.hoa import hoa
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.print import format_formula
 

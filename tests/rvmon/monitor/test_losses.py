@@ -9,8 +9,8 @@ from tests.tools.judgement import Judgement
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
-from rvmon.monitor import build_monitor, compile_spec
-from rvmon.monitor.monitor import restore
+from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.monitor.monitor import build_monitor, restore
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.margins import margins

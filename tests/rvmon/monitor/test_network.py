@@ -8,7 +8,7 @@ from tests.tools.drive import drive
 
 import rvmon
 from rvmon.analysis.words import facts_of
-from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile

@@ -148,7 +148,8 @@ def test_what_is_refused_is_not_kept(folder):
 
 def test_only_what_was_loaded_is_kept(folder):
     """Not each of the specifications that programs make up, of which there may be thousands."""
-    from rvmon.monitor import build_monitor, compile_spec
+    from rvmon.monitor.compiled_spec import compile_spec
+    from rvmon.monitor.monitor import build_monitor
 
     build_monitor(compile_spec(rvmon.loads(TEXT).checked))
     assert not kept_in(folder)
