@@ -156,29 +156,19 @@ _NAMES = rf"(?P<unfinished>{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+
 
 
 def cache_folder() -> Path | None:
-    """Where files are kept; `None` if nowhere: switched off, or others could write there."""
-    if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
-        return None
-    try:
-        folder = _made_folder()
-        return folder if is_ours(folder) else None
-    except (OSError, RuntimeError):
-        return None
-
-
-def _made_folder() -> Path:
-    """The user's cache folder of rvmon, made if need be.
-
-    Raises:
-        OSError: it cannot be made.
-        RuntimeError: the user has no home.
+    """Where files are kept; `None` if nowhere: switched off, or others could write there.
 
     Source: XDG Base Directory Specification: paths that are not absolute are passed over.
     """
+    if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
+        return None
     base = os.environ.get("XDG_CACHE_HOME", "")
-    folder = (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "rvmon"
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    return folder
+    try:
+        folder = (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "rvmon"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        return folder if is_ours(folder) else None
+    except (OSError, RuntimeError):  # it cannot be made, or the user has no home
+        return None
 
 
 def is_ours(path: Path) -> bool:
@@ -230,7 +220,13 @@ def files_within(folder: str) -> Iterator[os.DirEntry[str]]:
 
 def read_kept(path: Path) -> bytes | None:
     """What was written there; `None` if that is nothing, not ours, or not whole."""
-    checksum, _, body = (_read(path) or b"").partition(b"\n")
+    try:
+        if not is_ours(path):
+            return None
+        checksum, _, body = path.read_bytes().partition(b"\n")
+        os.utime(path)  # it is used now
+    except OSError:
+        return None
     return body if _checksum(body).encode() == checksum else None
 
 
@@ -244,18 +240,6 @@ def keep(path: Path, body: bytes) -> None:
 
 def _checksum(body: bytes) -> str:
     return hashlib.sha256(body).hexdigest()
-
-
-def _read(path: Path) -> bytes | None:
-    """The bytes of a file of ours, which is used now; `None` if there is none."""
-    try:
-        if not is_ours(path):
-            return None
-        body = path.read_bytes()
-        os.utime(path)
-    except OSError:
-        return None
-    return body
 
 
 def _tidy(folder: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -231,37 +232,53 @@ def write_json_mcap(
     **options: Any,
 ) -> Path:
     """An MCAP file of JSON, or of MessagePack or CBOR."""
-    from mcap.writer import Writer
+    kinds = {bool: "boolean", int: "integer", float: "number", str: "string"}
 
     def packed(content: Any) -> bytes:
         if encoding == "json":
             return json.dumps(content).encode()
-        from importlib import import_module
-
         module = import_module("cbor2" if encoding == "cbor" else "msgspec.msgpack")
         made: bytes = (module.dumps if encoding == "cbor" else module.encode)(content)
         return made
 
-    kinds = {bool: "boolean", int: "integer", float: "number", str: "string"}
+    def described(topic: str, content: Content) -> tuple[str, str, bytes] | None:
+        known = {name: kinds[type(one)] for name, one in content.items() if type(one) in kinds}
+        properties = {name: {"type": kind} for name, kind in known.items()}
+        schema = json.dumps({"type": "object", "properties": properties}).encode()
+        return (topic, "jsonschema", schema) if schemas else None
+
+    return write_mcap(path, sent, encoding, described, packed, **options)
+
+
+def write_mcap(
+    path: Path,
+    sent: Sequence[Sent],
+    encoding: str,
+    described: Callable[[str, Content], tuple[str, str, bytes] | None],
+    packed: Callable[[Content], bytes],
+    **options: Any,
+) -> Path:
+    """An MCAP file; the first message of a topic says which fields it has.
+
+    Args:
+        path: of it.
+        sent: its messages.
+        encoding: of these.
+        described: gives name, encoding and text of a schema, if there is one.
+        packed: gives the bytes of a message.
+        options: of the writer.
+    """
+    from mcap.writer import Writer
+
     with path.open("wb") as file:
         writer: Any = Writer(file, **options)
         writer.start()
-        channels = {}
+        channels: dict[str, int] = {}
         for topic, t, content in sent:
             if topic not in channels:
-                described = {
-                    "type": "object",
-                    "properties": {
-                        name: {"type": kinds[type(value)]}
-                        for name, value in content.items()
-                        if type(value) in kinds
-                    },
-                }
-                schema = 0
-                if schemas:
-                    data = json.dumps(described).encode()
-                    schema = writer.register_schema(topic, "jsonschema", data)
-                channels[topic] = writer.register_channel(topic, encoding, schema)
+                schema = described(topic, content)
+                number = 0 if schema is None else writer.register_schema(*schema)
+                channels[topic] = writer.register_channel(topic, encoding, number)
             writer.add_message(channels[topic], t, packed(content), t)
         writer.finish()
     return path
@@ -303,3 +320,13 @@ def _protobuf_types() -> dict[str, Any]:
         topic: GetMessageClass(pool.FindMessageTypeByName(f"shop.{topic[1:].title()}"))
         for topic in fields
     }
+
+
+OF_MESSAGES: Mapping[str, Callable[..., Path]] = {
+    "a.bag": write_ros1,
+    "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
+    "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
+    "b.mcap": write_json_mcap,
+    "c.mcap": write_protobuf_mcap,
+}
+"""What writes a recording, by its name."""

@@ -120,7 +120,7 @@ class MessageFeed:
 
     def _reading(self, topic: Topic) -> MessageReaders:
         self._fed.setdefault(topic.name, ())
-        bounds = matched(self._schema, {topic.name: topic}).bounds
+        bounds, _ = matched(self._schema, {topic.name: topic})
         self._fed[topic.name] = tuple(bounds)
         clock = self._schema.binding.clock
         if any((bound.clock or clock) is Clock.HEADER for bound in bounds.values()):

@@ -155,7 +155,7 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
 
 def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
     """The values that have a key, which are texts, and may be numbers."""
-    for path, value in (looked.entries or {}).items():
+    for path, value in looked.entries.items():
         own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
         if number(value) is None:
             yield Candidate(topic, path, Kind.LABEL, own, around, UNKNOWN)
@@ -181,7 +181,7 @@ def _places(
             yield f"{array}[{place}]", [*plain, axis], axis
     elif "distance" in words and meaning.sort is Sort.MEASURED:
         yield f"min({array})", ["nearest", *words], ""
-    for name in (named.joints or {}).get(with_names.get(array, ""), ()):
+    for name in named.joints.get(with_names.get(array, ""), ()):
         yield f"{array}[{name}]", [*words, *words_of(name)], ""
 
 

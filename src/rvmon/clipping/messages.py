@@ -49,7 +49,7 @@ def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
     """
     place = local_path(path)
     with closing(open_messages(place, form, piece.schema)) as source:
-        bounds = matched(piece.schema, source.topics).bounds
+        bounds, _ = matched(piece.schema, source.topics)
         recorded = _as_recorded(source, bounds, piece)
     happening = {bounds[name].topic for name in piece.schema.events if name in bounds}
     brought = {bounds[name].topic for name in piece.held} - happening

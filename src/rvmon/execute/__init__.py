@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,16 @@ class Ended:
     timed_out: bool
     why: str
     seconds: float
+
+
+class Work(NamedTuple):
+    """What is to be done, and what is said of it; see `parallel.execute`."""
+
+    tasks: Iterable[Any]
+    begin: Callable[[], Callable[[Any], Any]]
+    what: str
+    instead: Callable[[Any, Ended], Any] | None
+    timeout_s: float | None
 
 
 @contextmanager

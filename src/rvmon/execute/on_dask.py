@@ -20,7 +20,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from rvmon.errors import RvmonError, WorkerLostError, needed
-from rvmon.execute import Ended
+from rvmon.execute import Ended, Work
 from rvmon.execute.journal import checksum
 from rvmon.execute.worker import answer, packed_error
 
@@ -37,23 +37,13 @@ _POLL_S = 0.5
 """Seconds after which one looks again for what takes too long."""
 
 
-def execute_on_dask(
-    tasks: Iterable[Any],
-    begin: Callable[[], Callable[[Any], Any]],
-    address: str,
-    what: str,
-    instead: Callable[[Any, Ended], Any] | None,
-    timeout_s: float | None,
-) -> Iterator[Any]:
+def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
     """Do tasks as `parallel.execute` does; what is said there of processes is of workers here.
 
     Args:
-        tasks: see there; so are the others.
-        begin: see there.
+        work: what is to be done; `instead` gives the result of a task whose worker was lost again
+            and again, or took too long.
         address: of the scheduler, such as `tcp://10.0.0.5:8786`.
-        what: see there.
-        instead: the result of a task whose worker was lost again and again, or took too long.
-        timeout_s: see there.
 
     Raises:
         WorkerLostError: there is no worker; or those that had a task were lost, and there is no
@@ -74,24 +64,15 @@ def execute_on_dask(
             f"and workers by `dask worker {address} --nthreads 1`"
         ) from None
     with client:
-        yield from _Work(client, cloudpickle.dumps(begin), what, instead, timeout_s).results(tasks)
+        yield from _Pool(client, cloudpickle.dumps(work.begin), work).results()
 
 
-class _Work:
-    """What workers have, and what they have done; `execute_on_dask` says what the arguments are."""
+class _Pool:
+    """What workers have, and what they have done; see `parallel`."""
 
-    def __init__(
-        self,
-        client: Any,
-        begin: bytes,
-        what: str,
-        instead: Callable[[Any, Ended], Any] | None,
-        timeout_s: float | None,
-    ) -> None:
+    def __init__(self, client: Any, begin: bytes, work: Work) -> None:
         self._client = client
-        self._what = what
-        self._instead = instead
-        self._timeout_s = timeout_s
+        self._work = work
         self._name = f"rvmon-{uuid.uuid4().hex}"
         # A task rather than data that is handed out: it is done again where its worker is lost.
         self._begin = client.submit(bytes, begin, key=f"{self._name}-begin")
@@ -104,9 +85,9 @@ class _Work:
         self._done: dict[int, tuple[bool, bytes]] = {}
         client.subscribe_topic(self._name, self._note)
 
-    def results(self, tasks: Iterable[Any]) -> Iterator[Any]:
+    def results(self) -> Iterator[Any]:
         """The results in order."""
-        left = self._packed(tasks)
+        left = self._packed(self._work.tasks)
         number = 0
         seen = time.monotonic()
         while True:
@@ -148,7 +129,7 @@ class _Work:
             self._done[number] = (True, packed_error(error))
 
     def _submit(self, number: int, task: bytes) -> None:
-        about = (self._name, number, program(), os.getcwd(), self._timeout_s)
+        about = (self._name, number, program(), os.getcwd(), self._work.timeout_s)
         arguments = (*about, self._begin, task)
         future = self._client.submit(_do, *arguments, pure=False, priority=-number)
         self._tasks[future] = (number, task)
@@ -176,24 +157,26 @@ class _Work:
 
     def _end_late(self) -> None:
         """Begin those workers anew whose tasks take too long."""
-        if self._timeout_s is None:
+        if self._work.timeout_s is None:
             return
         for future, (number, task) in [*self._tasks.items()]:
             since, worker = self._begun.get(number, (time.monotonic(), ""))
-            if time.monotonic() - since > self._timeout_s and not future.done():
+            if time.monotonic() - since > self._work.timeout_s and not future.done():
                 del self._tasks[future]
                 future.cancel(force=True)
                 self._client.restart_workers([worker], raise_for_error=False)
-                self._lose(number, task, f"it took more than {self._timeout_s:g} s", timed_out=True)
+                self._lose(
+                    number, task, f"it took more than {self._work.timeout_s:g} s", timed_out=True
+                )
 
     def _lose(self, number: int, task: bytes, why: str, *, timed_out: bool) -> None:
-        if self._instead is None:
-            error = WorkerLostError(f"{self._what} {number + 1} was not done: {why}")
+        if self._work.instead is None:
+            error = WorkerLostError(f"{self._work.what} {number + 1} was not done: {why}")
             self._done[number] = (True, pickle.dumps(error))
             return
         now = time.monotonic()
         ended = Ended(timed_out, why, now - self._begun.get(number, (now, ""))[0])
-        result = self._instead(pickle.loads(task), ended)  # noqa: S301 - packed here
+        result = self._work.instead(pickle.loads(task), ended)  # noqa: S301 - packed here
         self._done[number] = (False, pickle.dumps(result))
 
 

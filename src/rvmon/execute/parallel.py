@@ -17,7 +17,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rvmon.errors import RvmonError, WorkerLostError
-from rvmon.execute import Ended
+from rvmon.execute import Ended, Work
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -73,13 +73,14 @@ def execute(
     >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
     [1, 2, 3]
     """
+    asked = Work(tasks, begin, what, instead, timeout_s)
     if isinstance(jobs, str):
         from rvmon.execute.on_dask import execute_on_dask
 
-        yield from execute_on_dask(tasks, begin, jobs, what, instead, timeout_s)
+        yield from execute_on_dask(asked, jobs)
         return
     if jobs > 1 or instead is not None:
-        pool = _Pool(tasks, begin, jobs, what, instead, timeout_s, fresh)
+        pool = _Pool(asked, jobs, fresh)
         try:
             yield from pool.results()
         finally:
@@ -116,24 +117,11 @@ class _Worker:
 class _Pool:
     """Workers, what they have, and what they have done; `execute` says what the arguments are."""
 
-    def __init__(
-        self,
-        tasks: Iterable[Any],
-        begin: Callable[[], Callable[[Any], Any]],
-        jobs: int,
-        what: str,
-        instead: Callable[[Any, Ended], Any] | None,
-        timeout_s: float | None,
-        fresh: bool,
-    ) -> None:
+    def __init__(self, work: Work, jobs: int, fresh: bool) -> None:
         import multiprocessing
 
-        self._tasks = iter(tasks)
-        self._begin = begin
+        self._work, self._tasks = work, iter(work.tasks)
         self._jobs = jobs
-        self._what = what
-        self._instead = instead
-        self._timeout_s = timeout_s
         self._fresh = fresh
         self._context = multiprocessing.get_context()
         self._workers: list[_Worker] = []
@@ -194,7 +182,7 @@ class _Pool:
         is_main = threading.current_thread() is threading.main_thread()
         parent = os.getpid() if forked and is_main else None
         here, there = self._context.Pipe()
-        arguments = (there, here, self._begin, parent)
+        arguments = (there, here, self._work.begin, parent)
         process = self._context.Process(target=serve, args=arguments, daemon=True)
         try:
             with _without_interrupts():
@@ -223,8 +211,8 @@ class _Pool:
             return pickle.dumps(task)
         except (pickle.PicklingError, TypeError, AttributeError) as error:
             raise RvmonError(
-                f"{self._what} {self._taken + 1} cannot be given to another process ({error}): "
-                "use one process (jobs)"
+                f"{self._work.what} {self._taken + 1} cannot be given to another process "
+                f"({error}): use one process (jobs)"
             ) from None
 
     def _take(self, worker: _Worker) -> None:
@@ -254,15 +242,15 @@ class _Pool:
 
     def _patience(self, busy: Iterable[_Worker]) -> float | None:
         """Seconds until the first task will have taken too long."""
-        if self._timeout_s is None:
+        if self._work.timeout_s is None:
             return None
         return max(0.0, min(self._left_s(worker) for worker in busy))
 
     def _left_s(self, worker: _Worker) -> float:
         """Seconds that a worker's task may still take."""
-        if self._timeout_s is None:
+        if self._work.timeout_s is None:
             return inf
-        most = self._timeout_s if worker.is_ready else self._timeout_s + BEGIN_S
+        most = self._work.timeout_s if worker.is_ready else self._work.timeout_s + BEGIN_S
         return worker.since + most - time.monotonic()
 
     def _end_if_late(self, worker: _Worker) -> None:
@@ -275,17 +263,21 @@ class _Pool:
         """Do without a worker that was ended, and without a result of the task that it had."""
         self._dismiss(worker)
         number, task = worker.tasks.popleft()
-        if self._instead is None:
+        if self._work.instead is None:
             message = (
-                f"the process that had {self._what} {number + 1} was ended from outside, as "
+                f"the process that had {self._work.what} {number + 1} was ended from outside, as "
                 "systems do when memory runs out: use fewer processes (jobs)"
             )
             self._fail(number, WorkerLostError(message))
             return
-        why = f"it took more than {self._timeout_s:g} s" if timed_out else _end_of(worker.process)
+        why = (
+            f"it took more than {self._work.timeout_s:g} s"
+            if timed_out
+            else _end_of(worker.process)
+        )
         self._give_back(worker)
         ended = Ended(timed_out, why, time.monotonic() - worker.since)
-        result = self._instead(pickle.loads(task), ended)  # noqa: S301 - packed here
+        result = self._work.instead(pickle.loads(task), ended)  # noqa: S301 - packed here
         self._done[number] = pickle.dumps(result)
 
     def _dismiss(self, worker: _Worker) -> None:

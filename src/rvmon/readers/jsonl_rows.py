@@ -153,7 +153,13 @@ def read_object(
     aliases = aliases_of(schema)
     values: dict[str, Value] = {}
     if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
-        for name in _listed(fields.pop("events")):
+        listed = fields.pop("events")
+        if isinstance(listed, str):
+            raise TraceError(
+                f'`events`: expected a list of names such as ["{shorten(listed)}"], '
+                f"found the text `{shorten(listed)}`"
+            )
+        for name in listed:
             if not isinstance(name, str):
                 raise TraceError(f"`events`: `{_written(name)}` is not the name of an event")
             declared = aliases.get(name, name)
@@ -164,15 +170,6 @@ def read_object(
     _collect(fields, "", schema, aliases, values, ignored)
     bound(ignored)
     return t, values
-
-
-def _listed(events: list[object] | str) -> list[object]:
-    if isinstance(events, str):
-        raise TraceError(
-            f'`events`: expected a list of names such as ["{shorten(events)}"], '
-            f"found the text `{shorten(events)}`"
-        )
-    return events
 
 
 def _written(value: object) -> str:

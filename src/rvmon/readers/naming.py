@@ -26,7 +26,8 @@ def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
     if stamps is not None:
         if stamps.column in names:
             return stamps
-        units = "" if stamps.is_stated else _units_listed(stamps.column)
+        is_unit_meant = ":" in stamps.column and not stamps.is_stated
+        units = f" (the units are {', '.join(UNITS)})" if is_unit_meant else ""
         meant = did_you_mean(stamps.column, names, f"there are {listed}")
         raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}")
     times = [name for name in DEFAULT_COLUMNS if name in names]
@@ -39,10 +40,6 @@ def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
             "--time COLUMN[:UNIT], in Python time=…"
         )
     return stamps_of(times[0])
-
-
-def _units_listed(column: str) -> str:
-    return f" (the units are {', '.join(UNITS)})" if ":" in column else ""
 
 
 def aliases_of(schema: Schema) -> dict[str, str]:

@@ -7,6 +7,7 @@ pyarrow, the extra `arrow`), data frames of pandas and polars, mappings of array
 from __future__ import annotations
 
 import reprlib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -40,8 +41,7 @@ def columns_by_name(table: Any) -> dict[str, Any] | None:
 
 def _frame_columns(frame: Any) -> dict[str, Any]:
     keys = list(frame.columns)
-    _expect_distinct([str(key) for key in keys])
-    found = {str(key): frame[key] for key in keys}
+    found = _distinct([str(key) for key in keys], [frame[key] for key in keys])
     index: Any = getattr(frame, "index", None)  # of pandas
     if getattr(index, "name", None) is not None:
         found.setdefault(str(index.name), index)
@@ -66,16 +66,11 @@ def _imported(table: Any) -> Any:
 
 
 def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:
-    _expect_distinct(names)
-    return dict(zip(names, columns, strict=True))
-
-
-def _expect_distinct(names: Sequence[str]) -> None:
-    seen = set()
-    for name in names:
-        if name in seen:
-            raise TraceError(f"column `{name}` stands twice in the table")
-        seen.add(name)
+    found = dict(zip(names, columns, strict=True))
+    if len(found) < len(names):
+        [(name, _)] = Counter(names).most_common(1)
+        raise TraceError(f"column `{name}` stands twice in the table")
+    return found
 
 
 def cells_of(name: str, column: Any) -> list[Any]:

@@ -229,7 +229,7 @@ def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
     """The named elements of arrays, such as the positions of joints: array, element, shape."""
     for array, names in arrays_with_names(topic).items():
         shape = Shape(topic.leaves[f"{array}[]"], unit=_unit(f"{array}[]", topic))
-        for element in (looked.joints or {}).get(names, ()):
+        for element in looked.joints.get(names, ()):
             if not element.isdigit():
                 yield array, element, replace(shape, source=topic.name)
 

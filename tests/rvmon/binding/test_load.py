@@ -89,7 +89,7 @@ SENT = [
 
 
 @pytest.fixture
-def reads(tmp_path):
+def read(tmp_path):
     """What a recording says under a binding."""
 
     def samples(binding=BINDING, sent=SENT, writer=write_ros1, name="a.bag", **options):
@@ -105,12 +105,6 @@ def reads(tmp_path):
         ]
 
     return samples
-
-
-@pytest.fixture
-def read(reads):
-    """The same."""
-    return reads
 
 
 EXPECTED = [
@@ -151,22 +145,22 @@ def test_all_elements_of_an_array_count(read):
         read(wrong, sent, name="b.bag")
 
 
-def test_headers_say_when(reads):
+def test_headers_say_when(read):
     """All stamps of headers count, or those of one name; messages are sorted by them."""
     header = BINDING.split("[bind.nearest]")[0]
     odometry = [one for one in SENT if one[0] == "/base/odom"]
     folders = iter("abcdef")
 
-    def read(binding, **options):
-        return reads(binding, odometry, name=f"{next(folders)}.bag", **options)
+    def stamped(binding, **options):
+        return read(binding, odometry, name=f"{next(folders)}.bag", **options)
 
-    found = read('clock = "header"\n' + header)
+    found = stamped('clock = "header"\n' + header)
     assert [t for t, _ in found] == [-10_000_000, -5_000_000, 3 * 10**7]
-    assert read(header, clock="header") == found
+    assert stamped(header, clock="header") == found
     one = header.replace("unit", 'clock = "header"\nunit')
-    assert read(one) == found
+    assert stamped(one) == found
     both = one + '\n[bind.near]\ntopic = "/base/odom"\n'
-    assert [t for t, _ in read(both)] == [-10_000_000, -5_000_000, 0, 10**7, 3 * 10**7]
+    assert [t for t, _ in stamped(both)] == [-10_000_000, -5_000_000, 0, 10**7, 3 * 10**7]
 
 
 def test_messages_without_a_header_need_the_other_clock(read):

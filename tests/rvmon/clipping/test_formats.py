@@ -7,13 +7,12 @@ import random
 import pytest
 from tests.tools.bags import (
     HEADER,
+    OF_MESSAGES,
     SHOP,
     START,
     sent_at_random,
     write_csv,
     write_json_mcap,
-    write_protobuf_mcap,
-    write_ros1,
     write_ros2,
 )
 
@@ -60,11 +59,7 @@ FORMATS = {
     "a.csv.gz": write_packed,
     "a.jsonl": write_jsonl,
     "a.parquet": write_parquet,
-    "a.bag": write_ros1,
-    "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
-    "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
-    "b.mcap": write_json_mcap,
-    "c.mcap": write_protobuf_mcap,
+    **OF_MESSAGES,
 }
 """By the name of a recording."""
 

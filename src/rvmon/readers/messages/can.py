@@ -134,7 +134,8 @@ class FrameMessages:
             yield from mdf_frames(self._path)
             return
         held, last = None, None
-        with open(self._path, **_opening(self._path)) as file, errors_as_damage("a log of CAN"):
+        mode: dict[str, Any] = {"mode": "rb"} if ending == ".blf" else {"errors": "replace"}
+        with open(self._path, **mode) as file, errors_as_damage("a log of CAN"):
             frames, losing = _reading(self._path, file)
             for frame in frames:
                 t = ticks_of_seconds(frame.timestamp)
@@ -269,11 +270,6 @@ def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
     lines = _Lines(file, _TEXTS[ending])
     readers = {".asc": ASCReader, ".log": CanutilsLogReader, ".trc": TRCReader}
     return readers[ending](lines), lines
-
-
-def _opening(path: Path) -> dict[str, Any]:
-    is_text = path.suffix.lower() != ".blf"
-    return {"mode": "r", "errors": "replace"} if is_text else {"mode": "rb"}
 
 
 def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:

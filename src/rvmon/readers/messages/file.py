@@ -116,9 +116,7 @@ class MessageFile:
         self._ready = [source]
         weakref.finalize(self, _close, self._ready)
         self.topics = source.topics
-        found = matched(schema, source.topics)
-        self._bounds = found.bounds
-        self.unread = found.unread
+        self._bounds, self.unread = matched(schema, source.topics)
         self.count = source.count
         self.end = source.end
         clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}

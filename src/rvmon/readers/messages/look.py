@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.errors import TraceError
@@ -34,8 +34,8 @@ class Looked:
     """
 
     frames: frozenset[str] = frozenset()
-    joints: Mapping[str, tuple[str, ...]] | None = None
-    entries: Mapping[str, str] | None = None
+    joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    entries: Mapping[str, str] = field(default_factory=dict)
 
 
 def names_in(source: MessageFile) -> Mapping[str, Looked]:
@@ -90,11 +90,11 @@ def _elements(array: str, content: Any) -> Sequence[Any]:
 
 
 def _texts(leaf: str, content: Any) -> list[str]:
-    field = field_of(leaf.removesuffix("[]"))
-    if field is None:
+    path = field_of(leaf.removesuffix("[]"))
+    if path is None:
         return []
     with suppress(KeyError, TraceError):
-        value = getter(field)(content)
+        value = getter(path)(content)
         return [value] if isinstance(value, str) else [str(one) for one in value or ()]
     return []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from rvmon.errors import TraceError
 from rvmon.readers.messages.by_names import arrays_with_names
@@ -14,25 +14,18 @@ from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 
 
-@dataclass(frozen=True, slots=True)
-class Matched:
-    """What of a recording is read.
-
-    Attributes:
-        bounds: by declared name, only those whose topic is there.
-        unread: the topics and fields that feed nothing.
-    """
-
-    bounds: Mapping[str, Bound]
-    unread: tuple[str, ...]
-
-
-def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
+def matched(
+    schema: Schema, topics: Mapping[str, Topic]
+) -> tuple[Mapping[str, Bound], tuple[str, ...]]:
     """Find what feeds the declared names.
 
     A column that somebody named counts before the binding, and that before the name itself: `a.b.c`
     is the field `c` of the topic `/a/b`, or `b.c` of `/a`, or the element named `c` of its array
     `b`; a topic with one field, which is no array and not of the header, is that field.
+
+    Returns:
+        The sources by declared name, of which the topic is there; the topics and fields that feed
+        nothing.
 
     Raises:
         TraceError: a topic has not the field that is bound, or it is of another kind; or its
@@ -52,7 +45,7 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
     read = {bound.topic for bound in bounds.values()}
     unread = [name for name in topics if name not in read]
     unread += [column for column, (topic, _) in columns.items() if column != topic]
-    return Matched(bounds, tuple(unread))
+    return bounds, tuple(unread)
 
 
 def _topic_like(name: str, pattern: str, schema: Schema, topics: Mapping[str, Topic]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, suppress
 from functools import cache, lru_cache, partial
@@ -200,28 +201,17 @@ def _store(type_name: str, language: str, text: str) -> tuple[Any, str]:
     The packages of many bags define the same messages: to prepare them takes longer than to read
     a small bag.
     """
-    from rosbags.typesys import (
-        Stores,
-        TypesysError,
-        get_types_from_idl,
-        get_types_from_msg,
-        get_typestore,
-    )
+    from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-    store = get_typestore(Stores.EMPTY)
-    try:
-        if language == "msg":
-            store.register(get_types_from_msg(text, type_name))
-        else:
-            store.register(
-                {
-                    name: fields
-                    for part in text.split("=" * 80 + "\n")
-                    for name, fields in get_types_from_idl(_bare_idl(part)).items()
-                }
-            )
-    except (TypesysError, KeyError, ValueError, TypeError) as error:
-        return None, f"the definition of its messages cannot be read ({first_line(error)})"
+    if language == "msg":
+        parts = [partial(get_types_from_msg, text, type_name)]
+    else:
+        # Without the line that names a definition among others.
+        texts = [re.sub(r"\AIDL: .*\n?", "", one) for one in text.split("=" * 80 + "\n")]
+        parts = [partial(get_types_from_idl, one) for one in texts]
+    store, why = _types("EMPTY", parts)
+    if why:
+        return None, f"the definition of its messages cannot be read ({why})"
     if type_name not in store.fielddefs:
         return None, "the definition of its messages is not in the recording"
     return store, ""
@@ -258,14 +248,22 @@ def ros_types(
     definitions: tuple[Definition, ...], distribution: str = _DISTRIBUTIONS[0]
 ) -> tuple[Any, str]:
     """The types of ROS itself and these, by type and text; or why there are none."""
-    from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+    from rosbags.typesys import get_types_from_msg
+
+    parts = [partial(get_types_from_msg, text, name) for name, text in definitions]
+    store, why = _types(distribution, parts)
+    return store, why and f"the `definitions` of the binding cannot be read ({why})"
+
+
+def _types(distribution: str, parts: Iterable[Callable[[], Any]]) -> tuple[Any, str]:
+    """The types of a distribution, and what is read of definitions; or why these cannot be."""
+    from rosbags.typesys import Stores, TypesysError, get_typestore
 
     store = get_typestore(Stores[distribution])
     try:
-        made = [get_types_from_msg(text, name) for name, text in definitions]
-        store.register({name: fields for one in made for name, fields in one.items()})
+        store.register({name: fields for one in parts for name, fields in one().items()})
     except (TypesysError, KeyError, ValueError, TypeError) as error:
-        return None, f"the `definitions` of the binding cannot be read ({first_line(error)})"
+        return None, first_line(error)
     return store, ""
 
 
@@ -285,11 +283,6 @@ def _lacking(store: Any, type_name: str) -> str:
             known.add(inner)
             waiting.append(inner)
     return ""
-
-
-def _bare_idl(part: str) -> str:
-    """A definition without the line that names it among others."""
-    return part.partition("\n")[2] if part.startswith("IDL: ") else part
 
 
 def _told(

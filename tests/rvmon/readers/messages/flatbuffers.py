@@ -7,7 +7,7 @@ from pathlib import Path
 from struct import pack
 from typing import Any
 
-from tests.tools.bags import Sent
+from tests.tools.bags import Content, Sent, write_mcap
 
 Slots = Mapping[int, Any]
 """Of a table, by the number of a field: a sign of `struct` and a number, a text, bytes of a vector
@@ -104,17 +104,11 @@ def message_of(fields: Mapping[str, Any]) -> Slots:
 
 def write_flatbuffer_mcap(path: Path, sent: Sequence[Sent]) -> Path:
     """An MCAP file of FlatBuffers; the first message of a topic says which fields it has."""
-    from mcap.writer import Writer
 
-    with path.open("wb") as file:
-        writer: Any = Writer(file)
-        writer.start()
-        channels = {}
-        for topic, t, content in sent:
-            if topic not in channels:
-                name = f"shop.{topic.strip('/').title()}"
-                schema = writer.register_schema(name, "flatbuffer", schema_of(name, content))
-                channels[topic] = writer.register_channel(topic, "flatbuffer", schema)
-            writer.add_message(channels[topic], t, packed(message_of(content)), t)
-        writer.finish()
-    return path
+    def described(topic: str, content: Content) -> tuple[str, str, bytes]:
+        name = f"shop.{topic.strip('/').title()}"
+        return name, "flatbuffer", schema_of(name, content)
+
+    return write_mcap(
+        path, sent, "flatbuffer", described, lambda content: packed(message_of(content))
+    )

@@ -5,7 +5,7 @@ import struct
 from contextlib import closing
 
 import pytest
-from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
+from tests.tools.bags import OF_MESSAGES, START, write_json_mcap, write_ros1, write_ros2
 
 import rvmon
 from rvmon.cli import main
@@ -38,13 +38,7 @@ SENT = [
 
 def written(folder, name):
     """A recording, and the file of it that can be damaged."""
-    match name:
-        case "a.bag":
-            path = write_ros1(folder / name, SENT)
-        case "b.mcap":
-            path = write_json_mcap(folder / name, SENT)
-        case _:
-            path = write_ros2(folder / name, SENT, name)
+    path = OF_MESSAGES[name](folder / name, SENT)
     return path, next(iter(path.glob(f"{name}.*"))) if path.is_dir() else path
 
 

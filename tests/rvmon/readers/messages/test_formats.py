@@ -15,12 +15,12 @@ from tests.rvmon.readers.messages.flatbuffers import (
 )
 from tests.tools.bags import (
     HEADER,
+    OF_MESSAGES,
     SHOP,
     START,
     sent_at_random,
     write_csv,
     write_json_mcap,
-    write_protobuf_mcap,
     write_ros1,
     write_ros2,
 )
@@ -34,15 +34,11 @@ pytest.importorskip("mcap_protobuf")
 
 
 FORMATS = {
-    "a.bag": write_ros1,
-    "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
-    "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
-    "b.mcap": write_json_mcap,
+    **OF_MESSAGES,
     "d.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="msgpack"),
     "e.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="cbor", schemas=False),
     "bz2.bag": lambda path, sent: write_ros1(path, sent, compression="bz2"),
     "lz4.bag": lambda path, sent: write_ros1(path, sent, compression="lz4"),
-    "c.mcap": write_protobuf_mcap,
     "f.mcap": write_flatbuffer_mcap,
 }
 """By the name of a recording."""
