@@ -3,11 +3,10 @@
 import json
 import socket
 import threading
-import time
 from contextlib import contextmanager
 
 import pytest
-from tests.tools.servers import LONG, Broker, missing, mosquitto
+from tests.tools.servers import LONG, Broker, missing, mosquitto, until
 
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.json_objects import JsonObjects
@@ -50,13 +49,6 @@ def publish(broker):
     client.loop_stop()
 
 
-def _until(true):
-    end = time.monotonic() + LONG
-    while not true():
-        assert time.monotonic() < end, "it did not come"
-        time.sleep(0.01)
-
-
 @pytest.mark.process
 def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
     """A value under a topic, an object above it, an event; each robot by itself."""
@@ -77,7 +69,7 @@ def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
         publish("robots/left/arm/speed", "0.5")
         publish("robots/right/arm", '{"speed": 2, "heat": 3}')
         publish("robots/left", '{"stop": true}')
-        _until(lambda: len(heard) == 2)
+        until(lambda: len(heard) == 2)
         status = live.status()
     listener.disconnect()
     listener.loop_stop()
@@ -100,9 +92,9 @@ def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
     address = address_of(f"mqtt://127.0.0.1:{broker.port}/#")
     with live, MqttSource(objects, address):
         publish("arm", '{"speed": 0.5}')
-        _until(lambda: live.status()[""].samples == 1 if live.status() else False)
+        until(lambda: live.status()[""].samples == 1 if live.status() else False)
         broker.stop()
-        _until(lambda: live.status()[""].lost == 1)
+        until(lambda: live.status()[""].lost == 1)
         broker.start()
         while not failed.wait(0.1):
             publish("arm", '{"speed": 5}')
@@ -120,7 +112,7 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
     with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
         publish("arm/speed", "0.5")
         publish("arm/speed", "fast!")
-        _until(lambda: objects.unread == 1)
+        until(lambda: objects.unread == 1)
     assert live.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
@@ -149,7 +141,7 @@ def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
     for topic, text in (("stop", "true"), ("arm/speed", "5")):
         publish(topic, text, retain=True).wait_for_publish(LONG)
     with live, MqttSource(JsonObjects(live), address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
-        _until(lambda: live.status() and live.status()[""].samples == 2)
+        until(lambda: live.status() and live.status()[""].samples == 2)
     assert live.close()[""][0].verdicts == {"R1": "F", "R2": "NT"}
 
 
@@ -195,7 +187,7 @@ def test_a_message_that_no_broker_should_let_through_is_lost():
         _answers(*answers) as port,
         MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")),
     ):
-        _until(lambda: driver.waiting == 3)
+        until(lambda: driver.waiting == 3)
     driver.work()
     assert objects.unread == 1
     assert driver.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE

@@ -12,7 +12,7 @@ from typing import Any
 from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.columns import path_of
 from rvmon.readers.messages.forms import DATABASES, databases_beside
-from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
+from rvmon.readers.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
@@ -57,7 +57,7 @@ _PDU_2 = 240
 """From this format on the second byte of an identifier of J1939 is no address."""
 
 
-class FrameMessages:
+class FrameMessages(Messages):
     """An open log, gone through once for what is in it.
 
     Args:
@@ -82,7 +82,6 @@ class FrameMessages:
         self._known = _messages(path, definitions)
         self._seen: dict[_Key, Any] = {}
         self.outages: list[Outage] = []
-        self.count, self.end = 0, None
         self._called = _names(self._known.values())
         channels: dict[str, set[Any]] = {}
         by_name: dict[str, Any] = {}
@@ -103,7 +102,7 @@ class FrameMessages:
                 'one in a binding, as `definitions = ["car.dbc"]`'
             )
         self._several = {name for name, found in channels.items() if len(found) > 1}
-        self.topics: Mapping[str, Topic] = {
+        self.topics = {
             (topic := self._name(name, channel)): _topic(topic, by_name[name])
             for name, found in channels.items()
             for channel in sorted(found, key=str)
@@ -170,9 +169,6 @@ class FrameMessages:
                 raise TraceError(
                     f"a frame of {name} at {t} ns does not fit the database ({first_line(error)})"
                 ) from None
-
-    def close(self) -> None:
-        """Nothing is open."""
 
 
 class _Lines:

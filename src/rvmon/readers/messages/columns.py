@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
+from rvmon.readers.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
@@ -32,8 +32,8 @@ class ColumnTopic:
     load: Callable[[], tuple[Any, Columns]]
 
 
-class ColumnMessages:
-    """An open recording of such topics; see `rvmon.readers.messages.topic.Messages`.
+class ColumnMessages(Messages):
+    """An open recording of such topics.
 
     Args:
         topics: in order.
@@ -50,7 +50,7 @@ class ColumnMessages:
         close: Callable[[], object] = lambda: None,
     ) -> None:
         self._topics = {one.topic.name: one for one in topics}
-        self.topics: Mapping[str, Topic] = {one.topic.name: one.topic for one in topics}
+        self.topics = {one.topic.name: one.topic for one in topics}
         self.count = sum(one.count for one in topics)
         self.end = end
         self.outages = outages

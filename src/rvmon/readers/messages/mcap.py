@@ -18,7 +18,7 @@ from rvmon.errors import TraceError, needed
 from rvmon.readers.jsonl_rows import decoded
 from rvmon.readers.messages.flatbuffer import FlatBuffers
 from rvmon.readers.messages.ros import BagMessages, refuse_fewer, ros_topic
-from rvmon.readers.messages.topic import Message, Messages, Topic, errors_as_damage
+from rvmon.readers.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
 
@@ -96,10 +96,8 @@ def mcap_reader(file: BinaryIO) -> Any:
     return make_reader(file, validate_crcs=True)
 
 
-class _OtherMessages:
+class _OtherMessages(Messages):
     """An open MCAP file of any encodings; see `mcap_messages`."""
-
-    outages: tuple[()] = ()
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
         self._definitions = definitions
@@ -116,8 +114,6 @@ class _OtherMessages:
         """Find the topics, by all messages where the file has no index of them."""
         summary = self._reader.get_summary()
         statistics = None if summary is None else summary.statistics
-        self.end: int | None = None
-        self.count = 0
         self._counted: Counter[str] = Counter()  # by topic, as the file says itself
         if summary is not None and statistics is not None:
             channels = [
@@ -135,15 +131,9 @@ class _OtherMessages:
                 self.count += 1
                 self.end = max(self.end or 0, message.log_time)
             channels = list(found.values())
-        topics: dict[str, Topic] = {}
-        self._decoders: dict[int, Decode] = {}
-        for schema, channel in channels:
-            topic, self._decoders[channel.id] = self._topic(schema, channel)
-            known = topics.setdefault(channel.topic, topic)
-            if known.type != topic.type:
-                fault = f"it holds messages of two types, {known.type} and {topic.type}"
-                topics[channel.topic] = Topic(topic.name, topic.type, {}, fault)
-        self.topics: Mapping[str, Topic] = topics
+        made = {channel.id: self._topic(schema, channel) for schema, channel in channels}
+        self._decoders = {number: decode for number, (_, decode) in made.items()}
+        self.topics = by_name(topic for topic, _ in made.values())
 
     def _topic(self, schema: Any, channel: Any) -> tuple[Topic, Decode]:
         """A topic, and what decodes its messages."""

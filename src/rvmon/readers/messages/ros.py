@@ -12,7 +12,7 @@ from typing import Any
 from rvmon.errors import TraceError, needed
 from rvmon.readers.messages.comments import comments_of
 from rvmon.readers.messages.meaning import plain_type
-from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
+from rvmon.readers.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Kind
 
@@ -30,7 +30,7 @@ _FIX = {
 }
 
 
-class BagMessages:
+class BagMessages(Messages):
     """An open bag.
 
     Args:
@@ -43,8 +43,6 @@ class BagMessages:
         TraceError: it is no bag, or a damaged one.
     """
 
-    outages: tuple[()] = ()
-
     def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
         self._form = form
         reader = bag_readers()[form]
@@ -53,9 +51,9 @@ class BagMessages:
         with open(inner, "rb"), bag_errors(self._form):
             self._reader = reader(path)
             self._reader.open()
-        self.count: int = self._reader.message_count
-        self.end: int | None = self._reader.end_time - 1 if self.count else None
-        topics: dict[str, Topic] = {}
+        self.count = self._reader.message_count
+        self.end = self._reader.end_time - 1 if self.count else None
+        topics: list[Topic] = []
         self._decoders: dict[int, Callable[[bytes], Any]] = {}
         for connection in self._reader.connections:
             topic, decode = ros_topic(
@@ -66,12 +64,9 @@ class BagMessages:
                 definitions,
                 partial(self._first, connection),
             )
-            known = topics.setdefault(topic.name, topic)
-            if known.type != topic.type:
-                fault = f"it holds messages of two types, {known.type} and {topic.type}"
-                topics[topic.name] = Topic(topic.name, topic.type, {}, fault)
+            topics.append(topic)
             self._decoders[connection.id] = decode
-        self.topics: Mapping[str, Topic] = topics
+        self.topics = by_name(topics)
 
     def _first(self, connection: Any) -> bytes | None:
         with suppress(TraceError), bag_errors(self._form):  # who reads it all tells of damage

@@ -21,7 +21,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
 from rvmon.readers.messages.forms import TOPICS
-from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.messages.topic import Message, Messages, Topic
 from rvmon.readers.places import bounded_lines, endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.texts import did_you_mean, text_of_file
@@ -46,25 +46,19 @@ class _Table:
     kinds: Mapping[str, Kind | None]
 
 
-class TableMessages:
+class TableMessages(Messages):
     """An open folder.
 
     Attributes:
         topics: by name, one of each file.
-        end: `None`: it ends with the last row that is read.
-        count: 0: nobody has counted the rows.
 
     Raises:
         TraceError: a file cannot be read, or `topics.toml` says something else.
     """
 
-    end: int | None = None
-    count = 0
-    outages: tuple[()] = ()
-
     def __init__(self, folder: Path) -> None:
         self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
-        self.topics: Mapping[str, Topic] = {
+        self.topics = {
             name: Topic(
                 name,
                 table.type,
@@ -82,9 +76,6 @@ class TableMessages:
         """
         rows = [_rows(name, table) for name, table in self._tables.items() if name in topics]
         yield from merge(*rows, key=lambda row: row[1])
-
-    def close(self) -> None:
-        """Nothing is open between rows."""
 
 
 def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.messages.topic import Message, Messages, Topic
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
@@ -30,7 +30,7 @@ _FAR = 3 * 24 * 3600 * 1_000_000
 """Microseconds: a stamp so far from the one before is none."""
 
 
-class TelemetryMessages:
+class TelemetryMessages(Messages):
     """An open recording of telemetry, gone through once for the place of each packet.
 
     Attributes:
@@ -58,15 +58,13 @@ class TelemetryMessages:
         if not self._times:
             raise TraceError("holds no packet of MAVLink: is it telemetry?")
         self.count = len(self._times)
-        self.end: int | None = max(
-            max(self._times), max((one.until for one in self.outages), default=0)
-        )
+        self.end = max(max(self._times), max((one.until for one in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
         self._names = [
             "" if key in self._lost else self._name(key, is_only=senders[self._called(key)] == 1)
             for key in self._keys
         ]
-        self.topics: Mapping[str, Topic] = {
+        self.topics = {
             name: self._topic(name, key)
             for name, key in zip(self._names, self._keys, strict=True)
             if name
@@ -226,6 +224,3 @@ class TelemetryMessages:
             }
 
         return read
-
-    def close(self) -> None:
-        """Nothing is open."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.values import first_line
@@ -44,32 +45,42 @@ Message = tuple[str, int, Any]
 """Topic, ticks at which it was recorded, content: an object with attributes, or a mapping."""
 
 
-class Messages(Protocol):
+class Messages(ABC):
     """An open recording.
 
     Attributes:
         topics: by name.
         end: the tick of the last message of all; `None` if nobody knows.
         count: of all messages; 0 if nobody knows.
+        outages: what it lost, in order; `names` are of topics.
     """
 
     topics: Mapping[str, Topic]
-    end: int | None
-    count: int
+    end: int | None = None
+    count: int = 0
+    outages: Sequence[Outage] = ()
 
-    @property
-    def outages(self) -> Sequence[Outage]:
-        """What it lost, of which topics; `names` are of these."""
-
+    @abstractmethod
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, as they were recorded.
+        """The messages of these topics, by time.
 
         Raises:
             TraceError: one cannot be read.
         """
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 - mostly nothing is open
         """Close the files."""
+
+
+def by_name(topics: Iterable[Topic]) -> dict[str, Topic]:
+    """Topics by name; one that comes with two types cannot be read."""
+    found: dict[str, Topic] = {}
+    for topic in topics:
+        known = found.setdefault(topic.name, topic)
+        if known.type != topic.type:
+            fault = f"it holds messages of two types, {known.type} and {topic.type}"
+            found[topic.name] = Topic(topic.name, topic.type, {}, fault)
+    return found
 
 
 @contextmanager

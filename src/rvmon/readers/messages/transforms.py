@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from rvmon.readers.messages.topic import Message, Messages, Topic
-from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 SOURCES = ("/tf", "/tf_static")
@@ -75,7 +74,7 @@ def _product(a: _Quaternion, b: _Quaternion) -> _Quaternion:
     )
 
 
-class WithTransforms:
+class WithTransforms(Messages):
     """A recording with a topic more for each pair of frames that somebody asks for.
 
     `/tf/map/base_link` says where `base_link` is in `map`, with each message that changes a part
@@ -86,14 +85,8 @@ class WithTransforms:
         self._source = source
         self._pairs = {f"/tf/{outer}/{inner}": (outer, inner) for outer, inner in pairs}
         made = {name: Topic(name, _TYPE, _LEAVES) for name in self._pairs}
-        self.topics: Mapping[str, Topic] = {**source.topics, **made}
-        self.end = source.end
-        self.count = source.count
-
-    @property
-    def outages(self) -> Sequence[Outage]:
-        """What the recording lost."""
-        return self._source.outages
+        self.topics = {**source.topics, **made}
+        self.end, self.count, self.outages = source.end, source.count, source.outages
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, as they were recorded."""
