@@ -90,7 +90,7 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
             lines += _signal_lines(types[name], one, ranges)
         else:
             lines += _event_lines(spec.events[name].fields, one)
-        lines += _other_lines(found[name][1:], ranges)
+        lines += [f"# or {_place(other, ranges)}" for _, other in found[name][1:_MOST]]
     missed = [name for name in found if name not in chosen]
     for name in missed:
         lines += ["", *_open_lines(name, types.get(name), found[name], near.get(name, ()), ranges)]
@@ -139,6 +139,11 @@ def _place_lines(one: Candidate, ranges: Ranges) -> Iterator[str]:
 def _range(one: Candidate, ranges: Ranges) -> str:
     own = ranges.get((one.topic.name, one.value))
     return f"  # {own}" if own is not None else ""
+
+
+def _place(one: Candidate, ranges: Ranges) -> str:
+    value = f", value = {_text(one.value)}" if one.value else ""
+    return f"topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
 
 
 def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
@@ -205,12 +210,6 @@ def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:
         yield f"fields = {{ {listed} }}"
 
 
-def _other_lines(others: Found, ranges: Ranges) -> Iterator[str]:
-    for _, one in others[: _MOST - 1]:
-        value = f", value = {_text(one.value)}" if one.value else ""
-        yield f"# or topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
-
-
 def _open_lines(
     name: str, type_: Type | None, found: Found, near: Sequence[Candidate], ranges: Ranges
 ) -> Iterator[str]:
@@ -223,8 +222,7 @@ def _open_lines(
         yield f"# Nothing was found for `{name}` ({what}):"
     yield f"# [bind.{_key(name)}]"
     for one in [one for _, one in found[:_MOST]] or near:
-        value = f", value = {_text(one.value)}" if one.value else ""
-        yield f"# topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
+        yield f"# {_place(one, ranges)}"
     if not found and not near:
         yield '# topic = "…"'
         yield '# value = "…"'

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import opened
 from rvmon.readers.recording import can_be_read_again
-from rvmon.readers.source import Source
+from rvmon.readers.source import Source, pieces_up_to
 from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
 from rvmon.spec.checked.classify import subformulas
@@ -53,9 +53,7 @@ class Remembered:
         """What was read of it up to an instant; `None`: there was more than is remembered."""
         if self._left < 0:
             return None
-        from rvmon.readers.held import pieces_up_to  # which imports NumPy
-
-        return pieces_up_to(self._pieces, end)
+        return list(pieces_up_to(self._pieces, end))
 
 
 MOST_LATE = 1000

@@ -22,8 +22,8 @@ from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.errors import RvmonError
 from rvmon.monitor.missing import expect_names
 from rvmon.readers.batch import Batch
-from rvmon.readers.held import HeldRecording, pieces_up_to
-from rvmon.readers.source import Source
+from rvmon.readers.held import HeldRecording
+from rvmon.readers.source import Source, pieces_up_to
 from rvmon.report.changes import changes_of
 from rvmon.report.tracks import tracks_of
 from rvmon.report.wording import value_text
@@ -83,7 +83,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
 
     report = spec.judge(Source(recording, until, is_cut=is_cut, shown=kept), only=[name])
     if is_cut and until is not None:
-        pieces = pieces_up_to(pieces, until)
+        pieces = list(pieces_up_to(pieces, until))
     samples = HeldRecording(pieces, recording.outages)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]

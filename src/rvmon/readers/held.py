@@ -11,15 +11,6 @@ from rvmon.readers.batch import Batch
 from rvmon.trace.sample import Outage, Sample
 
 
-def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> list[Batch | Sample]:
-    """Pieces of a recording up to an instant, ticks."""
-    return [
-        piece if isinstance(piece, Sample) else piece.up_to(end)
-        for piece in pieces
-        if not isinstance(piece, Sample) or piece.t <= end
-    ]
-
-
 class HeldRecording(Sequence[Sample]):
     """The samples of a recording; those of columns take a tenth of the memory of samples.
 

@@ -70,19 +70,22 @@ class Source:
         if read is None or self.read is not iter:
             yield from self.samples()
             return
-        until = self.until if self.is_cut else None
-        for piece in self.shown(read()):
-            if until is None:
-                yield piece
-            elif isinstance(piece, Sample):
-                if piece.t > until:
-                    return
-                yield piece
-            else:
-                own = piece.up_to(until)
-                yield own
-                if len(own.times) < len(piece.times):
-                    return
+        pieces, is_cut = self.shown(read()), self.is_cut and self.until is not None
+        yield from pieces_up_to(pieces, self.until or 0) if is_cut else pieces
+
+
+def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> Iterator[Batch | Sample]:
+    """Pieces of a recording up to an instant (ticks); those behind it are not read."""
+    for piece in pieces:
+        if isinstance(piece, Sample):
+            if piece.t > end:
+                return
+            yield piece
+        else:
+            own = piece.up_to(end)
+            yield own
+            if len(own.times) < len(piece.times):
+                return
 
 
 class SchemaArguments(TypedDict, total=False):

@@ -43,22 +43,13 @@ def field_of(text: str) -> Field | None:
     return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
 
 
-def fields_in(term: Term | None) -> Iterator[Field | Elements]:
-    """The fields of numbers and truth values that a term reads, or the one that it is."""
+def _fields_in(term: Term, sign: str = "") -> Iterator[tuple[Field | Elements, bool]]:
+    """The fields that a term reads, and whether the text of each is read as a number."""
     if isinstance(term, Field | Elements):
-        yield term
-    elif isinstance(term, Applied) and term.sign != "number":
+        yield term, sign == "number"
+    elif isinstance(term, Applied):
         for arg in term.args:
-            yield from fields_in(arg)
-
-
-def texts_in(term: Term) -> Iterator[Field]:
-    """The fields whose text is read as a number."""
-    if isinstance(term, Applied):
-        for arg in term.args:
-            if term.sign == "number" and isinstance(arg, Field):
-                yield arg
-            yield from texts_in(arg)
+            yield from _fields_in(arg, term.sign)
 
 
 def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
@@ -95,16 +86,15 @@ def expect_kinds(
     Raises:
         TraceError: a field is not there, or holds something else.
     """
-    for text in texts_in(term):
-        if kind_of(text, topic) not in (None, Kind.LABEL):
-            raise TraceError(
-                f"`{name}`: `{text}` of topic {topic.name} ({topic.type}) is no text, and `number` "
-                "reads one: leave it out"
-            )
-    for field in fields_in(term):
+    for field, is_text in _fields_in(term):
         found = kind_of(field, topic)
-        if found is None:
+        if found is None or (is_text and found is Kind.LABEL):
             continue
+        if is_text:
+            raise TraceError(
+                f"`{name}`: `{field}` of topic {topic.name} ({topic.type}) is no text, and "
+                "`number` reads one: leave it out"
+            )
         fix = ""
         if kind is Kind.LABEL and isinstance(term, Field):
             fits = bool(labels) or found is Kind.LABEL
