@@ -9,23 +9,41 @@ from dataclasses import replace
 from heapq import merge
 from itertools import takewhile
 from operator import attrgetter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Protocol
 
 from rvmon.errors import TraceError
 from rvmon.readers.places import name_of, named_errors
 from rvmon.readers.rows import Row, Rows
-from rvmon.trace.sample import Health, Outage, Sample
+from rvmon.trace.sample import Health, Outage, Recording, Sample
 from rvmon.trace.schema import BY_NAME, Schema
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
-    from rvmon.readers.columns import TableRecording
-    from rvmon.readers.recording import FileRecording
-
-File: TypeAlias = "FileRecording | TableRecording"
 
 _FEW = 64
 """Fewer rows are joined one by one."""
+
+
+class File(Recording, Protocol):
+    """One of the files, or tables."""
+
+    path: str
+    ignored: Counter[str]
+    rows: Rows
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns that nothing is declared for."""
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost."""
+
+    def parts(self) -> Iterator[Batch | Sample]:
+        """It in order, rows as columns where it has such; there may be none."""
+
+    def doubts(self) -> list[Health]:
+        """What is odd about it."""
 
 
 class Joined:
