@@ -35,7 +35,6 @@ from tests.tools.build import (
 from tests.tools.compare import differences
 from tests.tools.differential import (
     campaign,
-    decided_on_bound,
 )
 from tests.tools.drive import drive
 from tests.tools.health import expected_health, health_differences
@@ -87,19 +86,6 @@ class Echo:
         return new
 
 
-def changed(report: Report, **fields: object) -> Report:
-    """The report with its first decided attempt changed."""
-    first, *others = report.attempts
-    attempts = [replace(first, **fields), *others]  # type: ignore[arg-type]
-    return report_of(tuple(report.verdicts), attempts, end=report.end)
-
-
-def refolded(report: Report, attempts: Sequence[Attempt]) -> Report:
-    """A report of other attempts on the same run."""
-    incomplete = [name for name, v in report.verdicts.items() if v is Verdict.INCONCLUSIVE]
-    return report_of(tuple(report.verdicts), attempts, incomplete=incomplete, end=report.end)
-
-
 class LateDeadline(Echo):
     """Wrong by one tick where a deadline is missed."""
 
@@ -116,7 +102,8 @@ class LateDeadline(Echo):
             else a
             for a in report.attempts
         ]
-        return refolded(report, attempts)
+        incomplete = [name for name, v in report.verdicts.items() if v is Verdict.INCONCLUSIVE]
+        return report_of(tuple(report.verdicts), attempts, incomplete=incomplete, end=report.end)
 
 
 class Silent(Echo):
@@ -139,13 +126,6 @@ class Gullible(Echo):
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
         return [] if t_ns < self.floor and not values else super().step_ns(t_ns, values)
-
-
-class Forgetful(Echo):
-    """Knows nothing of what is open, and expects nothing."""
-
-    open: Sequence[Attempt] = ()
-    next_due = None
 
 
 def found_in(make: type[Echo], pairs: int = 60) -> Sequence[str]:
@@ -177,21 +157,29 @@ def test_a_wrong_monitor_is_found(make: type[Echo], said: str) -> None:
         assert shown.count("requirement ") == 1
 
 
-def test_open_attempts_and_their_dues_are_looked_at() -> None:
-    """What is open is compared, and what time alone decided had to be due."""
-    case = Case(spec_of(requirement(eventually(p, 0, 3))), (*timeline(p="0"), 4), 4)
-    [found] = online_differences(Judgement(case), Forgetful(case))
-    assert found == "action 1 leaves open [('R', False, 1, 0)], shown are []"
+def test_open_attempts_are_looked_at() -> None:
+    """What is open is compared, what time alone decided had to be due, forecasts come true."""
 
-    class Unexpecting(Echo):
-        next_due = None
+    class Showing(Echo):
+        next_due: int | None = None
+        fields: Mapping[str, Any] | None = None
 
         @property
         def open(self) -> Sequence[Attempt]:
-            return [replace(a, deadline=3) for a in judge(self.case).attempts if a.decided is None]
+            left = [one for one in judge(self.case).attempts if one.decided is None]
+            return [] if self.fields is None else [replace(one, **self.fields) for one in left]
 
-    [found] = online_differences(Judgement(case), Unexpecting(case))
-    assert "but due was None" in found
+    def told(row: str, then: Sequence[int], due: int | None, **fields: Any) -> str:
+        actions = (*timeline(p=row), *then)
+        case = Case(spec_of(requirement(eventually(p, 0, 3))), actions, *then)
+        monitor = Showing(case)
+        monitor.next_due, monitor.fields = due, fields or None
+        [found] = online_differences(Judgement(case), monitor)
+        return found
+
+    assert told("0", [4], None) == "action 1 leaves open [('R', False, 1, 0)], shown are []"
+    assert "but due was None" in told("0", [4], None, deadline=3)
+    assert told("01", [], 1, forecast=Verdict.FAIL, deadline=3).endswith("F was forecast")
 
 
 def test_a_finished_run_stays_finished() -> None:
@@ -202,25 +190,6 @@ def test_a_finished_run_stays_finished() -> None:
     monitor = Spec(case.spec).monitor()
     report, _ = drive(monitor, case)
     assert differences_after_end(case, monitor, report) == []
-
-
-def test_forecasts_have_to_come_true() -> None:
-    """What is said to fail for sure must not pass."""
-
-    class Prophet(Echo):
-        next_due = 1
-
-        @property
-        def open(self) -> Sequence[Attempt]:
-            return [
-                replace(a, forecast=Verdict.FAIL, deadline=3)
-                for a in judge(self.case).attempts
-                if a.decided is None
-            ]
-
-    case = Case(spec_of(requirement(eventually(p, 0, 3))), timeline(p="01"))
-    [found] = online_differences(Judgement(case), Prophet(case))
-    assert found.endswith("F was forecast")
 
 
 def test_input_health_is_compared() -> None:
@@ -263,34 +232,28 @@ def test_what_was_seen_is_compared() -> None:
         assert seen.differences(replace(report, attempts=(bad,)))
 
 
-@pytest.mark.parametrize(
-    ("field", "value"),
-    [
-        ("triggered", 7),
-        ("decided", 7),
-        ("verdict", Verdict.FAIL),
-        ("decision", Decision.POLICY),
-        ("number", 7),
-    ],
-)
-def test_differences(field: str, value: object) -> None:
-    """Every field that engines have to agree on is compared."""
-    report = judge(Case(spec_of(requirement(p, upon=e)), timeline(p="1", e=".1.1")))
-    assert differences(report, report) == []
-    assert differences(report, changed(report, **{field: value})) != []
-
-
-def test_differences_see_missing_attempts_and_order() -> None:
-    """A missing attempt, a missing requirement and another order are differences."""
+def test_differences() -> None:
+    """Every field that engines have to agree on; what is missing, twice, or in another order."""
     spec = spec_of(requirement(p, upon=e), requirement(p, name="S"))
     report = judge(Case(spec, timeline(p="1", e=".1.1")))
-    fewer = report_of(tuple(report.verdicts), report.attempts[1:])
+    names, (first, *others) = tuple(report.verdicts), report.attempts
+    assert differences(report, report) == []
+    for fields in (
+        {"triggered": 7},
+        {"decided": 7},
+        {"verdict": Verdict.FAIL},
+        {"decision": Decision.POLICY},
+        {"number": 7},
+    ):
+        changed = report_of(names, [replace(first, **fields), *others], end=report.end)  # type: ignore[arg-type]
+        assert differences(report, changed) != []
+    fewer = report_of(names, others)
     assert any("got None" in line for line in differences(report, fewer))
     without = report_of(("R",), [a for a in report.attempts if a.requirement == "R"])
     assert "S: verdict P, got none" in differences(report, without)
     backwards = replace(report, attempts=report.attempts[::-1])
     assert "in the order" in differences(report, backwards)[0]
-    twice = replace(report, attempts=(*report.attempts, report.attempts[-1]))
+    twice = replace(report, attempts=(*report.attempts, first))
     assert differences(report, twice) != []
 
 
@@ -309,16 +272,6 @@ def test_shrinking_ends_at_the_least() -> None:
     assert small.end is None
     text = show_case(small)
     assert "then false" in text or "then p" in text
-
-
-def test_on_bound() -> None:
-    """Decided on a bound is: at b or b + 1 of a window that begins at the trigger."""
-    spec = spec_of(requirement(eventually(p, 1, 3)))
-    at = {
-        row: decided_on_bound(spec, judge(Case(spec, timeline(p=row))).attempts[0])
-        for row in ("0.1", "0..1", "0...1", "0")
-    }
-    assert at == {"0.1": False, "0..1": True, "0...1": True, "0": False}
 
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:
