@@ -17,7 +17,7 @@ def longest(loop, rounds):
     timing = timing_of(loop * rounds, universe(DIM))
     if timing is None:
         return None
-    longest = float(timing.bounds[0, len(loop) * rounds])
+    longest = float(timing.relation((0, len(loop) * rounds))[0, 1])
     return longest if longest == inf else -(-longest // timing.scale)
 
 
