@@ -24,6 +24,8 @@ def joined(intervals: Any) -> NDArray[np.int64]:
     [[1, 4], [6, 7]]
     """
     found = np.asarray(intervals, np.int64).reshape(-1, 2)
+    if len(found) < 2:
+        return found
     apart = np.ones(len(found) + 1, np.bool_)
     apart[1:-1] = found[1:, 0] > found[:-1, 1] + 1
     if apart.all():
@@ -37,9 +39,11 @@ def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
     [[3, 4], [6, 6]]
     """
-    first = np.searchsorted(spans[:, 1], low)
-    stop = np.searchsorted(spans[:, 0], high, "right")
-    return np.clip(spans[first:stop], low, high)
+    found = spans[spans[:, 1].searchsorted(low) : spans[:, 0].searchsorted(high, "right")].copy()
+    if len(found):
+        found[0, 0] = max(found[0, 0], low)
+        found[-1, 1] = min(found[-1, 1], high)
+    return found
 
 
 def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
@@ -48,9 +52,10 @@ def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> outside(joined([(2, 3)]), 0, 5).tolist()
     [[0, 1], [4, 5]]
     """
-    firsts = np.concatenate(([low], spans[:, 1] + 1))
-    lasts = np.concatenate((spans[:, 0] - 1, [high]))
-    return np.column_stack((firsts, lasts))[firsts <= lasts]
+    found = np.empty((len(spans) + 1, 2), np.int64)
+    found[0, 0], found[1:, 0] = low, spans[:, 1] + 1
+    found[:-1, 1], found[-1, 1] = spans[:, 0] - 1, high
+    return found[found[:, 0] <= found[:, 1]]
 
 
 def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:
