@@ -118,9 +118,7 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
         place = clock + 1
         if not differences or greatest == NEVER:
             apart.append(place)
-        # The last age of a region is kept: the next position is certainly in another region.
-        wide = greatest - least >= _NARROW and low < greatest
-        if wide or (low < high and not differences):
+        if _is_wide(least, greatest, low) or (low < high and not differences):
             found[0][place], found[place][0] = -least, greatest
     together = [place for place in range(1, len(ages)) if place not in apart]
     for place in together:
@@ -132,6 +130,21 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
                 found[place][other] = _plus(found[place][0], found[0][other])
                 found[other][place] = _plus(found[other][0], found[0][place])
     return tuple(map(tuple, found))
+
+
+def _is_wide(least: int, greatest: int, age: int) -> bool:
+    # The last age of a region is kept: the next position is certainly in another region.
+    return greatest - least >= _NARROW and age < greatest
+
+
+def alike(age: int, cuts: Sequence[int]) -> int:
+    """A number that all ages of an only clock share whose points are widened to the same zone.
+
+    >>> [alike(age, [20]) for age in (0, 7, 18, 19, 20, 99)] == [0, 0, 0, -20, 1, 1]
+    True
+    """
+    region = bisect_right(cuts, age)
+    return region if _is_wide(*region_bounds(cuts, region), age) else -1 - age
 
 
 def _plus(one: int, other: int) -> int:

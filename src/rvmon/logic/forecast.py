@@ -12,7 +12,7 @@ components for emptiness, after Couvreur 1999.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -22,6 +22,7 @@ from rvmon.logic.clock_regions import (
     Ages,
     Cuts,
     after,
+    alike,
     bounds,
     point_zone,
     projected,
@@ -57,6 +58,7 @@ class Forecaster:
     def __init__(self) -> None:
         self.duals = Duals()
         self._known: dict[tuple[Start, int | None], bool] = {}
+        self._values: dict[tuple[Residual, Hashable, int | None], bool | None] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         """The value of a residual under all continuations; `None` if they differ.
@@ -73,6 +75,14 @@ class Forecaster:
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
+        key = residual, class_of(residual, ages, gap), gap
+        if key not in self._values:
+            if len(self._values) > _MOST_KNOWN:
+                self._values.clear()
+            self._values[key] = self._found(residual, ages, gap)
+        return self._values[key]
+
+    def _found(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         if not self.admits(self.duals.affirmed(residual), ages, gap):
             return False
         try:
@@ -159,6 +169,15 @@ def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start 
     search = _Search(gap, differences=True)
     known = point_zone([age // search.unit for age in ages])
     return tuple(search.state(clause, known) for clause in residual)
+
+
+def class_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Hashable:
+    """What all ages share that certainly have the same future; arguments as of `start_of`."""
+    search = _Search(gap, differences=True)
+    cuts = search.cuts(residual)
+    if len(ages) != 1 or len(cuts) != 1:
+        return tuple(ages)
+    return alike(ages[0] // search.unit, cuts[0])
 
 
 def is_satisfiable(start: Start, gap: int | None) -> bool:

@@ -156,9 +156,10 @@ class MachineRuns:
         lasting = longer(compiled.obligation.required, attempt.triggered, end)
         waiting = still_required(required, end, attempt.origin)
         reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
-        alone = (self._alone(attempt.worse), self._alone(attempt.better))
+        worse = self._alone(attempt.worse)
+        better = worse if attempt.better == attempt.worse else self._alone(attempt.better)
         return Explanation(
-            reason, required, deadline=earlier(*alone, cannot_pass=attempt.cannot_pass)
+            reason, required, deadline=earlier(worse, better, cannot_pass=attempt.cannot_pass)
         )
 
     def _alone(self, token: Token) -> tuple[int, bool] | None:

@@ -66,6 +66,33 @@ def test_a_window_without_a_position_asks_for_nothing(time, forecast):
     assert (attempt.forecast and attempt.forecast.value) == forecast
 
 
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(within 51 ns p) and always[18 ns, 48 ns] not p",
+        "(eventually[9 ns, 19 ns] p) and always[19 ns, 48 ns] not p",
+        "(eventually[9 ns, 51 ns] p) or always[18 ns, 48 ns] not p",
+    ],
+)
+def test_attempts_of_all_ages_are_forecast_as_each_alone(formula, time):
+    """Ages of one class are forecast together: by no more than what they have in common."""
+    if "every" in time:  # bounds are whole periods
+        formula = formula.replace("19", "21")
+    text = HEAD.format(time, formula).replace("upon start", "upon q")
+    instants = range(0, 69, 6)
+
+    def forecasts(*triggers):
+        rows = [(t / 1e9, {"p": False, "q": t in triggers}) for t in range(0, 69, 3)]
+        found = loads(text).evaluate(rows).attempts
+        return {one.triggered: one.forecast for one in found if one.forecast}
+
+    alone = {}
+    for t in instants:
+        alone |= forecasts(t)
+    assert forecasts(*instants) == alone
+
+
 def test_a_forecast_is_no_verdict():
     """The report keeps `I`, and the forecast beside it."""
     spec = loads(HEAD.format("held", "(within 3 s p) and for 5 s not p"))
