@@ -9,13 +9,13 @@ from typing import NoReturn
 
 import pytest
 
-from tests.budget import Budget
+from tests.seconds import Seconds
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Have the seconds of each folder added up where the results arrive."""
     if not hasattr(config, "workerinput"):
-        config.pluginmanager.register(Budget())
+        config.pluginmanager.register(Seconds())
 
 
 _MARK_OF_FIXTURE = {
