@@ -159,36 +159,42 @@ class Report:
         Args:
             requirements: `Spec.requirements`, to include severity and tags.
         """
-        from rvmon.verdict.report_json import encode, encoded, labels, record
+        from rvmon.verdict.report_json import encoded, labels, packed
 
-        texts = ((one.requirement, record(one)) for one in self.attempts)
-        return encode(
-            {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
+        attempts: dict[str, list[object]] = {name: [] for name in self.verdicts}
+        for one in self.attempts:
+            attempts[one.requirement].append(packed(one))
+        found = {"goals": self.goals, "illegal": self.illegal, "coverage": self.coverage}
+        return encoded(
             {
-                name: (verdict, self._rest_of(name) | labels((requirements or {}).get(name)))
-                for name, verdict in self.verdicts.items()
-            },
-            ((name, encoded(shown)) for name, shown in texts),
-            {
+                "law": self.law,
+                "trace": self.trace,
+                "origin": self.origin,
+                "end": self.end,
+                "requirements": {
+                    name: {
+                        "verdict": verdict,
+                        "attempts": attempts[name],
+                        **self._rest_of(name),
+                        **labels((requirements or {}).get(name)),
+                    }
+                    for name, verdict in self.verdicts.items()
+                },
                 "health": self.health,
-                **({"goals": self.goals} if self.goals else {}),
-                **({"illegal": self.illegal} if self.illegal else {}),
-                **({"coverage": self.coverage} if self.coverage else {}),
-            },
+                **{name: some for name, some in found.items() if some},
+            }
         )
 
     def _rest_of(self, requirement: str) -> dict[str, object]:
         """The JSON members of a requirement that follow its attempts."""
-        rest: dict[str, object] = {"counts": self.counts[requirement]}
-        if self.dropped.get(requirement):
-            rest["dropped"] = self.dropped[requirement]
-        if requirement in self.misses:
-            rest["nearest_miss"] = self.misses[requirement]
-        if self.late.get(requirement):
-            rest["late"] = self.late[requirement]
-        if self.values.get(requirement):
-            rest["values"] = self.values[requirement]
-        return rest
+        found = {
+            "dropped": self.dropped,
+            "nearest_miss": self.misses,
+            "late": self.late,
+            "values": self.values,
+        }
+        rest = {name: own[requirement] for name, own in found.items() if own.get(requirement)}
+        return {"counts": self.counts[requirement], **rest}
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Report:

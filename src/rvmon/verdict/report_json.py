@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -22,6 +22,11 @@ _ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
 """Keys that every attempt has in JSON; others are omitted if empty."""
 
 _UNLESS_EMPTY = ("at_trigger", "at_decision", "required", "captured", "blame", "forecast")
+
+
+def packed(attempt: Attempt) -> msgspec.Raw:
+    """The `record` of an attempt as text within JSON: of many, the objects would take much more."""
+    return msgspec.Raw(msgspec.json.encode(record(attempt)))
 
 
 def record(attempt: Attempt) -> dict[str, object]:
@@ -79,46 +84,6 @@ class ReportJson(msgspec.Struct):
     goals: dict[str, Verdict] = {}
     illegal: tuple[IllegalHit, ...] = ()
     coverage: tuple[CoveredGroup, ...] = ()
-
-
-def encode(
-    head: Mapping[str, object],
-    requirements: Mapping[str, tuple[Verdict, Mapping[str, object]]],
-    attempts: Iterable[tuple[str, str]],
-    tail: Mapping[str, object],
-) -> str:
-    """Write a report as JSON text.
-
-    Args:
-        head: the members before the requirements; not empty.
-        requirements: by id, the verdict and the members after the attempts; not empty.
-        attempts: the requirement and the JSON text of each attempt.
-        tail: the members after the requirements; not empty.
-    """
-    texts: dict[str, list[str]] = {name: [] for name in requirements}
-    for name, text in attempts:
-        texts[name].append(text)
-    # Assembled from pieces: the attempts may take many megabytes, which are copied only once.
-    return "".join(_document(head, requirements, texts, tail))
-
-
-def _document(
-    head: Mapping[str, object],
-    requirements: Mapping[str, tuple[Verdict, Mapping[str, object]]],
-    texts: Mapping[str, Sequence[str]],
-    tail: Mapping[str, object],
-) -> Iterator[str]:
-    """The parts of a report's text, in order."""
-    yield f'{encoded(head)[:-1]},"requirements":{{'
-    for number, (name, (verdict, rest)) in enumerate(requirements.items()):
-        comma = "," if number else ""
-        yield f'{comma}{encoded(name)}:{{"verdict":{encoded(verdict)},"attempts":['
-        for place, text in enumerate(texts[name]):
-            if place:
-                yield ","
-            yield text
-        yield f"],{encoded(rest)[1:]}"
-    yield f"}},{encoded(tail)[1:]}"
 
 
 def labels(requirement: Requirement | None) -> dict[str, object]:
