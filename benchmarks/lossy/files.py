@@ -11,10 +11,7 @@ from typing import Any
 
 from benchmarks.lossy.live import damaged, one_by_one
 from benchmarks.lossy.trial import Door, Trial, Verdicts
-from tests.tools.doors import Content, content_of
-from tests.tools.doors import _arrow as arrow_of
-from tests.tools.doors import _csv as written_csv
-from tests.tools.doors import _json_lines as written_json
+from tests.tools.doors import Content, arrow_of, content_of, written_csv, written_json
 
 from rvmon.errors import TraceError
 from rvmon.session import Spec

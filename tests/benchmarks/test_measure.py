@@ -52,17 +52,14 @@ def test_turns() -> None:
 
 def test_slow_contender_gets_fewer_rows() -> None:
     """Who is slow gets as many rows as fit into the time, and never less than a few."""
-    result = measure(WORKLOAD, [Fake("a", 10_000_000, [])], 1, 1.0)
-    assert result.figures[0].rows == 100
-    result = measure(WORKLOAD, [Fake("a", 1_000_000_000, [])], 1, 1.0)
-    assert result.figures[0].rows == 50
+    for per_row, rows in ((10_000_000, 100), (1_000_000_000, 50)):
+        assert measure(WORKLOAD, [Fake("a", per_row, [])], 1, 1.0).figures[0].rows == rows
 
 
 def test_refusal() -> None:
     """Who cannot take part is named with the reason."""
     result = measure(WORKLOAD, [Fake("a", 10, [], "no past")], 1, 1.0)
-    assert result.figures == ()
-    assert result.refusals == (("a", "no past"),)
+    assert (result.figures, result.refusals) == ((), (("a", "no past"),))
 
 
 def test_changing() -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
+import pytest
 from benchmarks.page import Findings, render
 from benchmarks.timing.agreement import Agreement
 from benchmarks.timing.measure import Figure, Result
@@ -24,50 +27,43 @@ STEP = "| online, one step from Python | rvmon step |"
 GOAL = "≥ 8.0×, least ≥ 5.0×"
 
 
+AGAIN = replace(RESULT, name="AbsentAQ 100", figures=(replace(OURS, median=200.0), REELAY))
+
+
 def line(page: str, start: str) -> str:
     """The line of a page that starts so, and is about reelay if it is of the goals."""
     found = [text for text in page.splitlines() if text.startswith(start)]
     return next((text for text in found if "| reelay |" in text), found[0])
 
 
-def test_ratio_with_agreement() -> None:
-    """A goal shows the peer's time over ours, and whether that is enough."""
-    goal = line(render(FINDINGS), STEP)
-    assert goal == f"{STEP} 100 ns | reelay | 900 ns | 1 | 9.0× (9.0× to 9.0×) | {GOAL} | yes |"
-
-
-def test_no_ratio_without_agreement() -> None:
-    """Where verdicts were not compared, or differed, there is no ratio."""
-    for agreements in ((), (replace(ALIKE, equal=299),)):
-        page = render(replace(FINDINGS, agreements=agreements))
-        assert "not measured" in line(page, STEP)
-
-
-def test_no_ratio_with_other_violation() -> None:
-    """Where the timed passes found another first violation, there is no ratio."""
-    other = replace(RESULT, figures=(OURS, replace(REELAY, violated=(500,))))
-    page = render(replace(FINDINGS, results=(other,)))
-    assert "not measured" in line(page, STEP)
-
-
-def test_missed_goal() -> None:
-    """A goal that is missed is said to be missed."""
-    slow = replace(RESULT, figures=(replace(OURS, median=600.0), REELAY))
-    page = render(replace(FINDINGS, results=(slow,)))
-    assert f"| 1.5× (1.5× to 1.5×) | {GOAL} | no |" in page
-
-
-def test_one_workload_misses_a_goal() -> None:
-    """The least ratio counts as much as the median."""
-    slow = replace(RESULT, name="AbsentAQ 100", figures=(replace(OURS, median=200.0), REELAY))
-    page = render(
-        replace(
-            FINDINGS,
-            results=(RESULT, RESULT, slow),
-            agreements=(ALIKE, replace(ALIKE, name="AbsentAQ 100")),
-        )
-    )
-    assert f"| 3 | 9.0× (4.5× to 9.0×) | {GOAL} | no |" in page
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({}, f"{STEP} 100 ns | reelay | 900 ns | 1 | 9.0× (9.0× to 9.0×) | {GOAL} | yes |"),
+        # Verdicts that were not compared, or differ; another first violation in the timed passes.
+        ({"agreements": ()}, "not measured"),
+        ({"agreements": (replace(ALIKE, equal=299),)}, "not measured"),
+        (
+            {"results": (replace(RESULT, figures=(OURS, replace(REELAY, violated=(500,)))),)},
+            "not measured",
+        ),
+        (
+            {"results": (replace(RESULT, figures=(replace(OURS, median=600.0), REELAY)),)},
+            f"| 1.5× (1.5× to 1.5×) | {GOAL} | no |",
+        ),
+        # The least ratio counts as much as the median.
+        (
+            {
+                "results": (RESULT, RESULT, AGAIN),
+                "agreements": (ALIKE, replace(ALIKE, name="AbsentAQ 100")),
+            },
+            f"| 3 | 9.0× (4.5× to 9.0×) | {GOAL} | no |",
+        ),
+    ],
+)
+def test_goals(changes: Mapping[str, Any], told: str) -> None:
+    """A peer's time over ours, where both say the same, and whether that is enough."""
+    assert told in line(render(replace(FINDINGS, **changes)), STEP)
 
 
 def test_tables() -> None:
@@ -78,16 +74,19 @@ def test_tables() -> None:
     assert "| 1,000 | 25 % | 100 ns (90 ns–130 ns) | 900 ns (880 ns–950 ns), 50 rows |" in row
 
 
-def test_tables_of_other_sections() -> None:
-    """What is no race stands below a title of its own."""
-    page = render(replace(FINDINGS, tables=(("Whole files", ("| a |", "|---|")),)))
-    assert "## Whole files\n\n| a |\n|---|\n" in page
-
-
-def test_absent() -> None:
-    """What was not measured is named with its reason."""
-    page = render(replace(FINDINGS, absent={"mstlo-python": "no wheel"}))
-    assert "* Not measured: mstlo-python: no wheel" in page
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        (
+            {"tables": (("Whole files", ("| a |", "|---|")),)},
+            "## Whole files\n\n| a |\n|---|\n",
+        ),
+        ({"absent": {"mstlo-python": "no wheel"}}, "* Not measured: mstlo-python: no wheel"),
+    ],
+)
+def test_further(changes: Mapping[str, Any], told: str) -> None:
+    """What is no race stands below a title of its own; what was not measured has its reason."""
+    assert told in render(replace(FINDINGS, **changes))
 
 
 def test_disagreement_is_named() -> None:

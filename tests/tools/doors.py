@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,8 @@ from rvmon.readers import parquet, places
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate import Rng, chance
 from rvmon.testing.generate.trace import Case
-from rvmon.trace.sample import HealthKind, Value
+from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
-from rvmon.verdict.report import Report
 
 NAN = float("nan")
 ABSENT = "gone"
@@ -140,13 +139,13 @@ Door = Callable[[Content, Path], tuple[Any, dict[str, Any]]]
 def doors() -> dict[str, Door]:
     """All that can be opened here, by name: Arrow, pandas and polars need their packages."""
     found: dict[str, Door] = {
-        "CSV": lambda content, folder: (_csv(content, folder, ""), {}),
+        "CSV": lambda content, folder: (written_csv(content, folder, ""), {}),
         "CSV, absent cells named": lambda content, folder: (
-            _csv(content, folder, ABSENT),
+            written_csv(content, folder, ABSENT),
             {"no_update": ABSENT},
         ),
         "JSON lines": lambda content, folder: (
-            _json_lines(content, folder),
+            written_json(content, folder),
             {"sources": content.sources},
         ),
         "pairs": lambda content, _: (
@@ -161,8 +160,8 @@ def doors() -> dict[str, Door]:
         "arrays": lambda content, _: (_arrays(content), {}),
     }
     if find_spec("pyarrow"):
-        found["Arrow"] = lambda content, _: (_arrow(content), {})
-        found["Arrow stream"] = lambda content, _: (_Stream(_arrow(content)), {})
+        found["Arrow"] = lambda content, _: (arrow_of(content), {})
+        found["Arrow stream"] = lambda content, _: (_Stream(arrow_of(content)), {})
         found["Parquet"] = lambda content, folder: (_parquet(content, folder), {})
     if find_spec("pandas"):
         found["pandas"] = lambda content, _: (_pandas(content), {})
@@ -176,7 +175,7 @@ def _lists(content: Content, absent: Any) -> dict[str, list[Any]]:
     return {"t_ns": [t for t, _ in content.rows], **columns}
 
 
-def _csv(content: Content, folder: Path, absent: str) -> Path:
+def written_csv(content: Content, folder: Path, absent: str) -> Path:
     path = folder / "a.csv"
     lists = _lists(content, absent)
     with path.open("w", newline="") as file:
@@ -199,7 +198,7 @@ def _lines(content: Content) -> Iterator[tuple[int, dict[str, Any]]]:
         yield t, values
 
 
-def _json_lines(content: Content, folder: Path) -> Path:
+def written_json(content: Content, folder: Path) -> Path:
     path = folder / "a.jsonl"
     lines = (json.dumps({"t_ns": t, **values}) for t, values in _lines(content))
     path.write_text("".join(f"{line}\n" for line in lines))
@@ -230,7 +229,7 @@ def _arrays(content: Content) -> dict[str, Any]:
     return found
 
 
-def _arrow(content: Content) -> Any:
+def arrow_of(content: Content) -> Any:
     import pyarrow
 
     types = {
@@ -261,7 +260,7 @@ def _parquet(content: Content, folder: Path) -> Path:
     from pyarrow import parquet
 
     path = folder / "a.parquet"
-    parquet.write_table(_arrow(content), path)
+    parquet.write_table(arrow_of(content), path)
     return path
 
 
@@ -281,28 +280,7 @@ def _pandas(content: Content) -> Any:
 def _polars(content: Content) -> Any:
     import polars
 
-    return polars.from_arrow(_arrow(content))
-
-
-def bare(report: Report) -> tuple[object, ...]:
-    """Verdicts, records without reasons, and input health.
-
-    Of what no requirement reads the core does not tell that it went stale. The hint that unknown
-    values alternate with known ones is of rows, before those of equal stamps are merged.
-    """
-    attempts = [
-        (
-            *(one.requirement, one.number, one.in_doubt, one.triggered, one.decided),
-            *(one.verdict, one.decision, dict(one.captured)),
-        )
-        for one in report.attempts
-    ]
-    told = [
-        replace(one, remark="") if one.kind is HealthKind.NAN else one
-        for one in report.health
-        if one.kind is not HealthKind.STALE or one.requirements
-    ]
-    return dict(report.verdicts), attempts, told, report.origin, report.end, dict(report.counts)
+    return polars.from_arrow(arrow_of(content))
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import pyarrow
 import pytest
 from pyarrow import parquet
 from tests.tools.differential import cases_of
-from tests.tools.doors import bare, content_of, doors, in_pieces, whole
+from tests.tools.doors import content_of, doors, in_pieces, whole
 
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
@@ -17,6 +17,7 @@ from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.trace.sample import HealthKind
 
 NAN = float("nan")
 BASE = """
@@ -34,6 +35,27 @@ requirement R2
 requirement R3
   always (on or mode == idle)
 """
+
+
+def bare(report):
+    """Verdicts, records without reasons, and input health.
+
+    Of what no requirement reads the core does not tell that it went stale. The hint that unknown
+    values alternate with known ones is of rows, before those of equal stamps are merged.
+    """
+    attempts = [
+        (
+            *(one.requirement, one.number, one.in_doubt, one.triggered, one.decided),
+            *(one.verdict, one.decision, dict(one.captured)),
+        )
+        for one in report.attempts
+    ]
+    told = [
+        replace(one, remark="") if one.kind is HealthKind.NAN else one
+        for one in report.health
+        if one.kind is not HealthKind.STALE or one.requirements
+    ]
+    return dict(report.verdicts), attempts, told, report.origin, report.end, dict(report.counts)
 
 
 def judged(spec, trace, **arguments):
