@@ -59,6 +59,7 @@ class Forecaster:
         self.duals = Duals()
         self._known: dict[tuple[Start, int | None], bool] = {}
         self._values: dict[tuple[Residual, Hashable, int | None], bool | None] = {}
+        self._cuts: dict[tuple[Residual, int | None], Cuts] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         """The value of a residual under all continuations; `None` if they differ.
@@ -75,10 +76,16 @@ class Forecaster:
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
-        key = residual, class_of(residual, ages, gap), gap
+        cuts = self._cuts.get((residual, gap))
+        if cuts is None:
+            cuts = self._cuts[residual, gap] = _Search(gap, differences=True).cuts(residual)
+        # Ages of an only clock that are alike certainly have the same future.
+        is_one = len(ages) == len(cuts) == 1
+        key = residual, alike(ages[0] // (gap or 1), cuts[0]) if is_one else tuple(ages), gap
         if key not in self._values:
             if len(self._values) > _MOST_KNOWN:
                 self._values.clear()
+                self._cuts.clear()
             self._values[key] = self._found(residual, ages, gap)
         return self._values[key]
 
@@ -169,15 +176,6 @@ def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start 
     search = _Search(gap, differences=True)
     known = point_zone([age // search.unit for age in ages])
     return tuple(search.state(clause, known) for clause in residual)
-
-
-def class_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Hashable:
-    """What all ages share that certainly have the same future; arguments as of `start_of`."""
-    search = _Search(gap, differences=True)
-    cuts = search.cuts(residual)
-    if len(ages) != 1 or len(cuts) != 1:
-        return tuple(ages)
-    return alike(ages[0] // search.unit, cuts[0])
 
 
 def is_satisfiable(start: Start, gap: int | None) -> bool:

@@ -35,7 +35,7 @@ def stretches(file: BinaryIO) -> Iterator[bytes]:
         if decoder.getstate()[0] or not piece.isascii():
             decoder.decode(piece)
         whole = piece.rfind(b"\n") + 1 or len(piece)
-        yield tail + piece[:whole]
+        yield b"".join((tail, memoryview(piece)[:whole]))
         tail = piece[whole:]
     decoder.decode(b"", final=True)
     yield tail
