@@ -113,14 +113,10 @@ def judge_campaign(
         checks |= dict(_contradicted(campaign, results.played))
         checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
         for (robot, name), found in decisions.items():
-            if not any(_is_of(why, robot, name) for why in expected):
+            if not any(one.requirement == name and one.robot in ("", robot) for one in expected):
                 share = next(iter(found.values())).share
                 checks[f"{name} {share} ({robot})"] = _undecided(found, strict=strict)
     return CampaignJudgement(tests, checks, results.cut_short)
-
-
-def _is_of(why: ExpectedFailure, robot: str, requirement: str) -> bool:
-    return why.requirement == requirement and why.robot in ("", robot)
 
 
 def _undecided(found: Mapping[str, Decision], *, strict: bool) -> str:
