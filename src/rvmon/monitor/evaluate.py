@@ -179,6 +179,7 @@ class _Run:
         if isinstance(piece, Sample):
             self._run.take(piece)
         else:
+            self._found.expect(len(piece.times))
             for first in range(0, len(piece.times), _ROWS):
                 self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
                 self._found.add(self._run.core.margins())
@@ -210,19 +211,23 @@ class _Positions:
         self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
         self._count = 0
 
-    def add(self, found: NDArray[Any]) -> None:
+    def add(self, found: NDArray[Any], expected: int) -> None:
+        """Add some; about so many are to be expected in all."""
         count = self._count + len(found)
+        if count > len(self._arrays[0]):
+            self._enlarge(max(expected, count + count // 8))
         for own, name in zip(self._arrays, _COLUMNS, strict=True):
-            if count > len(own):
-                own.resize(count + count // 8, refcheck=False)  # nobody else has seen it
             own[self._count : count] = found[name]
         self._count = count
 
+    def _enlarge(self, room: int) -> None:
+        for place, own in enumerate(self._arrays):
+            self._arrays[place] = np.empty(room, own.dtype)  # pages that nobody fills cost nothing
+            self._arrays[place][: self._count] = own[: self._count]
+
     def stream(self) -> Stream:
-        """All of them; nothing can be added behind it."""
-        for own in self._arrays:
-            own.resize(self._count, refcheck=False)
-        return Stream(*self._arrays)
+        """All of them."""
+        return Stream(*(own[: self._count] for own in self._arrays))
 
 
 class RecordedMargins:
@@ -237,6 +242,11 @@ class RecordedMargins:
         self._attempts: dict[Key, Robustness] = {}
         self._doubtful: dict[Key, Robustness] = {}
         self._positions: dict[int, _Positions] = {}
+        self._expected = 0
+
+    def expect(self, rows: int) -> None:
+        """Make ready for the positions of so many more rows."""
+        self._expected += rows
 
     def add(self, found: bytes) -> None:
         """Add figures, given as bytes of dtype `MARGIN`."""
@@ -249,7 +259,7 @@ class RecordedMargins:
         numbers = np.unique(margins["requirement"]).tolist() if several else [0]
         for number in numbers if len(margins) else ():
             own = margins[margins["requirement"] == number] if several else margins
-            self._positions.setdefault(number, _Positions()).add(own)
+            self._positions.setdefault(number, _Positions()).add(own, self._expected)
 
     def _add_attempts(self, margins: NDArray[Any]) -> None:
         for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():

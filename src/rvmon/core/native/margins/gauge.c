@@ -31,7 +31,7 @@ static void empty_steps(margin_steps *s)
 }
 
 /* Begin at a position, of which no letter is known. */
-void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered)
+void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
 {
     int32_t i;
     for (i = 0; i < s->count; i++) {
@@ -53,7 +53,6 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answere
     empty_steps(&g->stamps);
     g->first = first;
     g->read = 0;
-    g->answered = answered;
     g->reported = -INFINITE;
     g->begun = false;
     g->amid = false;
@@ -105,7 +104,6 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
         (void)memcpy(made->letter, g->letter, (size_t)s->plan->measures.count * sizeof *g->letter);
         made->first = g->first;
         made->read = g->read;
-        made->answered = g->answered;
         made->reported = g->reported;
         made->begun = g->begun;
         made->amid = g->amid;
@@ -113,31 +111,20 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
     return done;
 }
 
-/* Tell what a leaf is from some positions on. */
-static void take_leaf(gauging *w, int32_t place, const int64_t *times, int64_t count, const double *values,
-                      double last)
+/* Tell what a leaf is from some positions on: where all are asked for at each, else what is another. */
+static inline void take_leaf(gauging *w, int32_t place, const int64_t *times, int64_t count,
+                             const double *values, double *last)
 {
     margin_steps *s = &w->g->nodes[place].out;
-    const bool first = !w->g->begun;
-    double before = last;
     int64_t k;
-    if (w->sparse && !w->thin
-        && (has_room(s, count) || room_for_steps(w, s, count, oldest_unread(w, place)))) {
-        margin_step *ring = s->ring;
-        const int64_t mask = s->room - 1;
-        const int64_t end = s->end;
-        for (k = 0; k < count; k++) {
-            ring[(end + k) & mask].at = times[k];
-            ring[(end + k) & mask].value = values[k];
-        }
-        s->end = end + count;
-        return;
+    if (w->aligned && (has_room(s, count) || room_for_steps(w, s, count, oldest_unread(w, place)))) {
+        add_steps(s, times, count, values);
     }
-    for (k = 0; k < count; k++) {
-        if (w->sparse || (values[k] != before) || (first && (k == 0))) {
-            before = values[k];
-            tell_step(w, place, times[k], before);
+    for (k = 0; !w->aligned && (k < count); k++) {
+        if (w->sparse || (values[k] != *last) || (!w->g->begun && (k == 0))) {
+            tell_step(w, place, times[k], values[k]);
         }
+        *last = values[k];
     }
 }
 
@@ -146,48 +133,23 @@ static void take_leaf(gauging *w, int32_t place, const int64_t *times, int64_t c
 void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart)
 {
     const margin_shape *s = w->shape;
+    const int32_t measures = s->plan->measures.count;
     int32_t i;
     if (w->sparse) {
         note_positions(w, times, count);
     }
-    for (i = 0; (count > 0) && (i < s->plan->measures.count); i++) {
-        const double *own = &values[(int64_t)i * apart];
+    for (i = 0; i < measures; i++) {
         if (s->leaves[i] >= 0) { /* else it never changes */
-            take_leaf(w, s->leaves[i], times, count, own, w->g->letter[i]);
-            w->g->letter[i] = own[count - 1];
+            take_leaf(w, s->leaves[i], times, count, &values[(int64_t)i * apart], &w->g->letter[i]);
         }
     }
-    w->g->begun = w->g->begun || (count > 0);
+    w->g->begun = true;
 }
 
-/* What is asked for at positions before one has the value that was told last. */
-static inline void answer(gauging *w, int64_t before)
-{
-    gauge *g = w->g;
-    measuring *q = w->q;
-    const double reported = g->reported;
-    const int64_t end = q->asks_end;
-    int64_t number = g->answered;
-    for (; (number < end) && (ask_at(q, number)->position < before); number++) {
-        margin_ask *one = ask_at(q, number);
-        if (w->answers != NULL) {
-            w->answers[number - q->asks_first] = reported;
-        } else if (w->side == 1) {
-            one->high = reported;
-        } else {
-            one->low = reported;
-            one->high = q->parted ? one->high : reported;
-        }
-    }
-    g->answered = number;
-}
-
-/* Let the leaves be known up to a position, and answer what is settled. */
+/* Let the leaves be known up to a position, and find what is settled. */
 void gauge_run(gauging *w)
 {
     const margin_shape *s = w->shape;
-    const int32_t root = s->count - 1;
-    const margin_steps *news = &w->g->nodes[root].out;
     int32_t i;
     for (i = 0; i < s->count; i++) {
         switch (s->nodes[i].kind) {
@@ -197,17 +159,11 @@ void gauge_run(gauging *w)
         default: gauge_join(w, i); break;
         }
     }
-    while (w->g->read < news->end) {
-        answer(w, step_at(news, w->g->read)->at);
-        w->g->reported = step_at(news, w->g->read)->value;
-        w->g->read++;
-    }
-    answer(w, w->g->nodes[root].known + 1);
 }
 
 /* ---- shapes */
 
-/* Which leaves never change and are read beside others alone: nobody has to be told of these. */
+/* Which leaves never change and are read by sweeps beside others alone: nobody has to be told of these. */
 static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
 {
     int32_t i;
@@ -223,7 +179,7 @@ static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
         const int32_t count = s->places[i].edge_count;
         bool all = true;
         for (k = 0; k < count; k++) {
-            all = all && fixed[operands[k]];
+            all = (n->kind == OP_JUNCTION) || (all && fixed[operands[k]]);
         }
         for (k = 0; all && (k < count); k++) {
             fixed[operands[k]] = false;

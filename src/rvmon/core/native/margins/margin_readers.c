@@ -154,12 +154,17 @@ bool margins_make(run *r)
         measuring *q = &r->margins[i];
         const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
         for (k = 0; k < 2; k++) {
-            q->letters[k].low = arena_take(&m->memory, size);
-            q->letters[k].high = arena_take(&m->memory, size);
-            if ((q->letters[k].low == NULL) || (q->letters[k].high == NULL)) {
+            q->letter[k] = arena_take(&m->memory, size);
+            q->behind[k] = arena_take(&m->memory, size);
+            if ((q->letter[k] == NULL) || (q->behind[k] == NULL)) {
                 return false;
             }
         }
+        q->work.monitor = m;
+        q->work.shape = s;
+        q->work.q = q;
+        q->work.step = step_of(r);
+        q->work.sparse = GAP(r) == 0;
         if (!gauge_make(m, s, &q->readings[0])) {
             return false;
         }
@@ -179,9 +184,10 @@ void margins_clear(run *r)
     }
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
-        q->asks_first = 0;
-        q->asks_end = 0;
-        q->letter_count = 0;
+        q->asks.first = q->asks.end = 0;
+        q->told = 0;
+        q->readings[0].stamps.end = 0;
+        q->passes = false;
         q->position = -LIMIT;
         q->active = false;
         q->parted = false;
@@ -190,52 +196,18 @@ void margins_clear(run *r)
     }
 }
 
-/* Make room for so many more positions that are asked for; false: there is none. */
-static bool room_for_asks(rv_monitor *m, measuring *q, int64_t count)
-{
-    margin_ask *made;
-    int64_t room = (q->asks_room > 0) ? q->asks_room : 4;
-    int64_t i;
-    if (q->asks_end - q->asks_first + count <= q->asks_room) {
-        return true;
-    }
-    while (room < q->asks_end - q->asks_first + count) {
-        room *= 2;
-    }
-    made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
-    if (made == NULL) {
-        m->spoilt = true;
-        return false;
-    }
-    for (i = q->asks_first; i < q->asks_end; i++) {
-        made[i & (room - 1)] = *ask_at(q, i);
-    }
-    arena_give(&m->memory, q->asks, (size_t)q->asks_room * sizeof *made);
-    q->asks = made;
-    q->asks_room = (int32_t)room;
-    return true;
-}
-
-/* Ask for positions of which the letters are not given yet. */
-void ask_for(run *r, int32_t index, const int64_t *positions, int64_t count, int32_t record)
+/* Ask for the position at which an attempt begins, up to which nothing was told. */
+void ask_for(run *r, int32_t index, int64_t position, int32_t record)
 {
     measuring *q = &r->margins[index];
-    const bool first = q->asks_end == q->asks_first;
-    int64_t i;
-    if (!room_for_asks(r->home->monitor, q, count)) {
+    const bool first = q->asks.end == q->asks.first;
+    if (!room_for_steps(&q->work, &q->asks, 1, q->asks.first)) {
         return;
     }
-    for (i = 0; i < count; i++) {
-        margin_ask *one = ask_at(q, q->asks_end + i);
-        one->position = positions[i];
-        one->low = -INFINITE;
-        one->high = INFINITE;
-        one->record = record;
-    }
-    q->asks_end += count;
-    r->asked += (record != 0) ? 1 : 0;
+    add_step(&q->asks, position, record);
+    r->asked++;
     if (first && !awaits_the_end(r, index) && !is_streamed(r, index)) {
-        const int64_t due = sum(positions[0] * step_of(r), shape_of(r, index)->lag);
+        const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
         timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
     }
 }

@@ -73,31 +73,16 @@ rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record)
     return made;
 }
 
-/* Make room for so many more figures; false: there is none. */
-bool room_for_figures(rv_monitor *m, int64_t count)
+/* Make room for another figure; false: there is none. */
+bool room_for_figure(rv_monitor *m)
 {
     margin_results *s = &m->margins;
-    const int64_t wanted = (int64_t)s->found_count + count;
-    if ((wanted > s->found_room) || (wanted > s->owners_room)) {
-        rv_margin *made = enlarged(m, s->found, &s->found_room, wanted, sizeof *made);
-        int32_t *owners = enlarged(m, s->owners, &s->owners_room, wanted, sizeof *owners);
-        s->found = (made != NULL) ? made : s->found;
-        s->owners = (owners != NULL) ? owners : s->owners;
-        return (made != NULL) && (owners != NULL);
-    }
-    return true;
-}
-
-/* The place of another figure, where it stays until it is taken; NULL: there is none. */
-rv_margin *figure_found(rv_monitor *m, int32_t record)
-{
-    margin_results *s = &m->margins;
-    if (!room_for_figures(m, 1)) {
-        return NULL;
-    }
-    s->owners[s->found_count] = record;
-    s->found_count++;
-    return &s->found[s->found_count - 1];
+    const int64_t wanted = (int64_t)s->found_count + 1;
+    rv_margin *made = enlarged(m, s->found, &s->found_room, wanted, sizeof *made);
+    int32_t *owners = enlarged(m, s->owners, &s->owners_room, wanted, sizeof *owners);
+    s->found = (made != NULL) ? made : s->found;
+    s->owners = (owners != NULL) ? owners : s->owners;
+    return (made != NULL) && (owners != NULL);
 }
 
 static void free_record(margin_results *s, int32_t record)
@@ -204,29 +189,20 @@ void margins_reset(rv_monitor *m)
 /* Figures at the end of a trace, or as if it had ended: what lies behind it is taken for the least, for
  * the greatest, and for what the rule for the end says. */
 
-/* What is asked for by one assumption about what lies behind the end; false if memory is short. */
-static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reached, double *answers)
+/* Let a gauge end the trace by one assumption about what lies behind it; false if memory is short. */
+static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reached)
 {
-    gauging w;
     measuring *q = &r->margins[index];
+    gauging w = *begin_gauging(r, index, end->last, reached);
     const int32_t side = ((end->rest == REST_GREATEST) && q->parted) ? 1 : 0;
-    int64_t i;
-    int32_t k;
-    begin_gauging(&w, r, index, end->last, reached);
+    const int64_t behind = floored(q->position, step_of(r)) + 1;
     if (!gauge_copy(w.monitor, w.shape, &q->scratch, &q->readings[side])) {
         return false;
     }
-    for (i = q->asks_first; i < q->scratch.answered; i++) {
-        answers[i - q->asks_first] = (side == 0) ? ask_at(q, i)->low : ask_at(q, i)->high;
-    }
     w.g = &q->scratch;
     w.side = side;
-    w.answers = answers;
-    for (k = 0; k < q->letter_count; k++) {
-        const margin_letter *one = &q->letters[k];
-        if (one->at <= floored(end->instant, w.step)) {
-            gauge_take(&w, &one->at, 1, (side == 0) ? one->low : one->high, 1);
-        }
+    if (q->passes && (behind <= floored(end->instant, w.step))) {
+        gauge_take(&w, &behind, 1, q->behind[side], 1);
     }
     gauge_run(&w);
     w.end = end;
@@ -242,10 +218,16 @@ static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached,
 {
     rv_monitor *m = r->home->monitor;
     measuring *q = &r->margins[index];
-    const int64_t count = q->asks_end - q->asks_first;
+    const bool streamed = is_streamed(r, index);
+    const margin_cursor begin = {q->asks.first, q->told};
+    const int64_t count = q->asks.end - q->asks.first
+                          + (streamed ? q->readings[0].stamps.end - q->told : 0);
+    const int32_t root = shape_of(r, index)->count - 1;
     const size_t size = (size_t)(3 * count + 1) * sizeof(double);
     margin_end end = {instant, LIMIT, REST_LEAST};
+    margin_ask one = {0, 0};
     rv_margin figure;
+    margin_cursor next;
     double *found;
     bool more = true;
     int64_t i;
@@ -258,16 +240,19 @@ static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached,
     found = arena_take(&m->memory, size);
     m->spoilt = m->spoilt || (found == NULL);
     for (; (found != NULL) && (end.rest <= REST_END); end.rest++) {
-        if (!try_end(r, index, &end, reached, &found[end.rest * count])) {
+        if (!try_end(r, index, &end, reached)) {
             arena_give(&m->memory, found, size);
-            found = NULL;
+            return true;
+        }
+        next = begin;
+        for (i = end.rest * count; next_asked(q, streamed, &next, &one); i++) {
+            found[i] = gauge_value(&q->scratch, root, one.position);
         }
     }
-    for (i = 0; more && (found != NULL) && (i < count); i++) {
-        margin_ask one = *ask_at(q, q->asks_first + i);
-        one.low = found[i];
-        one.high = found[count + i];
-        fill_figure(&figure, r, index, &one, found[2 * count + i]);
+    next = begin;
+    for (i = 0; more && (found != NULL) && next_asked(q, streamed, &next, &one); i++) {
+        const margin_range bounds = {found[i], found[count + i]};
+        fill_figure(&figure, r, index, &one, bounds, found[2 * count + i]);
         more = take(user, &figure, one.record);
     }
     arena_give(&m->memory, found, size);

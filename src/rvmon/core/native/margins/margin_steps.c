@@ -68,17 +68,17 @@ static bool is_last_unread(const gauging *w, int32_t place)
 bool is_asked(const gauging *w, int64_t left, int64_t right)
 {
     const measuring *q = w->q;
-    int64_t low = w->g->answered;
-    int64_t high = q->asks_end;
+    int64_t low = q->asks.first;
+    int64_t high = q->asks.end;
     while (low < high) {
         const int64_t middle = low + (high - low) / 2;
-        if (ask_at(q, middle)->position < left) {
+        if (step_at(&q->asks, middle)->at < left) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    return (low < q->asks_end) && (ask_at(q, low)->position <= right);
+    return (low < q->asks.end) && (step_at(&q->asks, low)->at <= right);
 }
 
 /* Whether a node has room for a step that it is to tell. Where its value matters at positions alone that
@@ -94,27 +94,29 @@ bool takes_step(gauging *w, int32_t place, int64_t at, double value)
     return has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place));
 }
 
-/* Take it that there are some positions, where only samples are. */
+/* The number of the first position that some operator has not told of, or nobody was told of. */
+static int64_t oldest_position(const gauging *w)
+{
+    int64_t found = w->g->stamps.end;
+    int32_t i;
+    if (!w->thin) {
+        found = least(found, w->q->told);
+    }
+    for (i = 0; w->sparse && (i < w->shape->count); i++) {
+        const int32_t kind = w->shape->nodes[i].kind;
+        if ((kind == OP_WINDOW) || (kind == OP_SHIFT) || ((kind == OP_UNTIL) && !is_thin(w, i))) {
+            found = least(found, w->g->nodes[i].positions);
+        }
+    }
+    return found;
+}
+
+/* Take it that there are some positions, where only samples are; or that they are asked for. */
 void note_positions(gauging *w, const int64_t *times, int64_t count)
 {
     margin_steps *s = &w->g->stamps;
-    int64_t oldest = s->end;
-    int64_t k;
-    int32_t i;
-    if (!has_room(s, count)) {
-        for (i = 0; i < w->shape->count; i++) {
-            const int32_t kind = w->shape->nodes[i].kind;
-            if ((kind == OP_WINDOW) || (kind == OP_SHIFT)
-                || ((kind == OP_UNTIL) && !is_thin(w, i))) {
-                oldest = least(oldest, w->g->nodes[i].positions);
-            }
-        }
-        if (!room_for_steps(w, s, count, oldest)) {
-            return;
-        }
-    }
-    for (k = 0; k < count; k++) {
-        add_step(s, times[k], 0.0);
+    if (has_room(s, count) || room_for_steps(w, s, count, oldest_position(w))) {
+        add_steps(s, times, count, NULL);
     }
 }
 

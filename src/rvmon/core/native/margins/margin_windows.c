@@ -11,7 +11,7 @@ typedef struct {
     gauging *w;
     margin_node *o;
     margin_edge *edge;
-    const margin_steps *from;  /* NULL: no window holds anything */
+    const margin_steps *from;
     int32_t place;
     bool every;
     bool closes;               /* whether what lies behind the end is still to be taken */
@@ -25,7 +25,7 @@ static int64_t exit_of(const margin_steps *wedge)
     return step_at(wedge, wedge->first)->at;
 }
 
-static void drop_exits(margin_steps *wedge, int64_t position)
+static inline void drop_exits(margin_steps *wedge, int64_t position)
 {
     while ((wedge->first < wedge->end) && (exit_of(wedge) < position)) {
         wedge->first++;
@@ -56,58 +56,30 @@ static void tell_windows(const windowing *x, int64_t stop)
     o->next = at;
 }
 
-/* The steps of a ring at hand: of a wedge that is used much. */
-typedef struct {
-    margin_step *ring;
-    int64_t mask;              /* -1: there is no room at all */
-    int64_t first;
-    int64_t end;
-} handy_steps;
-
-static inline handy_steps at_hand(const margin_steps *s)
+/* Take a value into a wedge at hand, of which the last window that holds it is that of `leaves`. */
+static inline void enter_wedge(const windowing *x, margin_steps *wedge, int64_t leaves, double value)
 {
-    const handy_steps made = {s->ring, (int64_t)s->room - 1, s->first, s->end};
-    return made;
-}
-
-static inline void put_back(margin_steps *s, handy_steps now)
-{
-    s->first = now.first;
-    s->end = now.end;
-}
-
-static handy_steps with_room(const windowing *x, handy_steps now)
-{
-    margin_steps *wedge = &x->o->wedge;
-    put_back(wedge, now);
-    (void)room_for_steps(x->w, wedge, 1, wedge->first);
-    return at_hand(wedge);
-}
-
-/* Take a value into the wedge, of which the last window that holds it is that of `leaves`. */
-static inline handy_steps entered(const windowing *x, handy_steps wedge, int64_t leaves, double value)
-{
-    const double sign = x->every ? -1.0 : 1.0;
-    const double height = sign * value;
-    while ((wedge.first < wedge.end)
-           && (sign * wedge.ring[(wedge.end - 1) & wedge.mask].value <= height)) {
-        wedge.end--;
+    while (wedge->first < wedge->end) {
+        const double last = step_at(wedge, wedge->end - 1)->value;
+        if (x->every ? (last < value) : (last > value)) {
+            break;
+        }
+        wedge->end--;
     }
-    if (wedge.end - wedge.first > wedge.mask) {
-        wedge = with_room(x, wedge);
+    if (!has_room(wedge, 1)) {
+        margin_steps larger = *wedge;
+        (void)room_for_steps(x->w, &larger, 1, larger.first);
+        *wedge = larger;
     }
-    if (wedge.mask >= 0) {
-        wedge.ring[wedge.end & wedge.mask].at = leaves;
-        wedge.ring[wedge.end & wedge.mask].value = value;
-        wedge.end++;
+    if (has_room(wedge, 1)) {
+        add_step(wedge, leaves, value);
     }
-    return wedge;
 }
 
 /* The next step of the operand that some window up to a position holds; behind the end, nothing. */
 static bool next_entry(windowing *x, int64_t most, margin_step *found)
 {
-    if ((x->from != NULL) && (x->edge->read < x->from->end)) {
+    if (x->edge->read < x->from->end) {
         const margin_step *next = step_at(x->from, x->edge->read);
         found->at = next->at;
         found->value = next->value;
@@ -134,44 +106,39 @@ static void slide_along(windowing *x, int64_t until)
         if (wedge->first < wedge->end) {
             step_at(wedge, wedge->end - 1)->at = entry.at - x->low - 1;
         }
-        put_back(wedge, entered(x, at_hand(wedge), NEVER, entry.value));
+        enter_wedge(x, wedge, NEVER, entry.value);
     }
     tell_windows(x, until);
 }
 
 /* Take in the values of the operand up to a position. */
-static inline handy_steps enter_samples(const windowing *x, handy_steps wedge, int64_t last)
+static inline void enter_samples(const windowing *x, margin_steps *wedge, margin_steps *from, int64_t last)
 {
-    const margin_steps *from = x->from;
-    const int64_t end = (from != NULL) ? from->end : 0;
-    int64_t read = x->edge->read;
-    for (; (from != NULL) && (read < end) && (step_at(from, read)->at <= last); read++) {
-        const margin_step next = *step_at(from, read);
-        wedge = entered(x, wedge, next.at - x->low, next.value);
+    for (; (from->first < from->end) && (step_at(from, from->first)->at <= last); from->first++) {
+        const margin_step next = *step_at(from, from->first);
+        enter_wedge(x, wedge, next.at - x->low, next.value);
     }
-    x->edge->read = read;
-    return wedge;
 }
 
-/* The same where only samples are positions. */
-static inline void slide_over_samples(const windowing *x, int64_t until)
+/* The same where only samples are positions, of rings at hand: what is written may be anything else. */
+static void slide_over_samples(const windowing *x, int64_t until)
 {
-    const margin_steps *stamps = &x->w->g->stamps;
-    const int64_t end = stamps->end;
-    handy_steps wedge = at_hand(&x->o->wedge);
-    int64_t number = x->o->positions;
-    for (; (number < end) && (step_at(stamps, number)->at <= until); number++) {
-        const int64_t position = step_at(stamps, number)->at;
-        wedge = enter_samples(x, wedge, position + x->high);
-        while ((wedge.first < wedge.end) && (wedge.ring[wedge.first & wedge.mask].at < position)) {
-            wedge.first++;
-        }
+    margin_steps stamps = x->w->g->stamps;
+    margin_steps from = *x->from;
+    margin_steps wedge = x->o->wedge;
+    from.first = x->edge->read;
+    stamps.first = x->o->positions;
+    for (; (stamps.first < stamps.end) && (step_at(&stamps, stamps.first)->at <= until); stamps.first++) {
+        const int64_t position = step_at(&stamps, stamps.first)->at;
+        enter_samples(x, &wedge, &from, position + x->high);
+        drop_exits(&wedge, position);
         tell_step(x->w, x->place, position,
-                  (wedge.first < wedge.end) ? wedge.ring[wedge.first & wedge.mask].value : x->nothing);
+                  (wedge.first < wedge.end) ? step_at(&wedge, wedge.first)->value : x->nothing);
     }
-    wedge = enter_samples(x, wedge, until + x->high + 1); /* few of them are kept */
-    put_back(&x->o->wedge, wedge);
-    x->o->positions = number;
+    enter_samples(x, &wedge, &from, until + x->high + 1); /* few of them are kept */
+    x->o->wedge = wedge;
+    x->o->positions = stamps.first;
+    x->edge->read = from.first;
     x->o->next = (x->o->next <= until) ? until + 1 : x->o->next;
 }
 
@@ -190,9 +157,7 @@ static void give_up(windowing *x)
     x->nothing = margin_behind(x->w->end, false);
     x->o->wedge.first = x->o->wedge.end;
     x->closes = false;
-    if (x->from != NULL) {
-        x->edge->read = x->from->end;
-    }
+    x->edge->read = x->from->end;
 }
 
 /* Tell what windows are when the trace has ended, those that lie behind it in part. */
@@ -210,18 +175,17 @@ void gauge_window(gauging *w, int32_t place)
     const operator_plan *n = node_plan_of(w, place);
     margin_node *nodes = w->g->nodes;
     const int64_t limit = (n->over < 0) ? w->now : floored(w->reached - n->over, w->step);
-    const bool holds = n->low <= n->high;
+    const bool holds = n->low <= n->high; /* else no window holds anything */
     const bool every = n->turned != 0;
-    windowing x = {w, &nodes[place], &w->g->edges[w->shape->places[place].edge],
-                   holds ? &nodes[n->left].out : NULL, place, every, w->end != NULL,
-                   every ? INFINITE : -INFINITE, n->low, n->high};
+    windowing x = {w, &nodes[place], &w->g->edges[w->shape->places[place].edge], &nodes[n->left].out, place,
+                   every, w->end != NULL, every ? INFINITE : -INFINITE, n->low, n->high};
+    if (!holds) {
+        x.edge->read = x.from->end;
+    }
     if (w->end != NULL) {
         end_windows(&x, limit, n->over >= 0);
-    } else if (holds) {
-        slide_window(&x, least(limit, nodes[n->left].known - n->high));
     } else {
-        x.edge->read = nodes[n->left].out.end;
-        slide_window(&x, limit);
+        slide_window(&x, holds ? least(limit, nodes[n->left].known - n->high) : limit);
     }
     x.o->known = x.o->next - 1;
 }

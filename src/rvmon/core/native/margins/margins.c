@@ -6,24 +6,6 @@
 
 #include <string.h>
 
-/* Filled in where it is used: a copy at once would wait for what was just written. */
-void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached)
-{
-    measuring *q = &r->margins[index];
-    w->monitor = r->home->monitor;
-    w->shape = shape_of(r, index);
-    w->g = &q->readings[0];
-    w->q = q;
-    w->answers = NULL;
-    w->side = 0;
-    w->end = NULL;
-    w->step = step_of(r);
-    w->now = now;
-    w->reached = reached;
-    w->sparse = GAP(r) == 0;
-    w->thin = !is_streamed(r, index);
-}
-
 /* Take it that what judges measure may be another: what a name says, signals first, then events, or the
  * truth of a node, behind them. */
 void margins_mark_changed(run *r, int32_t what)
@@ -54,36 +36,38 @@ static void mark_all_changed(run *r)
     r->changed_count = r->part->plan->judges.count;
 }
 
-/* Give the letters up to a position to the gauges. */
-void give_letters(gauging *w, int64_t last)
+/* Give what the leaves are from some positions on to the gauges, at least and at most. */
+void give_letters(gauging *w, const int64_t *times, int64_t count, double *const *values, int32_t apart)
 {
     measuring *q = w->q;
-    int32_t given = 0;
-    for (; (given < q->letter_count) && (q->letters[given].at <= last); given++) {
-        const margin_letter *one = &q->letters[given];
-        w->g = &q->readings[0];
-        gauge_take(w, &one->at, 1, one->low, 1);
-        if (q->parted) {
-            w->g = &q->readings[1];
-            gauge_take(w, &one->at, 1, one->high, 1);
-        }
+    w->g = &q->readings[0];
+    gauge_take(w, times, count, values[0], apart);
+    if (q->parted) {
+        w->g = &q->readings[1];
+        gauge_take(w, times, count, values[1], apart);
     }
-    if ((given == 1) && (q->letter_count == 2)) {
-        const margin_letter one = q->letters[0];
-        q->letters[0] = q->letters[1];
-        q->letters[1] = one;
+}
+
+/* The same behind what occurs at a position alone, unless that lies behind another one. */
+void give_behind(gauging *w, int64_t last)
+{
+    measuring *q = w->q;
+    const int64_t position = floored(q->position, w->step) + 1;
+    if (q->passes && (position <= last)) {
+        q->passes = false;
+        give_letters(w, &position, 1, q->behind, 1);
     }
-    q->letter_count -= given;
 }
 
 /* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
  * What it owes with values that nobody knows may be anything. */
-void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept)
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
+                 double kept)
 {
     const bool cut = r->cut < NEVER;
     made->t = one->position * step_of(r);
-    made->low = cut ? -INFINITE : one->low;
-    made->high = one->high;
+    made->low = cut ? -INFINITE : found.low;
+    made->high = found.high;
     made->kept = cut ? -INFINITE : kept;
     made->requirement = r->part->judges[index].requirement;
     made->number = 0;
@@ -92,32 +76,44 @@ void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask 
 }
 
 /* Tell a figure that nothing can change any more. */
-static inline void tell_figure(const run *r, int32_t index, const margin_ask *one, double kept)
+static inline void tell_figure(const run *r, int32_t index, const margin_ask *one, margin_range found)
 {
     rv_margin *made = figure_found(r->home->monitor, one->record);
     if (made != NULL) {
-        fill_figure(made, r, index, one, kept);
+        fill_figure(made, r, index, one, found, found.low);
     }
 }
 
-/* Tell the figures that are answered in both readings. */
-static void tell_answers(run *r, int32_t index)
+/* Tell the figures that are known in both readings. */
+static void tell_known(run *r, int32_t index)
 {
     measuring *q = &r->margins[index];
-    const int64_t first = q->readings[0].answered;
-    const int64_t answered = q->parted ? least(first, q->readings[1].answered) : first;
-    if ((q->asks_first < answered) && !room_for_figures(r->home->monitor, answered - q->asks_first)) {
-        return; /* the run is spoilt */
+    const bool streamed = is_streamed(r, index);
+    const int32_t root = shape_of(r, index)->count - 1;
+    gauge *least_one = &q->readings[0];
+    gauge *most = q->parted ? &q->readings[1] : NULL;
+    const int64_t known = q->parted ? least(least_one->nodes[root].known, most->nodes[root].known)
+                                    : least_one->nodes[root].known;
+    margin_cursor next = {q->asks.first, q->told};
+    margin_cursor done = next;
+    margin_ask one = {0, 0};
+    while (next_asked(q, streamed, &next, &one) && (one.position <= known)) {
+        margin_range found;
+        found.low = gauge_value(least_one, root, one.position);
+        found.high = (most == NULL) ? found.low : gauge_value(most, root, one.position);
+        tell_figure(r, index, &one, found);
+        done = next;
     }
-    while (q->asks_first < answered) {
-        const margin_ask *one = ask_at(q, q->asks_first);
-        q->asks_first++;
-        r->asked -= (one->record != 0) ? 1 : 0;
-        tell_figure(r, index, one, one->low);
+    r->asked -= (int32_t)(done.ask - q->asks.first);
+    q->asks.first = done.ask;
+    q->told = done.position;
+    (void)gauge_value(least_one, root, known); /* nobody asks for what is before */
+    if (most != NULL) {
+        (void)gauge_value(most, root, known);
     }
-    if ((q->asks_first == q->asks_end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
+    if ((q->asks.first == q->asks.end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
         q->active = false;
-        q->letter_count = 0;
+        q->passes = false;
     }
 }
 
@@ -128,10 +124,10 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
     const margin_shape *s = shape_of(r, index);
     const measuring *q = &r->margins[index];
     int64_t due = NEVER;
-    if (q->active && (q->asks_first < q->asks_end) && !awaits_the_end(r, index)) {
-        due = sum(ask_at(q, q->asks_first)->position * step_of(r), s->lag);
+    if (q->active && (q->asks.first < q->asks.end) && !awaits_the_end(r, index)) {
+        due = sum(step_at(&q->asks, q->asks.first)->at * step_of(r), s->lag);
         if (due <= reached) {
-            const bool all = !s->passes && (q->letter_count == 0) && (now >= floored(reached, step_of(r)));
+            const bool all = !s->passes && !q->passes && (now >= floored(reached, step_of(r)));
             due = all ? NEVER : reached + 1; /* NEVER: all that is known was looked at */
         }
     }
@@ -141,18 +137,17 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
 /* Let the leaves be known up to a position. */
 static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 {
-    gauging w;
     measuring *q = &r->margins[index];
-    begin_gauging(&w, r, index, now, reached);
-    give_letters(&w, now);
-    w.g = &q->readings[0];
-    gauge_run(&w);
+    gauging *w = begin_gauging(r, index, now, reached);
+    give_behind(w, now);
+    w->g = &q->readings[0];
+    gauge_run(w);
     if (q->parted) {
-        w.g = &q->readings[1];
-        w.side = 1;
-        gauge_run(&w);
+        w->g = &q->readings[1];
+        w->side = 1;
+        gauge_run(w);
     }
-    tell_answers(r, index);
+    tell_known(r, index);
     if (!is_streamed(r, index)) {
         set_margin_due(r, index, now, reached);
     }
@@ -169,71 +164,66 @@ void part_margins(run *r, int32_t index)
 static void begin_amid(run *r, int32_t index, int64_t position)
 {
     measuring *q = &r->margins[index];
-    gauging w;
+    gauging *w = begin_gauging(r, index, position, position);
     part_margins(r, index);
-    begin_gauging(&w, r, index, position, position);
-    for (w.side = 0; q->parted && (w.side < 2); w.side++) {
-        w.g = &q->readings[w.side];
-        gauge_begin_amid(&w, floored(r->at.before, w.step));
+    for (; q->parted && (w->side < 2); w->side++) {
+        w->g = &q->readings[w->side];
+        gauge_begin_amid(w, floored(r->at.before, w->step));
     }
 }
 
-/* Read the leaves at a position, up to which they are given to the gauges. */
+/* Read the leaves at a position and give them to the gauges. */
 static void read_measures(run *r, int32_t index, int64_t position)
 {
     const margin_shape *s = shape_of(r, index);
     measuring *q = &r->margins[index];
-    margin_letter *now = &q->letters[0];
-    margin_letter *then = &q->letters[1];
     bool differs = false;
-    bool passes = false;
     int32_t i;
     for (i = 0; i < s->plan->measures.count; i++) {
-        const margin_range found = measured_leaf(r, s, i);
-        now->low[i] = found.low;
-        now->high[i] = found.high;
+        const margin_range found = leaf_range(r, s, i);
+        q->letter[0][i] = found.low;
+        q->letter[1][i] = found.high;
         differs = differs || (found.low != found.high);
     }
+    q->passes = false;
     for (i = 0; s->occurs && (i < s->plan->measures.count); i++) {
-        margin_range found = {now->low[i], now->high[i]};
-        passes = passes_on(r, &s->measures[i], &found) || passes;
-        then->low[i] = found.low;
-        then->high[i] = found.high;
+        margin_range found = {q->letter[0][i], q->letter[1][i]};
+        q->passes = passes_on(r, &s->measures[i], &found) || q->passes;
+        q->behind[0][i] = found.low;
+        q->behind[1][i] = found.high;
     }
-    now->at = position;
-    then->at = position + 1;
-    q->letter_count = passes ? 2 : 1;
     if (differs && !q->parted) {
         part_margins(r, index);
     }
+    give_letters(begin_gauging(r, index, position, position), &position, 1, q->letter, 1);
 }
 
-/* Come to a position: up to the one before it, the leaves are known. */
+/* Come to a position: up to the one before it, all that occurred is known. */
 void enter_position(run *r, int32_t index, int64_t t)
 {
     const margin_shape *s = shape_of(r, index);
     measuring *q = &r->margins[index];
     const int64_t position = floored(t, step_of(r));
-    const bool asked = q->asks_first < q->asks_end;
+    const bool asked = q->asks.first < q->asks.end;
     if (q->active && !asked && !is_kept_up(r, index)) {
         q->active = false; /* it awaits the end */
     }
     if (!q->active) {
         q->active = true;
         q->parted = false;
-        q->letter_count = 0;
-        gauge_begin(s, &q->readings[0], position, q->asks_first);
+        q->told = 0;
+        q->work.thin = !is_streamed(r, index);
+        q->work.aligned = q->work.sparse && !q->work.thin;
+        gauge_begin(s, &q->readings[0], position);
         if (q->missed && (s->plan->looks_back != 0)) {
             begin_amid(r, index, position);
         }
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
-    } else if (q->letter_count > 0) {
-        gauging w;
-        begin_gauging(&w, r, index, position - 1, t);
-        give_letters(&w, position - 1);
+    } else if (q->passes) {
+        give_behind(begin_gauging(r, index, position - 1, t), position - 1);
     } else {
-        /* They are given. */
+        /* The leaves are what they were. */
     }
     read_measures(r, index, position);
     q->position = t;
@@ -252,8 +242,9 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     }
     q = &r->margins[index];
     if ((r->at.presence != ARE_THERE) || r->at.dense) {
-        const margin_ask none = {position, -INFINITE, INFINITE, record};
-        tell_figure(r, index, &none, -INFINITE);
+        const margin_ask none = {position, record};
+        const margin_range anything = {-INFINITE, INFINITE};
+            tell_figure(r, index, &none, anything);
         return;
     }
     /* At the end, the letter of the last position stands; a later sample may have been taken. */
@@ -261,11 +252,11 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
         || ((q->position < t) && (q->changed_inputs || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
     }
-    ask_for(r, index, &position, 1, record);
+    ask_for(r, index, position, record);
 }
 
 /* Read what a judge measures at the position at `t`, if it is asked for. */
-static void visit_measured(run *r, int32_t index, int64_t t)
+static inline void visit_measured(run *r, int32_t index, int64_t t)
 {
     measuring *q = &r->margins[index];
     const bool wanted = q->active || is_kept_up(r, index) || awaits_the_end(r, index);
@@ -279,6 +270,15 @@ static void visit_measured(run *r, int32_t index, int64_t t)
 static int32_t streamed_count(const run *r)
 {
     return is_streamed(r, 0) ? r->part->plan->requirements : 0;
+}
+
+/* Have each of some positions be asked for: where samples are positions all are, that are known. */
+void ask_for_positions(run *r, int32_t index, const int64_t *positions, int64_t count)
+{
+    if ((GAP(r) > 0) && (count > 0)) {
+        const int64_t last = positions[count - 1];
+        note_positions(begin_gauging(r, index, last, last), positions, count);
+    }
 }
 
 /* Read what is measured at the position at `t`, when attempts have begun there: where samples are
@@ -299,8 +299,8 @@ void margins_visit(run *r, int64_t t)
         visit_measured(r, r->changed_inputs[i], t);
     }
     r->changed_count = 0;
-    for (i = 0; (i < streamed) && (t - step_of(r) < r->at.after); i++) {
-        ask_for(r, i, &position, 1, 0);
+    for (i = 0; (GAP(r) > 0) && (i < streamed) && (t - step_of(r) < r->at.after); i++) {
+        ask_for_positions(r, i, &position, 1);
     }
 }
 
@@ -348,12 +348,12 @@ void margins_miss(run *r, int64_t t)
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
         margins_cut(r, i, t);
-        for (; q->asks_first < q->asks_end; q->asks_first++) {
-            r->asked -= (ask_at(q, q->asks_first)->record != 0) ? 1 : 0;
-        }
+        r->asked -= (int32_t)(q->asks.end - q->asks.first);
+        q->asks.first = q->asks.end;
+        q->told = q->readings[0].stamps.end;
         q->missed = true;
         q->active = false;
-        q->letter_count = 0;
+        q->passes = false;
         timers_set(&r->margins_due, i, NEVER);
     }
     r->measured_at = -LIMIT;

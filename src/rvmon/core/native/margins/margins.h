@@ -23,32 +23,6 @@ void margin_vanished(rv_monitor *m, int32_t record);
 
 #define INFINITE ((double)INFINITY)
 
-/* What is assumed of what lies behind the end of a trace: the least, the greatest, or the rule for the
- * end: the greatest for an unbounded `R` that has begun, else the least. */
-enum { REST_LEAST, REST_GREATEST, REST_END };
-
-typedef struct {
-    int64_t instant;           /* the last one, ticks */
-    int64_t last;              /* the last integer that may be a position */
-    int32_t rest;
-} margin_end;
-
-/* A gauge at work. */
-typedef struct {
-    rv_monitor *monitor;
-    const margin_shape *shape;
-    gauge *g;
-    measuring *q;              /* says what is asked for */
-    double *answers;           /* of all that is asked for; NULL: they stand there */
-    int32_t side;              /* 0: at least; 1: at most */
-    const margin_end *end;     /* NULL: the trace goes on */
-    int64_t step;              /* ticks from one position to the next */
-    int64_t now;               /* up to where leaves are known */
-    int64_t reached;           /* the instant that time has come to */
-    bool sparse;               /* whether only samples are positions */
-    bool thin;                 /* whether few positions are asked for */
-} gauging;
-
 /* Least and greatest value. */
 typedef struct {
     double low;
@@ -82,6 +56,17 @@ static inline double margin_behind(const margin_end *end, bool kept)
     return good ? INFINITE : -INFINITE;
 }
 
+/* What a formula is at a position at which it is known, behind those that this was asked for before. */
+static inline double gauge_value(gauge *g, int32_t root, int64_t position)
+{
+    const margin_steps *from = &g->nodes[root].out;
+    while ((g->read < from->end) && (step_at(from, g->read)->at <= position)) {
+        g->reported = step_at(from, g->read)->value;
+        g->read++;
+    }
+    return g->reported;
+}
+
 /* Whether the value of an operator matters at positions alone that are asked for, and these are few. */
 static inline bool is_thin(const gauging *w, int32_t place)
 {
@@ -93,9 +78,30 @@ static inline const margin_shape *shape_of(const run *r, int32_t index)
     return &r->home->monitor->shapes[r->part->plan->judges.first + index];
 }
 
-static inline margin_ask *ask_at(const measuring *q, int64_t number)
+/* How far what is asked for was looked through: attempts, and positions where each is asked for. */
+typedef struct {
+    int64_t ask;
+    int64_t position;
+} margin_cursor;
+
+/* What is asked for next, in order; false: nothing. */
+static inline bool next_asked(const measuring *q, bool streamed, margin_cursor *at, margin_ask *found)
 {
-    return &q->asks[number & (q->asks_room - 1)];
+    const margin_steps *stamps = &q->readings[0].stamps;
+    const bool begins = at->ask < q->asks.end;
+    if (streamed && (at->position < stamps->end)
+        && (!begins || (step_at(stamps, at->position)->at < step_at(&q->asks, at->ask)->at))) {
+        found->position = step_at(stamps, at->position)->at;
+        found->record = 0;
+        at->position++;
+        return true;
+    }
+    if (begins) {
+        found->position = step_at(&q->asks, at->ask)->at;
+        found->record = (int32_t)step_at(&q->asks, at->ask)->value;
+        at->ask++;
+    }
+    return begins;
 }
 
 /* What a leaf is that compares a signal with a real constant. Nothing is not -0. */
@@ -126,6 +132,17 @@ static inline void add_step(margin_steps *s, int64_t at, double value)
     s->end++;
 }
 
+/* Add some, for which there is room. */
+static inline void add_steps(margin_steps *s, const int64_t *times, int64_t count, const double *values)
+{
+    margin_steps now = *s; /* at hand, as what is written may be anything */
+    int64_t k;
+    for (k = 0; k < count; k++) {
+        add_step(&now, times[k], (values != NULL) ? values[k] : 0.0);
+    }
+    s->end = now.end;
+}
+
 /* Tell those that read a node that it has another value from a position on. */
 static inline void tell_step(gauging *w, int32_t place, int64_t at, double value)
 {
@@ -135,7 +152,7 @@ static inline void tell_step(gauging *w, int32_t place, int64_t at, double value
     }
 }
 
-/* ---- margin_leaves.c: operators that join values */
+/* ---- margin_joins.c */
 void gauge_join(gauging *w, int32_t place);
 
 /* ---- margin_windows.c */
@@ -144,7 +161,7 @@ void gauge_shift(gauging *w, int32_t place);
 
 /* ---- gauge.c */
 bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g);
-void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered);
+void gauge_begin(const margin_shape *s, gauge *g, int64_t first);
 void gauge_begin_amid(gauging *w, int64_t last);
 bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g);
 void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart);
@@ -153,10 +170,26 @@ double bound_of_anything(const gauging *w);
 
 bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shape *s);
 
+/* ---- margin_readers.c */
+void ask_for(run *r, int32_t index, int64_t position, int32_t record);
+
 /* ---- margin_leaves.c */
 margin_real learn_real(const part *of, const measure_plan *m);
 margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
+
+/* The same, most often of a comparison with a constant. */
+static inline margin_range leaf_range(const run *r, const margin_shape *s, int32_t number)
+{
+    const margin_real *real = &s->reals[number];
+    if ((real->input >= 0) && (r->value[real->input].kind == RV_REAL)) {
+        margin_range made;
+        made.low = measured_real(real, r->value[real->input].as.real);
+        made.high = made.low;
+        return made;
+    }
+    return measured_leaf(r, s, number);
+}
 
 /* Whether each position of a sample is asked for. */
 static inline bool is_streamed(const run *r, int32_t index)
@@ -177,18 +210,42 @@ static inline bool awaits_the_end(const run *r, int32_t index)
     return r->part->judges[index].trigger < 0;
 }
 
+/* Put a gauge to work: the leaves are known up to a position, and time has come to an instant. */
+static inline gauging *begin_gauging(const run *r, int32_t index, int64_t now, int64_t reached)
+{
+    measuring *q = &r->margins[index];
+    gauging *w = &q->work;
+    w->g = &q->readings[0];
+    w->side = 0;
+    w->now = now;
+    w->reached = reached;
+    return w;
+}
+
 /* ---- margins.c, of a run */
-void margins_cut(run *r, int32_t index, int64_t t);
-void give_letters(gauging *w, int64_t last);
+void give_letters(gauging *w, const int64_t *times, int64_t count, double *const *values, int32_t apart);
+void give_behind(gauging *w, int64_t last);
 void part_margins(run *r, int32_t index);
 void enter_position(run *r, int32_t index, int64_t t);
-void ask_for(run *r, int32_t index, const int64_t *positions, int64_t count, int32_t record);
-void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached);
-void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept);
+void ask_for_positions(run *r, int32_t index, const int64_t *positions, int64_t count);
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
+                 double kept);
 
 /* ---- margin_results.c */
-bool room_for_figures(rv_monitor *m, int64_t count);
-rv_margin *figure_found(rv_monitor *m, int32_t record);
+bool room_for_figure(rv_monitor *m);
+void margins_cut(run *r, int32_t index, int64_t t);
 rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record);
+
+/* The place of another figure, where it stays until it is taken; NULL: there is none. */
+static inline rv_margin *figure_found(rv_monitor *m, int32_t record)
+{
+    margin_results *s = &m->margins;
+    if ((s->found_count == least(s->found_room, s->owners_room)) && !room_for_figure(m)) {
+        return NULL; /* the run is spoilt */
+    }
+    s->owners[s->found_count] = record;
+    s->found_count++;
+    return &s->found[s->found_count - 1];
+}
 
 #endif

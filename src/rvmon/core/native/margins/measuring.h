@@ -63,53 +63,10 @@ typedef struct {
     margin_steps stamps;       /* the positions, if only samples are some */
     int64_t first;             /* the first position */
     int64_t read;              /* of the steps of the formula */
-    int64_t answered;          /* the number of the first position that is asked for still */
-    double reported;
+    double reported;           /* what the formula is by the last one that was read */
     bool begun;
     bool amid;                 /* whether what lies before the first position may be anything */
 } gauge;
-
-/* A position that is asked for. */
-typedef struct {
-    int64_t position;
-    double low;
-    double high;
-    int32_t record;            /* of the attempt that begins there, 1 for the first; 0: of none */
-} margin_ask;
-
-/* What the leaves are from a position on, at least and at most. */
-typedef struct {
-    int64_t at;
-    double *low;
-    double *high;
-} margin_letter;
-
-/* What is measured of the attempts of a judge. */
-typedef struct {
-    gauge readings[2];         /* at least, and at most from the first unknown letter on */
-    gauge scratch;             /* where the end of a trace is tried */
-    margin_letter letters[2];  /* that the gauges do not know yet */
-    margin_ask *asks;          /* a ring of those not answered, by number */
-    int64_t asks_first;
-    int64_t asks_end;
-    int64_t position;          /* of the letter that was read last */
-    int32_t asks_room;
-    int32_t letter_count;
-    bool active;
-    bool parted;
-    bool missed;               /* whether positions before those that it follows were missed */
-    bool changed_inputs;              /* whether its leaves may be others than was read */
-} measuring;
-
-/* An attempt that is measured, until its figure is taken. */
-typedef struct {
-    int64_t triggered;
-    uint32_t number;
-    uint32_t doubt_number;
-    int32_t next;              /* of those that are free */
-    bool sure;
-    bool vanished;             /* it was in doubt, and met: it leaves no figure */
-} margin_record;
 
 /* Of a formula that is measured, what of its shape is worked out once. */
 typedef struct {
@@ -141,6 +98,65 @@ typedef struct {
     bool passes;               /* whether time alone can make something known */
     bool occurs;               /* whether a leaf may speak of what occurs at a position alone */
 } margin_shape;
+
+/* What is assumed of what lies behind the end of a trace: the least, the greatest, or the rule for the
+ * end: the greatest for an unbounded `R` that has begun, else the least. */
+enum { REST_LEAST, REST_GREATEST, REST_END };
+
+typedef struct {
+    int64_t instant;           /* the last one, ticks */
+    int64_t last;              /* the last integer that may be a position */
+    int32_t rest;
+} margin_end;
+
+/* A gauge at work. */
+typedef struct gauging {
+    rv_monitor *monitor;
+    const margin_shape *shape;
+    gauge *g;
+    struct measuring *q;       /* says what is asked for */
+    int32_t side;              /* 0: at least; 1: at most */
+    const margin_end *end;     /* NULL: the trace goes on */
+    int64_t step;              /* ticks from one position to the next */
+    int64_t now;               /* up to where leaves are known */
+    int64_t reached;           /* the instant that time has come to */
+    bool sparse;               /* whether only samples are positions */
+    bool thin;                 /* whether few positions are asked for */
+    bool aligned;              /* whether each operator has a step at each position: of one number */
+} gauging;
+
+/* A position that is asked for. */
+typedef struct {
+    int64_t position;
+    int32_t record;            /* of the attempt that begins there, 1 for the first; 0: of none */
+} margin_ask;
+
+/* What is measured of the attempts of a judge. */
+typedef struct measuring {
+    gauging work;
+    gauge readings[2];         /* at least, and at most from the first unknown letter on */
+    gauge scratch;             /* where the end of a trace is tried */
+    double *letter[2];         /* scratch: what the leaves are, at least and at most */
+    double *behind[2];         /* what they are behind what occurs at a position, likewise */
+    margin_steps asks;         /* positions of attempts that are not told; the value is the record */
+    int64_t told;              /* where each position is asked for: how many are told */
+    int64_t position;          /* of the letter that was read last */
+    bool passes;               /* what is `behind` the last position is not given yet */
+    bool active;
+    bool parted;
+    bool missed;               /* whether positions before those that it follows were missed */
+    bool changed_inputs;       /* whether its leaves may be others than was read */
+} measuring;
+
+/* An attempt that is measured, until its figure is taken. */
+typedef struct {
+    int64_t triggered;
+    uint32_t number;
+    uint32_t doubt_number;
+    int32_t next;              /* of those that are free */
+    bool sure;
+    bool vanished;             /* it was in doubt, and met: it leaves no figure */
+} margin_record;
 
 /* Which judges measure what a name says, or a node. */
 typedef struct {

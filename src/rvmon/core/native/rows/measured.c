@@ -224,7 +224,7 @@ static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, in
             hold_row(s, i);
         }
         if (varies || (i == row)) {
-            now = measured_leaf(r, shape, number);
+            now = leaf_range(r, shape, number);
             differs = differs || (now.low != now.high);
         }
         low[i - row] = now.low;
@@ -238,22 +238,18 @@ static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_
 {
     const margin_shape *shape = shape_of(r, index);
     measuring *q = &r->margins[index];
-    gauging w;
+    gauging *w = begin_gauging(r, index, s->times[end - 1], s->times[end - 1]);
     bool differs = false;
     int32_t k;
-    begin_gauging(&w, r, index, s->times[end - 1], s->times[end - 1]);
-    give_letters(&w, s->times[row] - 1);
-    q->letter_count = 0;
+    give_behind(w, s->times[row] - 1);
+    q->passes = false;
     for (k = 0; k < shape->plan->measures.count; k++) {
         differs = lay_leaf(s, r, shape, k, row, end) || differs;
     }
     if (differs && !q->parted) {
         part_margins(r, index);
     }
-    for (k = 0; k < (q->parted ? 2 : 1); k++) {
-        w.g = &q->readings[k];
-        gauge_take(&w, &s->times[row], end - row, s->leaves[k], TOGETHER);
-    }
+    give_letters(w, &s->times[row], end - row, s->leaves, TOGETHER);
 }
 
 /* Measure rows for a judge: the last one is that at which it stands. */
@@ -269,16 +265,16 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
         enter_position(r, index, s->times[row]);
         i++;
     }
-    if ((i < end - 1) && ((q->asks_first < q->asks_end) || is_kept_up(r, index))) {
+    if ((i < end - 1) && ((q->asks.first < q->asks.end) || is_kept_up(r, index))) {
         give_rows(s, r, index, i, end - 1);
     }
     if (is_streamed(r, index)) { /* before anything is found out about these */
-        ask_for(r, index, &s->times[row], end - 1 - row, 0);
+        ask_for_positions(r, index, &s->times[row], end - 1 - row);
     }
     hold_row(s, end - 1);
     enter_position(r, index, s->times[end - 1]);
     if (is_streamed(r, index)) {
-        ask_for(r, index, &s->times[end - 1], 1, 0);
+        ask_for_positions(r, index, &s->times[end - 1], 1);
     }
 }
 

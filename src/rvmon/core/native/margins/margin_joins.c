@@ -1,0 +1,214 @@
+/* Operators that join values: `and`, `or`, `since`, `until`.
+ *
+ * What a node has is a function of the positions in steps, known up to one of them. Where only samples
+ * are positions a step belongs to the position at which it begins, and each has one of its own.
+ *
+ * Source: SEMANTICS 5; Fainekos and Pappas 2009; Donze, Ferrere and Maler 2013. */
+#include "margins/margins.h"
+
+/* Between which values a sweep keeps that of its neighbour. */
+static margin_range bounds_of(const operator_plan *n, const margin_edge *edges)
+{
+    const double stays = edges[0].value;
+    const double meets = edges[1].value;
+    margin_range made;
+    made.low = (n->turned != 0) ? fmin(stays, meets) : meets;
+    made.high = (n->turned != 0) ? meets : fmax(stays, meets);
+    return made;
+}
+
+/* Tell another value, unless it is none. */
+static inline void tell_other(gauging *w, int32_t place, int64_t at, double value)
+{
+    margin_node *o = &w->g->nodes[place];
+    if (w->sparse || !o->begun || (value != o->carried)) {
+        o->begun = true;
+        o->carried = value;
+        tell_step(w, place, at, value);
+    }
+}
+
+static inline double joined(bool every, double a, double b)
+{
+    return (every ? (b < a) : (b > a)) ? b : a;
+}
+
+static inline void tell_junction(gauging *w, int32_t place, int64_t at)
+{
+    const margin_place *shape = &w->shape->places[place];
+    const margin_edge *edges = &w->g->edges[shape->edge];
+    const bool every = node_plan_of(w, place)->turned != 0;
+    double value = edges[0].value;
+    int32_t i;
+    for (i = 1; i < shape->edge_count; i++) {
+        value = joined(every, value, edges[i].value);
+    }
+    tell_other(w, place, at, value);
+}
+
+/* S(i) = max(meets(i), min(stays(i), S(i - 1))), or its dual. */
+static inline void tell_since(gauging *w, int32_t place, int64_t at)
+{
+    const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
+    const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
+    margin_node *o = &w->g->nodes[place];
+    tell_other(w, place, at, within(o->carried, bounds.low, bounds.high));
+}
+
+/* Where an operand has its next step that was not taken; NEVER: there is none. */
+static inline int64_t next_of(const margin_steps *from, const margin_edge *own)
+{
+    return (own->read < from->end) ? step_at(from, own->read)->at : NEVER;
+}
+
+/* Take what operands are at the positions at which one of them changes, up to where all are known. */
+static inline void join_operands(gauging *w, int32_t place,
+                                 void (*tell)(gauging *w, int32_t place, int64_t at))
+{
+    const margin_place *own = &w->shape->places[place];
+    const int32_t *operands = &w->shape->operands[own->edge];
+    margin_edge *edges = &w->g->edges[own->edge];
+    const margin_node *nodes = w->g->nodes;
+    int64_t known = NEVER;
+    int64_t next = NEVER;
+    int32_t i;
+    for (i = 0; i < own->edge_count; i++) {
+        edges[i].next = NEVER;
+        if (operands[i] >= 0) { /* else it never changes */
+            const margin_node *from = &nodes[operands[i]];
+            known = least(known, from->known);
+            edges[i].next = next_of(&from->out, &edges[i]);
+            next = least(next, edges[i].next);
+        }
+    }
+    while (next <= known) {
+        const int64_t at = next;
+        next = NEVER;
+        for (i = 0; i < own->edge_count; i++) {
+            margin_edge *one = &edges[i];
+            if (one->next == at) {
+                const margin_steps *from = &nodes[operands[i]].out;
+                one->value = step_at(from, one->read)->value;
+                one->read++;
+                one->next = next_of(from, one);
+            }
+            next = least(next, one->next);
+        }
+        tell(w, place, at);
+    }
+    w->g->nodes[place].joined = (known > w->g->nodes[place].joined) ? known : w->g->nodes[place].joined;
+}
+
+/* Join what operands are at each position, up to where all are known: where each has a step there. */
+static void join_aligned(gauging *w, int32_t place)
+{
+    const margin_place *own = &w->shape->places[place];
+    const int32_t *operands = &w->shape->operands[own->edge];
+    const bool every = node_plan_of(w, place)->turned != 0;
+    margin_node *o = &w->g->nodes[place];
+    const int64_t first = o->out.end;
+    const margin_steps *stamps = &w->g->nodes[operands[0]].out;
+    int64_t known = NEVER;
+    int64_t end = NEVER;
+    int64_t k;
+    int32_t i;
+    for (i = 0; i < own->edge_count; i++) {
+        const margin_node *from = &w->g->nodes[operands[i]];
+        known = least(known, from->known);
+        end = least(end, from->out.end);
+    }
+    o->joined = known;
+    while ((end > first) && (step_at(stamps, end - 1)->at > known)) {
+        end--;
+    }
+    if ((end == first) || (!has_room(&o->out, end - first)
+                           && !room_for_steps(w, &o->out, end - first, oldest_unread(w, place)))) {
+        return;
+    }
+    for (i = 0; i < own->edge_count; i++) {
+        const margin_steps from = w->g->nodes[operands[i]].out;
+        const margin_steps to = o->out;
+        for (k = first; k < end; k++) {
+            const margin_step next = *step_at(&from, k);
+            margin_step *made = step_at(&to, k);
+            made->at = next.at;
+            made->value = (i == 0) ? next.value : joined(every, made->value, next.value);
+        }
+        w->g->edges[own->edge + i].read = end;
+    }
+    o->out.end = end;
+}
+
+static void follow_until(gauging *w, int32_t place, int64_t at)
+{
+    const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
+    const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
+    parts_follow(w, &w->g->nodes[place].parts, at, bounds.low, bounds.high,
+                 is_thin(w, place));
+}
+
+/* Tell the value of a stretch up to a position. */
+static void tell_stretch(gauging *w, int32_t place, int64_t first, int64_t last, double value)
+{
+    margin_node *o = &w->g->nodes[place];
+    if (!w->sparse || is_thin(w, place)) {
+        tell_step(w, place, first, value);
+        return;
+    }
+    while ((o->positions < w->g->stamps.end)
+           && (step_at(&w->g->stamps, o->positions)->at <= last)) {
+        tell_step(w, place, step_at(&w->g->stamps, o->positions)->at, value);
+        o->positions++;
+    }
+}
+
+/* The trace has ended: from behind its end back, each stretch has the value of what follows it. */
+static void end_until(gauging *w, int32_t place)
+{
+    margin_parts *s = &w->g->nodes[place].parts;
+    double value = margin_behind(w->end, node_plan_of(w, place)->kept != 0);
+    int32_t i;
+    for (i = s->end - 1; i >= s->begin; i--) {
+        value = within(value, s->at[i].least, s->at[i].most);
+        s->at[i].low = value;
+    }
+    for (i = s->begin; i < s->end; i++) {
+        tell_stretch(w, place, s->at[i].first,
+                     (i + 1 < s->end) ? s->at[i + 1].first - 1 : w->end->last, s->at[i].low);
+    }
+    s->begin = s->middle = s->end = 0;
+}
+
+static void gauge_until(gauging *w, int32_t place)
+{
+    margin_node *o = &w->g->nodes[place];
+    margin_parts *s = &o->parts;
+    double value = 0.0;
+    join_operands(w, place, follow_until);
+    while (parts_settled(s, &value)) {
+        const int64_t first = s->at[s->begin].first;
+        parts_leave(s);
+        tell_stretch(w, place, first, (s->end > s->begin) ? s->at[s->begin].first - 1 : o->joined,
+                     value);
+    }
+    if (w->end != NULL) {
+        end_until(w, place);
+    }
+    o->known = (s->end > s->begin) ? s->at[s->begin].first - 1 : o->joined;
+}
+
+void gauge_join(gauging *w, int32_t place)
+{
+    switch (node_plan_of(w, place)->kind) {
+    case OP_JUNCTION:
+        if (w->aligned) {
+            join_aligned(w, place);
+        } else {
+            join_operands(w, place, tell_junction);
+        }
+        break;
+    case OP_SINCE: join_operands(w, place, tell_since); break;
+    default: gauge_until(w, place); return;
+    }
+    w->g->nodes[place].known = w->g->nodes[place].joined;
+}
