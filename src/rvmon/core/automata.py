@@ -25,7 +25,8 @@ class Automata:
 
     def _place(self, automaton: Automaton) -> int:
         width = max(automaton.clocks, 1)
-        classes = [0] if _is_lone(automaton.class_of) else _table(automaton.class_of)
+        class_of = automaton.class_of  # empty if a diagram is used instead
+        classes = [0] * _is_lone(class_of) if isinstance(class_of, LetterDiagram) else class_of
         cut_first, cuts, strides = _regions(automaton, width)
         clause_first, test_first, tests, ages = _clauses(automaton)
         ints = self._ints
@@ -96,11 +97,6 @@ def _decisions(root: Tree) -> list[tuple[int, tuple[Tree, ...]]]:
 def _is_lone(class_of: LetterClasses) -> bool:
     """Whether a diagram has all letters in one class."""
     return isinstance(class_of, LetterDiagram) and isinstance(class_of.root, int)
-
-
-def _table(class_of: LetterClasses) -> Sequence[int]:
-    """The class of each letter; empty if a diagram is used instead."""
-    return () if isinstance(class_of, LetterDiagram) else class_of
 
 
 def _padded(values: Sequence[int], width: int) -> list[int]:

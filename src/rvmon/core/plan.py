@@ -266,10 +266,7 @@ class Part:
         for event in events_of(*self._captured):
             if event != each.value.event:
                 fields.pop(event, None)
-        return {
-            event: list(self._plan.spec.events[event].fields).index(one.field)
-            for event, one in fields.items()
-        }
+        return {event: self.names.field(event, one.field) for event, one in fields.items()}
 
 
 def pack(plan: Plan) -> Packed:

@@ -9,7 +9,7 @@ import struct
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from enum import IntEnum, auto
+from enum import IntEnum
 from itertools import accumulate
 
 from rvmon.spec.checked.specification import CheckedSpec
@@ -82,57 +82,40 @@ _ENTRY = struct.Struct("=2q")
 
 
 class Section(IntEnum):
-    """The sections of a plan by number."""
+    """The sections of a plan by number, each with the layout of its records as plan.h has it."""
 
-    FIELD_FIRST = 0
-    SUBSCRIPTION_FIRST = auto()
-    SUBSCRIPTIONS = auto()
-    PARTS = auto()
-    SIGNALS = auto()
-    EVENTS = auto()
-    ATOMS = auto()
-    NODES = auto()
-    LINKS = auto()
-    JUDGES = auto()
-    AUTOMATA = auto()
-    FORMS = auto()
-    OPERATORS = auto()
-    WATCHES = auto()
-    GROUPS = auto()
-    NUMBERS = auto()
-    CODE = auto()
-    LISTS = auto()
-    INTS = auto()
-    TICKS = auto()
-    MARGINS = auto()
-    MEASURES = auto()
+    record: struct.Struct
 
+    def __new__(cls, layout: str) -> Section:
+        """The next section."""
+        section = int.__new__(cls, number := len(cls.__members__))
+        section._value_ = number
+        section.record = struct.Struct(f"={layout}")
+        return section
 
-RECORDS = {
-    Section.FIELD_FIRST: struct.Struct("=i"),
-    Section.SUBSCRIPTION_FIRST: struct.Struct("=i"),
-    Section.SUBSCRIPTIONS: struct.Struct("=2i"),
-    Section.PARTS: struct.Struct("=53i"),
-    Section.SIGNALS: struct.Struct("=q16iq"),
-    Section.EVENTS: struct.Struct("=12i"),
-    Section.ATOMS: struct.Struct("=d12iq"),
-    Section.NODES: struct.Struct("=2q18i"),
-    Section.LINKS: struct.Struct("=8i"),
-    Section.JUDGES: struct.Struct("=24i"),
-    Section.AUTOMATA: struct.Struct("=22i"),
-    Section.FORMS: struct.Struct("=q10i"),
-    Section.OPERATORS: struct.Struct("=3q10i"),
-    Section.WATCHES: struct.Struct("=4i"),
-    Section.GROUPS: struct.Struct("=4i"),
-    Section.NUMBERS: struct.Struct("=2q"),
-    Section.CODE: struct.Struct("=i"),
-    Section.LISTS: struct.Struct("=i"),
-    Section.INTS: struct.Struct("=i"),
-    Section.TICKS: struct.Struct("=q"),
-    Section.MARGINS: struct.Struct("=6i"),
-    Section.MEASURES: struct.Struct("=d4i"),
-}
-"""The layout of a record of each section, as its type in plan.h."""
+    FIELD_FIRST = "i"
+    SUBSCRIPTION_FIRST = "i"
+    SUBSCRIPTIONS = "2i"
+    PARTS = "53i"
+    SIGNALS = "q16iq"
+    EVENTS = "12i"
+    ATOMS = "d12iq"
+    NODES = "2q18i"
+    LINKS = "8i"
+    JUDGES = "24i"
+    AUTOMATA = "22i"
+    FORMS = "q10i"
+    OPERATORS = "3q10i"
+    WATCHES = "4i"
+    GROUPS = "4i"
+    NUMBERS = "2q"
+    CODE = "i"
+    LISTS = "i"
+    INTS = "i"
+    TICKS = "q"
+    MARGINS = "6i"
+    MEASURES = "d4i"
+
 
 Listed = tuple[int, int]
 """A slice of a section: the index of its first record, and the number of records."""
@@ -148,13 +131,12 @@ class Sections:
 
     def count(self, section: Section) -> int:
         """The number of records of a section."""
-        return len(self._bytes[section]) // RECORDS[section].size
+        return len(self._bytes[section]) // section.record.size
 
     def add(self, section: Section, *fields: float) -> int:
         """Add a record; returns its index."""
-        data, record = self._bytes[section], RECORDS[section]
-        place = len(data) // record.size
-        data += record.pack(*fields)
+        place = self.count(section)
+        self._bytes[section] += section.record.pack(*fields)
         return place
 
     def shared(self, section: Section, *fields: int) -> int:

@@ -214,9 +214,6 @@ def test_several_payloads_where_they_can_be_told_apart():
         assert {str(one.verdict) for one in decided if one.captured["i"] > 9} <= {"P"}
 
 
-"""Numbers of signals with the kinds of their columns."""
-
-
 def test_a_row_that_is_before_the_one_above_is_not_taken(run):
     """Nor is what comes behind it; what stood before is, and so are several of one instant."""
     assert run.rows(np.array([1, 5, 5, 4, 9]), ()) == 3

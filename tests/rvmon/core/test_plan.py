@@ -31,7 +31,7 @@ from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp
 from rvmon.core.forms import Measure, Operator
 from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import pack
-from rvmon.core.sections import RECORDS, Packed, Section
+from rvmon.core.sections import Packed, Section
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
@@ -220,7 +220,7 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
                 offset += size_of_form(form)
     assert not found
     for name, type_ in SECTIONS.items():
-        assert RECORDS[Section[name]].size == size_of(type_)
+        assert Section[name].record.size == size_of(type_)
 
 
 def test_expressions_deeper_than_the_stack_are_refused():
@@ -308,7 +308,7 @@ def test_values_are_captured_by_one_part_for_each_requirement(check):
     first, end = Plan(data).places[Section.PARTS]
     names = [name for name, _ in layouts()["part_plan"]]
     before = "".join(form for _, form in layouts()["part_plan"][: names.index("requirement")])
-    last = end - RECORDS[Section.PARTS].size + struct.calcsize(f"={before}")
+    last = end - Section.PARTS.record.size + struct.calcsize(f"={before}")
     assert first < last < end
     assert struct.unpack_from("=i", data, last) == (1,)
     for number, wrong in ((1, -1), (0, Section.PARTS), (2, Section.PARTS)):
