@@ -317,7 +317,11 @@ class Sentil(Adapter):
             signal, trace = self.peer.parse(formula).robustness_signal, self._trace(laid)
             # What the first call makes ready is not measured.
             signal(self._trace({name: column[:1] for name, column in laid.items()}))
-            return lambda: signal(trace) and None
+
+            def measured() -> None:
+                signal(trace)
+
+            return measured
         update, order = self._monitor(formula)
         cells = zip(*(map(float, laid[name]) for name in order), strict=True)
         rows = [(float(t), list(row)) for t, row in enumerate(cells)]
