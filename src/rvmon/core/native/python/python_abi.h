@@ -212,7 +212,7 @@ void *PyType_GetSlot(PyTypeObject *, int);
 int PyType_IsSubtype(PyTypeObject *, PyTypeObject *);
 
 PyObject *PyObject_Call(PyObject *, PyObject *, PyObject *);
-PyObject *PyObject_GetAttrString(PyObject *, const char *);
+PyObject *PyObject_CallMethod(PyObject *, const char *, const char *, ...);
 void PyObject_Free(void *);
 void PyObject_GC_Del(void *);
 void PyObject_GC_UnTrack(void *);
