@@ -44,8 +44,12 @@ NATIVE = PACKAGE / "native"
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
 """The stable ABI of Python 3.11, which one extension for all later versions needs."""
-FLAGS = ("-std=c99", "-O2", "-fvisibility=hidden", "-fno-fast-math", "-ffp-contract=off")
-"""Numbers are binary64 and rounded after each operation, whatever `$CFLAGS` says before."""
+FLAGS = (
+    *("-std=c99", "-O2", "-fvisibility=hidden", "-fno-fast-math", "-ffp-contract=off"),
+    "-Werror=implicit-function-declaration",
+)
+"""Numbers are binary64 and rounded after each operation, whatever `$CFLAGS` says before; a function
+that no header declares would return half a pointer."""
 PROBE = "#include <math.h>\n#include <stdlib.h>\nint probe(void);\nint probe(void) { return 0; }\n"
 
 
