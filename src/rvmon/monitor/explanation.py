@@ -156,7 +156,7 @@ def longer(required: Core, triggered: int, end: int | None) -> str:
 def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, Scalar]:
     """Truth values by the text of the proposition; of equal texts the last; `None` is unknown.
 
-    Cached, as few differ in a recording.
+    Cached, as few differ in a recording: whoever hands it out gives a copy.
     """
     pairs = zip(texts, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}

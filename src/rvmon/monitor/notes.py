@@ -195,15 +195,15 @@ class NoteExplainer:
             why = why_nothing(cut=bool(note.flags & _CUT))
         elif note.kind == _DECIDED:
             why, leaves = self._decided(attempt, note)
-            seen = truths_shown(self._texts, leaves)
+            seen = dict(truths_shown(self._texts, leaves))
         else:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
-                seen = truths_shown(self._texts, self._truth_values(note, attempt.origin)[0])
+                seen = dict(truths_shown(self._texts, self._truth_values(note, attempt.origin)[0]))
         found = {
             "reason": why.reason,
             "deadline": why.deadline,
-            "at_trigger": truths_shown(self._texts, self._then(note)),
+            "at_trigger": dict(truths_shown(self._texts, self._then(note))),
             "at_decision": seen,
             "required": why.required,
             "blame": why.blame,

@@ -322,3 +322,14 @@ def test_parts_that_samples_decide_are_named_as_they_are_written(
     assert attempt.reason == reason
     place = attempt.blame
     assert place.subformula == spec.checked.source.text[place.start : place.end] == blamed
+
+
+def test_what_one_record_shows_is_its_own():
+    """Whoever changes a mapping of one attempt changes no other's."""
+    spec = rvmon.loads("signal p : bool\nevent e\nrequirement R\n  upon e then p\n")
+    monitor = spec.monitor()
+    first, second = (monitor.step(t, {"p": True, "e": True})[0] for t in (0, 1))
+    first.at_trigger.clear()
+    first.at_decision.clear()
+    assert second.at_trigger
+    assert second.at_decision == {"e": True, "p": True}
