@@ -142,6 +142,18 @@ def test_propositions_are_shown_at_trigger_and_decision():
     assert failed.at_decision == {"go": False, "released": False, "near": None}
 
 
+def test_what_only_the_past_asks_of_is_unknown_until_it_has_a_value():
+    """The past takes it for a truth until then; the first value may be of that same truth."""
+    text = f"{HEAD}signal level : int\nrequirement R\n  upon go\n  then (historically level > 1) and near\n"
+    monitor = rvmon.loads(text).monitor()
+    monitor.step(0, {"near": False})
+    found = monitor.step(1, {"go": True})
+    monitor.step(2, {"level": 0})
+    found += monitor.step(3, {"go": True})
+    assert [one.at_trigger["level > 1"] for one in found] == [None, False]
+    assert [one.at_decision["level > 1"] for one in found] == [None, False]
+
+
 def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     """An I names the obligation and its deadline."""
     samples = [(1, {"go": True})]

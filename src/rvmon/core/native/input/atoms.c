@@ -313,15 +313,18 @@ static bool all_occurrences_known(const run *r, const atom_plan *a)
     return true;
 }
 
-/* The truth of a leaf: its atom, or `b` where that is UNKNOWN because a signal is not born yet. */
+/* Whether a leaf is taken for `b`, as its atom is UNKNOWN only because a signal is not born yet. */
+bool is_taken_for(const run *r, const node_plan *n)
+{
+    return (n->op == NODE_LEAF) && (r->atom[n->a] == IS_UNKNOWN) && (n->b != IS_UNKNOWN)
+           && is_unborn(r, n->operands) && all_occurrences_known(r, &r->part->atoms[n->a]);
+}
+
+/* The truth of a leaf: its atom, or what it is taken for. */
 uint8_t leaf_truth(const run *r, const node_plan *n)
 {
     if (n->op == NODE_UNBORN) {
         return truth_if(is_unborn(r, n->operands));
     }
-    if ((r->atom[n->a] == IS_UNKNOWN) && (n->b != IS_UNKNOWN) && is_unborn(r, n->operands)
-        && all_occurrences_known(r, &r->part->atoms[n->a])) {
-        return (uint8_t)n->b;
-    }
-    return r->atom[n->a];
+    return is_taken_for(r, n) ? (uint8_t)n->b : r->atom[n->a];
 }

@@ -56,6 +56,7 @@ bool recheck_list(run *r, list l);      /* whether one of them did */
 void recheck_amid(run *r, list l);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
+bool is_taken_for(const run *r, const node_plan *n);
 uint8_t leaf_truth(const run *r, const node_plan *n);
 
 /* How a value compares with a constant: the index of a bit, or of `quick_compare.truths`. */

@@ -202,6 +202,27 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
     }
 }
 
+/* Pack the leaves of a judge for people: UNKNOWN where a leaf is taken for a truth because its signal is
+ * not born yet. Returns whether there is such a leaf. */
+bool pack_leaves(const run *r, int32_t index, bool before, int64_t *words)
+{
+    const list leaves = r->part->judges[index].leaves;
+    const int32_t *node = LIST(PLAN(r), leaves);
+    bool found = false;
+    int32_t i;
+    pack_truths(r, leaves, before, words);
+    for (i = 0; (r->at.births_left > 0) && (i < leaves.count); i++) {
+        if (is_taken_for(r, &r->part->nodes[node[i]])) {
+            const uint32_t shift = 2U * ((uint32_t)i % TRUTHS_IN_WORD);
+            uint64_t word = (uint64_t)words[(uint32_t)i / TRUTHS_IN_WORD];
+            word = (word & ~((uint64_t)3 << shift)) | ((uint64_t)IS_UNKNOWN << shift);
+            (void)memcpy(&words[(uint32_t)i / TRUTHS_IN_WORD], &word, sizeof word);
+            found = true;
+        }
+    }
+    return found;
+}
+
 /* The trigger of a judge's oldest open attempt; NEVER. */
 static int64_t oldest_trigger(const run *r, int32_t index)
 {
@@ -240,15 +261,14 @@ static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t wo
 void note_trigger(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
-    const list leaves = r->part->judges[index].leaves;
-    const int32_t words = words_for(leaves.count);
+    const int32_t words = words_for(r->part->judges[index].leaves.count);
     int64_t *made = add_truths(r, index, &n->triggers, words, t);
     const int64_t *last;
     n->began_at = t;
     if (made == NULL) {
         return;
     }
-    pack_truths(r, leaves, false, &made[1]);
+    (void)pack_leaves(r, index, false, &made[1]);
     last = (n->triggers.count > 1) ? entry_of(&n->triggers, n->triggers.count - 2, words) : NULL;
     if ((last != NULL) && (memcmp(&last[1], &made[1], (size_t)words * sizeof *made) == 0)) {
         n->triggers.count--; /* the entry before stands for this one, too */

@@ -57,6 +57,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
     int64_t *made;
     int64_t count;
     int32_t i;
+    bool awaits_birth;
     drop_open_notes(m);
     if (!before && (n->state >= 0) && (n->state_at == r->truth_log->moved_at)
         && (n->epoch == m->epoch)) {
@@ -69,7 +70,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
     }
     made[0] = count;
     made[1] = r->truth_log->begun;
-    pack_truths(r, judged->leaves, before, &made[2]);
+    awaits_birth = pack_leaves(r, index, before, &made[2]);
     pack_truths(r, judged->propositions, before, &made[2 + leaves]);
     for (i = 0; i < judged->propositions.count; i++) {
         const truth_times one = truth_times_of(r, nodes[i], before);
@@ -78,7 +79,7 @@ static int64_t note_state(run *r, int32_t index, int64_t t)
         own[1] = one.last[0];
         own[2] = one.last[1];
     }
-    if (!before) {
+    if (!before && !awaits_birth) { /* a birth may change what is shown though no truth changes */
         n->epoch = m->epoch;
         n->state_at = r->truth_log->moved_at;
         n->state = made - m->notes;
