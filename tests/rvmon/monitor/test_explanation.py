@@ -144,7 +144,8 @@ def test_propositions_are_shown_at_trigger_and_decision():
 
 def test_what_only_the_past_asks_of_is_unknown_until_it_has_a_value():
     """The past takes it for a truth until then; the first value may be of that same truth."""
-    text = f"{HEAD}signal level : int\nrequirement R\n  upon go\n  then (historically level > 1) and near\n"
+    required = "upon go\nthen (historically level > 1) and near"
+    text = f"{HEAD}signal level : int\nrequirement R\n{required}\n"
     monitor = rvmon.loads(text).monitor()
     monitor.step(0, {"near": False})
     found = monitor.step(1, {"go": True})
