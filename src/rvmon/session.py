@@ -246,12 +246,12 @@ class Spec:
         """
         from rvmon.execute.parallel import execute
         from rvmon.monitor.evaluate import evaluate_apart
-        from rvmon.monitor.records import told_by
+        from rvmon.monitor.records import with_plan
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         begin = partial(partial, evaluate_apart, self._compiled, reading=given, only=asked)
         found = execute(traces, begin, jobs=jobs, what="trace")
-        return (told_by(report, self.planned(asked)) for report in found)
+        return (with_plan(report, self.planned(asked)) for report in found)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
         """What judges some requirements, and tells of their attempts; made once."""

@@ -14,7 +14,7 @@ from rvmon.analysis.example import small_step
 from rvmon.analysis.spans import distinct, hold, outside, within
 from rvmon.analysis.truths import (
     Question,
-    Seen,
+    RecordedTruths,
     Truth,
     look_through,
     parts_of,
@@ -81,7 +81,7 @@ def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int,
 
 
 def late_in(
-    attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: Seen
+    attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: RecordedTruths
 ) -> dict[int, int]:
     """By number of the attempt, the instant (ticks) after the deadline when the response came.
 
@@ -192,7 +192,7 @@ def dissect(
 
 
 def part_truths_of(
-    requirement: Requirement, attempt: Attempt, seen: Seen, start: int, stop: int
+    requirement: Requirement, attempt: Attempt, seen: RecordedTruths, start: int, stop: int
 ) -> tuple[PartTruth, ...]:
     """The truth of trigger, consequent and their subformulas, from `start` to `stop` (ticks)."""
     truths = truths_of_parts(requirement, attempt, seen)
@@ -257,7 +257,7 @@ def parts_asked(requirement: Requirement) -> Question:
     return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
 
 
-def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
+def miss_in(spec: CheckedSpec, requirement: Requirement, seen: RecordedTruths) -> str:
     """As `why_not_triggered`, from the truths of its `parts_asked` over a recording."""
     if seen.begin is None:
         return "the recording has no sample"
@@ -341,7 +341,9 @@ def _apart(
         yield f"`{name}` {valueless[name]}"
 
 
-def _without_values(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
+def _without_values(
+    spec: CheckedSpec, parts: Sequence[Formula], seen: RecordedTruths
+) -> Mapping[str, str]:
     """The signals without any value that the operands read, each with the clause for it."""
     read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
     lacking = read & seen.valueless

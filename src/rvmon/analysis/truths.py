@@ -74,7 +74,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class RecordedTruths:
     """The truths of formulas over a recording; after its end they are unknown.
 
     In clocked and sampled time, a truth value is extended from its position to the next.
@@ -108,7 +108,7 @@ def look_through(
     names: frozenset[str] | None = None,
     plans: Plans | None = None,
     outages: Sequence[Outage] = (),
-) -> Seen:
+) -> RecordedTruths:
     """Evaluate formulas over a recording, which is read once.
 
     Args:
@@ -150,7 +150,7 @@ def look_through(
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
     truths = {whose: one.truths(ticks) for whose, one in groups.items()}
-    return Seen(names, begin, end, positions, frozenset(valueless), truths)
+    return RecordedTruths(names, begin, end, positions, frozenset(valueless), truths)
 
 
 class _Plan:
@@ -355,7 +355,9 @@ def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
     return Question(formulas, requirement.for_each, attempt.captured)
 
 
-def truths_of_parts(requirement: Requirement, attempt: Attempt, seen: Seen) -> dict[int, Truth]:
+def truths_of_parts(
+    requirement: Requirement, attempt: Attempt, seen: RecordedTruths
+) -> dict[int, Truth]:
     """The truths of trigger, consequent and their subformulas, by `id()` of the formula.
 
     Args:

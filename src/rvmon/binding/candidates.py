@@ -72,7 +72,7 @@ class Candidate:
         around: words of the topic, of its frames and of the type.
         meaning: of the field; of what is calculated that of the result.
         axis: along which it is measured; empty if along none.
-        told: words of a comment on it.
+        comment_words: those of a comment on it.
         implied: words that people have for it along its axis, or of a joint.
     """
 
@@ -83,7 +83,7 @@ class Candidate:
     around: tuple[str, ...]
     meaning: Meaning
     axis: str = ""
-    told: tuple[str, ...] = ()
+    comment_words: tuple[str, ...] = ()
     implied: tuple[str, ...] = ()
 
     @property
@@ -137,8 +137,8 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
             sunk = axis == "z" and is_down
             words = tuple(word for word in own if not (sunk and word in ALONG))
             implied = () if sunk else _implied(value, own, meaning, axis)
-            told = tuple(words_of(topic.told.get(leaf, "")))
-            yield Candidate(topic, value, kind, words, around, meaning, axis, told, implied)
+            comments = tuple(words_of(topic.comments.get(leaf, "")))
+            yield Candidate(topic, value, kind, words, around, meaning, axis, comments, implied)
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
             turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
             whole = leaf.rpartition(".")[0]
@@ -220,7 +220,7 @@ def modifiers_of(candidate: Candidate) -> set[str]:
     is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
     words = words_of(candidate.topic.name)
     found = {word for word in words if word in (MODIFIERS if is_alone else OF_TOPICS)}
-    found |= {word for word in candidate.told if word in OF_COMMENTS}
+    found |= {word for word in candidate.comment_words if word in OF_COMMENTS}
     return found | {word for word in candidate.own if word in MODIFIERS}
 
 

@@ -168,9 +168,9 @@ def _unit_of(declared: str, one: Candidate, largest: float) -> tuple[str, str]:
         largest: of its values, without their sign.
     """
     dimension = parse_unit(declared).dimension
-    told = [unit.symbol or "1" for unit in one.meaning.units if unit.dimension == dimension]
-    if told:
-        return told[0], ""
+    units = [unit.symbol or "1" for unit in one.meaning.units if unit.dimension == dimension]
+    if units:
+        return units[0], ""
     if one.unit is not None:
         return one.unit.symbol, "  # by the name of the field"
     is_plain = declared not in ("", "1") and parse_unit(declared).factor == 1

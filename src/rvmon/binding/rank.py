@@ -263,5 +263,5 @@ def _weight(word: str, candidate: Candidate) -> float:
         return 1.0
     is_its_unit = candidate.unit is not None and is_measured_in(word, candidate.unit)
     others = (*candidate.own, *candidate.implied, *candidate.around)
-    is_told = word not in _EXTREMES and is_found(word, candidate.told)
-    return 0.9 * (is_its_unit or is_told or is_found(word, others))
+    is_commented = word not in _EXTREMES and is_found(word, candidate.comment_words)
+    return 0.9 * (is_its_unit or is_commented or is_found(word, others))

@@ -15,7 +15,7 @@ from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
-from rvmon.monitor.records import told_by
+from rvmon.monitor.records import with_plan
 from rvmon.readers.places import JOINT, without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
@@ -203,7 +203,7 @@ def judge_all(
                 if not is_alone:  # that one shows how far it is read
                     show(done)
                 if is_apart and one.report is not None:
-                    one = replace(one, report=told_by(one.report, spec.planned(options.only)))
+                    one = replace(one, report=with_plan(one.report, spec.planned(options.only)))
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
@@ -215,7 +215,7 @@ def judge_all(
 def _judge_apart(spec: Spec, trace: str, options: Options, *, is_alone: bool) -> Judged:
     """The same for another process, which has the plan."""
     found = judge(spec, trace, options, is_alone=is_alone)
-    return found if found.report is None else replace(found, report=told_by(found.report, None))
+    return found if found.report is None else replace(found, report=with_plan(found.report, None))
 
 
 @without_copies()

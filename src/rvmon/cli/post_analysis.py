@@ -22,7 +22,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.analysis.truths import Question, Seen
+    from rvmon.analysis.truths import Question, RecordedTruths
     from rvmon.analysis.window_values import Asked
     from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
@@ -294,7 +294,7 @@ def _missed(
 
 
 def _arrived(
-    late: Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]], seen: Seen
+    late: Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]], seen: RecordedTruths
 ) -> Mapping[str, Mapping[int, int]]:
     """By requirement and number of the attempt, when what it awaited came after all."""
     from rvmon.analysis.subformulas import late_in

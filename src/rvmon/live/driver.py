@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
-from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Timers, Told, Values, Waiting
+from rvmon.live.waiting import (
+    Dropped,
+    Entry,
+    Gap,
+    NewRun,
+    Offered,
+    OutageReport,
+    Timers,
+    Values,
+    Waiting,
+)
 from rvmon.spec.checked.names_read import sources_asked
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
@@ -191,21 +201,21 @@ class Driver:
         Raises:
             UnknownNameError: a name is not declared.
         """
-        self._tell(Told.LOST, names, robot, why, since_ns, is_over=is_over)
+        self._report(OutageReport.LOST, names, robot, why, since_ns, is_over=is_over)
 
     def found(self, names: Iterable[str] | None = None, *, robot: str | None = None) -> None:
         """Report that the outage of names ends now; otherwise as `lose`."""
-        self._tell(Told.FOUND, names, robot, "")
+        self._report(OutageReport.FOUND, names, robot, "")
 
     def miss(
         self, names: Iterable[str] | None = None, *, robot: str | None = None, why: str = "lost"
     ) -> None:
         """Report that input was lost between a robot's last sample and its next one."""
-        self._tell(Told.MISSED, names, robot, why)
+        self._report(OutageReport.MISSED, names, robot, why)
 
-    def _tell(
+    def _report(
         self,
-        told: Told,
+        kind: OutageReport,
         names: Iterable[str] | None,
         robot: str | None,
         why: str,
@@ -216,16 +226,16 @@ class Driver:
         some = sources_asked(self.spec.checked, names)
         with self._lock:
             now = max(self._clock.now_ns(), self._stamped)
-            if told is not Told.MISSED:  # samples offered from now on get later stamps
+            if kind is not OutageReport.MISSED:  # samples offered from now on get later stamps
                 self._stamped = now + self._runs_by_itself
             first = (now if since is None else min(since, now)) - (self._asked_lag or 0)
             last = now if is_over else None
-            if told is Told.FOUND and not self._runs_by_itself:
+            if kind is OutageReport.FOUND and not self._runs_by_itself:
                 first = now + 1  # a sample stamped `now` may have been sent before the lost ones
             robots = [*self._waiting.robots] if robot is None else [robot]
             for one in robots:
                 if self._is_room_for(one):
-                    self._waiting.put_gap(Gap(one, told, some, first, last, why))
+                    self._waiting.put_gap(Gap(one, kind, some, first, last, why))
         self.wake()
 
     def _is_room_for(self, robot: str) -> bool:

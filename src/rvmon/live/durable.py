@@ -92,7 +92,7 @@ class DurableMonitor:
     def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
         try:
             head = json.loads(found[0])
-            self._number, data = int(head["told"]), str(head["snapshot"]).encode()
+            self._number, data = int(head["reported"]), str(head["snapshot"]).encode()
             self.taken = int(head["taken"])
             count, check = head.get("mark", self.mark)
             self.mark = int(count), int(check)
@@ -147,7 +147,7 @@ class DurableMonitor:
             OSError: the file cannot be written; it is unchanged.
         """
         head = {
-            "told": self._number,
+            "reported": self._number,
             "taken": self.taken,
             "mark": self.mark,
             "snapshot": self.monitor.snapshot().decode(),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.live.waiting import Dropped, Gap, Told, Values
+from rvmon.live.waiting import Dropped, Gap, OutageReport, Values
 from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import Verdict, fold
@@ -232,7 +232,7 @@ class Robot:
         """Take a report on an outage."""
         # It may have names of a specification that was replaced since.
         names = None if gap.names is None else self._declared(gap.names)
-        if gap.told is Told.FOUND:
+        if gap.kind is OutageReport.FOUND:
             self._down = (
                 {} if names is None else {n: w for n, w in self._down.items() if n not in names}
             )
@@ -240,7 +240,7 @@ class Robot:
             self._come_to(gap.since)
             return
         self._lost += 1
-        if gap.told is Told.MISSED:
+        if gap.kind is OutageReport.MISSED:
             self._monitor.miss(names, why=gap.why)
             return
         self._lose_again(gap.since)

@@ -52,7 +52,7 @@ class Dropped:
         self.first, self.last = min(self.first, sample.t), max(self.last, sample.t)
 
 
-class Told(Enum):
+class OutageReport(Enum):
     """The kinds of reports on outages."""
 
     LOST = "lost"
@@ -66,7 +66,7 @@ class Gap:
 
     Attributes:
         robot: the name of the robot.
-        told: the kind of report.
+        kind: of the report.
         names: signals and events; `None`: all.
         since: the first instant of the outage, ns; for `FOUND` its last instant.
         until: the last instant, ns; `None`: not yet known.
@@ -74,7 +74,7 @@ class Gap:
     """
 
     robot: str
-    told: Told
+    kind: OutageReport
     names: Collection[str] | None
     since: int = 0
     until: int | None = None

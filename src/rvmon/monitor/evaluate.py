@@ -13,7 +13,7 @@ from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.planned import planned_core
 from rvmon.monitor.recording import RecordingRun, judge_recording
-from rvmon.monitor.records import told_by
+from rvmon.monitor.records import with_plan
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.joined import Joined
@@ -100,8 +100,8 @@ def evaluate_trace(
 
 
 def evaluate_apart(compiled: CompiledSpec, trace: Any, **options: Any) -> Report:
-    """Judge a trace for another process; see `evaluate_trace` and `told_by`."""
-    return told_by(evaluate_trace(compiled, trace, **options), None)
+    """Judge a trace for another process; see `evaluate_trace` and `with_plan`."""
+    return with_plan(evaluate_trace(compiled, trace, **options), None)
 
 
 _ROWS = 4096

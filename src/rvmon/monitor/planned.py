@@ -235,7 +235,7 @@ class PlannedCore:
     def _reader(self) -> NotesReader:
         """Explains attempts by their notes."""
         compiled = self._specification
-        key = "told", self.packed.data  # bytes cache their hash, a tuple of ids does not
+        key = "notes reader", self.packed.data  # bytes cache their hash, a tuple of ids does not
         found = compiled.forms.get(key)
         if found is None:
             # Imported on use: most attempts are never explained.

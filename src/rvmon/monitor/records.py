@@ -173,8 +173,8 @@ def recorded(
     return RecordedAttempts(planned, made, captured, (words, letters), origin)
 
 
-def told_by(report: Report, planned: PlannedCore | None) -> Report:
-    """A report with another plan of the same requirements to tell of its attempts.
+def with_plan(report: Report, planned: PlannedCore | None) -> Report:
+    """A report whose attempts are explained by another plan of the same requirements.
 
     Args:
         report: of a recording.

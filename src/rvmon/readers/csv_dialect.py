@@ -151,8 +151,8 @@ def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | N
     numbers = sum(bool(_NUMBER.fullmatch(cell.strip())) for cell in header)
     if numbers == len(header):
         above = lines[first - 1] if first else ""
-        told = _cells(_COMMENT.sub("", above, count=1), separator)
-        if not _COMMENT.match(above) or len(told) != len(header):
+        commented = _cells(_COMMENT.sub("", above, count=1), separator)
+        if not _COMMENT.match(above) or len(commented) != len(header):
             return None
         return Dialect(separator, first - 1, True, _has_commas([header, *rows], separator))
     if first and (numbers or not rows):

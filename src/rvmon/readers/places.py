@@ -99,8 +99,8 @@ def named_errors(path: str | Path) -> Iterator[None]:
         ) from None
     except TraceError as error:
         message = str(error)
-        told = tuple(filter(None, str(path).split(JOINT)))
-        placed = message if message.startswith(told) else f"{path}: {message}"
+        beginnings = tuple(filter(None, str(path).split(JOINT)))
+        placed = message if message.startswith(beginnings) else f"{path}: {message}"
         raise type(error)(placed) from None
     except OSError as error:
         raise TraceError(cannot_read(path, error)) from None

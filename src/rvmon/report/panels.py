@@ -15,7 +15,7 @@ from rvmon.analysis.subformulas import (
     parts_asked,
     waits_of,
 )
-from rvmon.analysis.truths import Question, Seen, look_through, parts_of
+from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.report.changes import Changes, changes_of
 from rvmon.report.pages import Child
@@ -209,11 +209,11 @@ class _Panels:
             for name, attempts in shown.items()
             if name not in report.late
         }
-        self._seen: Seen | None = None
+        self._truths: RecordedTruths | None = None
         if content.run.samples and report.end is not None:
             questions = list(self._questions(shown))
             samples, names = content.run.samples, _sources(content)
-            self._seen = look_through(content.spec, questions, samples, report.end, names)
+            self._truths = look_through(content.spec, questions, samples, report.end, names)
 
     def _questions(self, shown: Mapping[str, Sequence[Attempt]]) -> Iterator[Question]:
         for name, attempts in shown.items():
@@ -267,26 +267,26 @@ class _Panels:
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each subformula over the part of a view within the run."""
         samples = self._content.run.samples
-        if self._seen is None or len(samples) > MOST_DISSECTED:
+        if self._truths is None or len(samples) > MOST_DISSECTED:
             return ()
-        start, stop = max(view.start, samples[0].t), min(view.end, self._seen.end)
+        start, stop = max(view.start, samples[0].t), min(view.end, self._truths.end)
         if start > stop:
             return ()
         requirement = self._content.spec.requirements[attempt.requirement]
-        return part_truths_of(requirement, attempt, self._seen, start, stop)
+        return part_truths_of(requirement, attempt, self._truths, start, stop)
 
     def _miss(self, name: str) -> str:
         """The near miss of a trigger, from the report or computed now."""
         found = self._content.run.report.misses.get(name)
-        if found is not None or self._seen is None:
+        if found is not None or self._truths is None:
             return found or ""
-        return miss_in(self._content.spec, self._content.spec.requirements[name], self._seen)
+        return miss_in(self._content.spec, self._content.spec.requirements[name], self._truths)
 
     def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
         """By number of the attempt, late responses, from the report or computed now."""
-        if name not in self._waits or self._seen is None:
+        if name not in self._waits or self._truths is None:
             return self._content.run.report.late.get(name, {})
-        return late_in(attempts, self._waits[name], self._seen)
+        return late_in(attempts, self._waits[name], self._truths)
 
 
 def _sources(content: RunPage) -> frozenset[str]:

@@ -140,12 +140,12 @@ class Course:
         """The stretches up to an instant, however much later it is than what was said last."""
         self._reach(end)
         count = max(1, -(-(end - self.start + 1) // self.length))
-        told = zip(
+        stretches = zip(
             *(one[:count].tolist() for one in (self._updates, self._lows, self._highs)), strict=True
         )
         return [
             Stretch(updates, low, high) if low <= high else Stretch(updates, None, None)
-            for updates, low, high in told
+            for updates, low, high in stretches
         ]
 
 

@@ -28,14 +28,14 @@ _NUMBERS = re.compile(rf"(?:(?:{_NUMBER.pattern})(?:\n|\Z))+", re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 
 
-class Seen:
+class SeenValues:
     """What was seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
 
     def __init__(self) -> None:
         self.kinds: set[Kind] = set()
         self.bits = False
         self.labels: dict[str, None] = {}
-        self.fields: dict[str, Seen] = {}
+        self.fields: dict[str, SeenValues] = {}
         self.payloads = 0
         self.other = False
 
@@ -89,10 +89,10 @@ class Seen:
         self.payloads += 1
         for key, value in payload.items():
             if value is not None:
-                self.fields.setdefault(key, Seen()).add(value)
+                self.fields.setdefault(key, SeenValues()).add(value)
 
 
-def shapes_seen(seen: Mapping[str, Seen]) -> Shapes:
+def shapes_seen(seen: Mapping[str, SeenValues]) -> Shapes:
     """What names can be declared as."""
     declared: dict[str, Shape] = {}
     left_out: dict[str, str] = {}
@@ -107,7 +107,7 @@ def shapes_seen(seen: Mapping[str, Seen]) -> Shapes:
     return Shapes(declared, left_out)
 
 
-def _shape(seen: Seen) -> Shape | str:
+def _shape(seen: SeenValues) -> Shape | str:
     """The shape, or why there is none.
 
     What would compile and mislead is left out with a reason: a signal has one kind in the language,
@@ -234,10 +234,10 @@ def _elements(topic: Topic, looked: Looked) -> Iterator[tuple[str, str, Shape]]:
                 yield array, element, replace(shape, source=topic.name)
 
 
-def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, Seen]:
+def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, SeenValues]:
     """The texts of a recording; a topic on which nothing was said has none."""
-    seen = {name: Seen() for name in texts}
-    reading: dict[str, list[tuple[Seen, Get]]] = {}
+    seen = {name: SeenValues() for name in texts}
+    reading: dict[str, list[tuple[SeenValues, Get]]] = {}
     for name, (topic, leaf) in texts.items():
         if (field := field_of(leaf)) is not None:
             reading.setdefault(topic, []).append((seen[name], getter(field)))

@@ -26,7 +26,7 @@ from rvmon.readers.places import bounded_lines, local_path, named_errors, opened
 from rvmon.readers.recording import JOINED, FileRecording, format_of, messages_of
 from rvmon.readers.values import as_declared
 from rvmon.starter.column import Column, Profile, Shape, Shapes, Updates, reasons_of
-from rvmon.starter.declared import Seen, message_shapes, shapes_seen
+from rvmon.starter.declared import SeenValues, message_shapes, shapes_seen
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
@@ -41,7 +41,7 @@ RARE = 0.2
 AT_ONCE = 8192
 """Rows, or samples, of which the columns are looked at together."""
 
-Told = tuple["NDArray[np.int64]", Mapping[str, Updates]]
+Recorded = tuple["NDArray[np.int64]", Mapping[str, Updates]]
 """The instants of some samples, and of each name its updates there."""
 
 
@@ -94,7 +94,7 @@ def _of_csv(text: Iterable[str], stamps: Stamps | None) -> Shapes:
     ]
     if stamps is None:
         stamps_among(names, Schema({}, {}))
-    columns = [Seen() for _ in header]
+    columns = [SeenValues() for _ in header]
     while some := [row for _, row in islice(rows, AT_ONCE)]:
         for place, seen in enumerate(columns):
             seen.add_texts(row[place] for row in some if place < len(row))
@@ -118,27 +118,27 @@ def _is_measured(shape: Shape, unit: str) -> bool:
 def _of_parquet(path: str, stamps: Stamps | None) -> Shapes:
     from rvmon.readers.parquet import parquet_cells
 
-    seen: dict[str, Seen] = {}
+    seen: dict[str, SeenValues] = {}
     for columns in parquet_cells(local_path(path)):
         if stamps is None:
             stamps_among(columns, Schema({}, {}))
         for name, cells in columns.items():
-            entry = seen.setdefault(name, Seen())
+            entry = seen.setdefault(name, SeenValues())
             for cell in cells:
                 if cell is not None:
                     entry.add(cell)
     return shapes_seen(_without_time(seen, stamps))
 
 
-def _without_time(seen: Mapping[str, Seen], stamps: Stamps | None) -> dict[str, Seen]:
+def _without_time(seen: Mapping[str, SeenValues], stamps: Stamps | None) -> dict[str, SeenValues]:
     times = DEFAULT_COLUMNS if stamps is None else (stamps.column,)
     return {name: entry for name, entry in seen.items() if name not in times}
 
 
 def _of_json(lines: Iterable[str], stamps: Stamps | None) -> Shapes:
     decode = msgspec.json.Decoder().decode
-    seen: dict[str, Seen] = {}
-    events: dict[str, Seen] = {}
+    seen: dict[str, SeenValues] = {}
+    events: dict[str, SeenValues] = {}
     count = 0
     for number, line in enumerate(lines, 1):
         if not line.strip():
@@ -158,17 +158,17 @@ def _of_json(lines: Iterable[str], stamps: Stamps | None) -> Shapes:
         if isinstance(listed, list) and all(isinstance(name, str) for name in listed):
             del fields["events"]
             for name in listed:
-                events.setdefault(name, Seen()).add_payload({})
+                events.setdefault(name, SeenValues()).add_payload({})
         _collect(fields, "", seen)
     return shapes_seen({**_without_time(_without_rare_objects(seen, count), stamps), **events})
 
 
-def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, Seen]) -> None:
+def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, SeenValues]) -> None:
     for key, value in fields.items():
         name = prefix + key
         if value is None:
             continue
-        entry = seen.setdefault(name, Seen())
+        entry = seen.setdefault(name, SeenValues())
         if isinstance(value, dict):
             entry.add_payload(value)
             _collect(value, name + ".", seen)
@@ -179,9 +179,9 @@ def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, Seen]) -> N
             entry.add(value)
 
 
-def _without_rare_objects(seen: Mapping[str, Seen], lines: int) -> dict[str, Seen]:
+def _without_rare_objects(seen: Mapping[str, SeenValues], lines: int) -> dict[str, SeenValues]:
     """The names to declare: of an object either its parts, or, if it is rare, itself alone."""
-    kept: dict[str, Seen] = {}
+    kept: dict[str, SeenValues] = {}
     for name, entry in seen.items():
         inside = any(name.startswith(event + ".") for event in kept if kept[event].payloads)
         if inside:
@@ -272,7 +272,7 @@ def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
     return Profile(recording.path, kept, left_out, start, end, samples, late, outages)
 
 
-def _updates(pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]) -> Iterator[Told]:
+def _updates(pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]) -> Iterator[Recorded]:
     waiting: list[Sample] = []
     for piece in pieces:
         is_plain = isinstance(piece, Batch) and (np.diff(piece.times) > 0).all()
@@ -289,7 +289,7 @@ def _updates(pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]) ->
         yield _of_samples(waiting, columns)
 
 
-def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Told:
+def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Recorded:
     times = batch.times
     found = {name: columns[name].updates_in(times, one) for name, one in batch.signals.items()}
     for name, one in batch.events.items():
@@ -299,15 +299,15 @@ def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Told:
     return times, found
 
 
-def _of_samples(samples: Sequence[Sample], columns: Mapping[str, Column]) -> Told:
-    told: dict[str, tuple[list[int], list[Value]]] = {}
+def _of_samples(samples: Sequence[Sample], columns: Mapping[str, Column]) -> Recorded:
+    updates: dict[str, tuple[list[int], list[Value]]] = {}
     for sample in samples:
         for name, value in sample.values.items():
-            instants, values = told.setdefault(name, ([], []))
+            instants, values = updates.setdefault(name, ([], []))
             instants.append(sample.t)
             values.append(value)
     found: dict[str, Updates] = {}
-    for name, (instants, values) in told.items():
+    for name, (instants, values) in updates.items():
         times = np.array(instants, np.int64)
         kind = columns[name].shape.kind
         if kind is None:

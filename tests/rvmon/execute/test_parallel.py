@@ -15,7 +15,7 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.records import told_by
+from rvmon.monitor.records import with_plan
 
 pytestmark = pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
@@ -275,8 +275,8 @@ def test_a_report_is_handed_over_without_the_plan(tmp_path):
     many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n" + many)
     report = spec.evaluate([(0, {"x": 1.0}), (1, {"x": 5.0})])
-    handed = pickle.dumps(told_by(report, None))
+    handed = pickle.dumps(with_plan(report, None))
     assert len(handed) < len(pickle.dumps(report)) / 2
-    again = told_by(pickle.loads(handed), spec.planned())  # noqa: S301 - just made
+    again = with_plan(pickle.loads(handed), spec.planned())  # noqa: S301 - just made
     assert again == report
     assert again.attempts[0].reason == report.attempts[0].reason

@@ -167,8 +167,8 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnT
     array = tree[time]
     [count] = array.shape
     if stamps is None:
-        told = _UNITS.get(array.unit.partition(" since ")[0], array.unit)
-        stamps = stamps_of(f"{time}:{told}" if told in TICKS_PER_UNIT else time)
+        unit = _UNITS.get(array.unit.partition(" since ")[0], array.unit)
+        stamps = stamps_of(f"{time}:{unit}" if unit in TICKS_PER_UNIT else time)
     found = {
         name: one
         for name, one in _within(tree)

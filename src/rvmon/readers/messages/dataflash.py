@@ -121,9 +121,9 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
         }
         shown = number.decode("utf-8", "replace") if isinstance(number, bytes) else number
         name = f"/{form.name}" if number is None else f"/{form.name}_{shown}"
-        told = {field: unit for field, unit in units.items() if field in columns}
-        told = {field: unit for field, unit in told.items() if unit not in ("", "UNKNOWN")}
-        topic = Topic(name, form.name, leaves_of(columns), units=told)
+        stated = {field: unit for field, unit in units.items() if field in columns}
+        stated = {field: unit for field, unit in stated.items() if unit not in ("", "UNKNOWN")}
+        topic = Topic(name, form.name, leaves_of(columns), units=stated)
 
         def load(loaded: tuple[Any, Columns] = (own_times, columns)) -> tuple[Any, Columns]:
             return loaded

@@ -70,11 +70,11 @@ class FlatBuffers:
     """
 
     def __init__(self, schema: bytes, name: str) -> None:
-        told = _Packed(schema)
-        root = told.follow(0)
-        self._types = [told.type_at(place) for place in told.tables(root, 0)]
+        packed = _Packed(schema)
+        root = packed.follow(0)
+        self._types = [packed.type_at(place) for place in packed.tables(root, 0)]
         found = (one for one in self._types if one.name == name)
-        self._root = next(found, None) or told.type_at(told.follow(told.slot(root, 12)))
+        self._root = next(found, None) or packed.type_at(packed.follow(packed.slot(root, 12)))
         self.leaves: Mapping[str, Kind] = dict(self._leaves(self._root, "", ()))
 
     def _leaves(self, of: _Type, prefix: str, above: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:

@@ -99,8 +99,8 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
         way = ".".join(steps[:place])
         if found.sort is Sort.OPEN:
             found = _told(way, topic)
-        told = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
-        type_name = plain_type(told)
+        stated = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
+        type_name = plain_type(stated)
     return found
 
 
@@ -125,8 +125,9 @@ def _told(path: str, topic: Topic) -> Meaning:
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
     if said and not unit:
         return _OF_OTHERS
-    if not said and path in topic.told and (is_number or is_vector(topic.messages.get(path, ""))):
-        unit = unit_in_comment(topic.told[path])
+    comment = topic.comments.get(path)
+    if not said and comment and (is_number or is_vector(topic.messages.get(path, ""))):
+        unit = unit_in_comment(comment)
     is_prose = path not in topic.units
     return replace(_read(unit), is_prose=is_prose) if unit else UNKNOWN
 

@@ -183,9 +183,9 @@ def ros_topic(
     messages: dict[str, str] = {}
     leaves = dict(_leaves(store, type_name, messages))
     text = "" if definition[0] == "idl" else definition[1] or others.get(type_name, "")
-    told = dict(_told(leaves, messages, comments_of(text)))
+    comments = dict(_comments(leaves, messages, comments_of(text)))
     unpack = store.deserialize_ros1 if is_ros1 else store.deserialize_cdr
-    topic = Topic(name, type_name, leaves, messages=messages, told=told)
+    topic = Topic(name, type_name, leaves, messages=messages, comments=comments)
     return topic, lambda raw: unpack(raw, type_name)
 
 
@@ -280,7 +280,7 @@ def _lacking(store: Any, type_name: str) -> str:
     return ""
 
 
-def _told(
+def _comments(
     leaves: Iterable[str], messages: Mapping[str, str], comments: Mapping[str, Mapping[str, str]]
 ) -> Iterator[tuple[str, str]]:
     """What a definition says of fields, by path."""

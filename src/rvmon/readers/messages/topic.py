@@ -28,7 +28,7 @@ class Topic:
             the definition names them.
         doubtful: the fields whose kind is not known: nothing was seen of them.
         units: of the fields whose unit the recording says itself, by their path.
-        told: what comments in the definition say of fields, by their path.
+        comments: those of the definition on fields, by their path.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Topic:
     messages: Mapping[str, str] = field(default_factory=dict)
     doubtful: frozenset[str] = frozenset()
     units: Mapping[str, str] = field(default_factory=dict)
-    told: Mapping[str, str] = field(default_factory=dict)
+    comments: Mapping[str, str] = field(default_factory=dict)
 
 
 Message = tuple[str, int, Any]
@@ -99,5 +99,5 @@ def errors_as_damage(
     except (RvmonError, MemoryError, GeneratorExit):
         raise
     except Exception as error:  # noqa: BLE001 - each library has errors of its own
-        told = next((own for sign, own in (fixes or {}).items() if sign in str(error)), fix)
-        raise TraceError(f"cannot be read as {form} ({first_line(error)}): {told}") from None
+        remedy = next((own for sign, own in (fixes or {}).items() if sign in str(error)), fix)
+        raise TraceError(f"cannot be read as {form} ({first_line(error)}): {remedy}") from None

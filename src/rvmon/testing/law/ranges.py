@@ -52,7 +52,7 @@ def most(values: Iterable[Range]) -> Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class Operand:
     """A formula at a position.
 
     Attributes:
@@ -93,8 +93,10 @@ class Past:
             self._known[key] = self._range(formula, i, unborn)
         return self._known[key]
 
-    def _seen(self, formula: Formula, i: int) -> Seen:
-        return Seen(self._truths.state(formula, i), lambda unborn: self.range(formula, i, unborn))
+    def _operand(self, formula: Formula, i: int) -> Operand:
+        return Operand(
+            self._truths.state(formula, i), lambda unborn: self.range(formula, i, unborn)
+        )
 
     def _range(self, formula: Formula, i: int, unborn: Truth) -> Range:
         state = self._truths.state(formula, i)
@@ -121,7 +123,7 @@ class Past:
 
     def _unary(self, formula: Unary, i: int, unborn: Truth) -> Range:
         operand, window = formula.operand, formula.interval or EVER
-        here = self._seen(operand, i)
+        here = self._operand(operand, i)
         is_unborn = self._truths.state(formula, i) is Truth.UNBORN
         match formula.op:
             case UnaryOp.NOT:
@@ -144,7 +146,7 @@ class Past:
                 raise AssertionError("it speaks of the future")
 
     def _binary(self, formula: Binary, i: int, unborn: Truth) -> Range:
-        left, right = self._seen(formula.left, i), self._seen(formula.right, i)
+        left, right = self._operand(formula.left, i), self._operand(formula.right, i)
         match formula.op:
             case BinaryOp.AND:
                 return _all([left, right]).read(unborn)
@@ -194,12 +196,12 @@ class Past:
         outside = self._letters[i].instant - self._letters[self._first - 1].instant
         return window.high is None or outside <= window.high
 
-    def _before(self, operand: Formula, i: int) -> Seen:
+    def _before(self, operand: Formula, i: int) -> Operand:
         if i == 0:
-            return Seen(Truth.FALSE, lambda _: BOTTOM)
+            return Operand(Truth.FALSE, lambda _: BOTTOM)
         state = self._truths.state(operand, i - 1)
         value = ANY if i == self._first else self.range(operand, i - 1, Truth.FALSE)
-        return Seen(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
+        return Operand(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
 
     def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
         now = self._letters[i].instant
@@ -230,21 +232,21 @@ def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
     return most([value, OF_TRUTH[unborn]]) if is_unborn else value
 
 
-def _settled(one: Seen) -> Seen:
+def _settled(one: Operand) -> Operand:
     """False where it is not born, as what lies before the trace."""
     state = Truth.FALSE if one.state is Truth.UNBORN else one.state
-    return Seen(state, lambda _: one.read(Truth.FALSE))
+    return Operand(state, lambda _: one.read(Truth.FALSE))
 
 
-def _not(one: Seen) -> Seen:
-    return Seen(negation(one.state), lambda unborn: negated(one.read(negation(unborn))))
+def _not(one: Operand) -> Operand:
+    return Operand(negation(one.state), lambda unborn: negated(one.read(negation(unborn))))
 
 
-def _any(parts: Sequence[Seen]) -> Seen:
+def _any(parts: Sequence[Operand]) -> Operand:
     return _not(_all([_not(one) for one in parts]))
 
 
-def _all(parts: Sequence[Seen]) -> Seen:
+def _all(parts: Sequence[Operand]) -> Operand:
     """What was lost is not excused by what is not there: with it, the whole may be anything."""
     states = {one.state for one in parts}
 
@@ -255,7 +257,7 @@ def _all(parts: Sequence[Seen]) -> Seen:
             return BOTTOM
         return least(one.read(Truth.UNKNOWN) for one in parts)
 
-    return Seen(conjunction(states), read)
+    return Operand(conjunction(states), read)
 
 
 def _compared(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Range:

@@ -81,10 +81,10 @@ def word_of(
     for index, instant in enumerate(instants):
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
-            told = {name: one.by(before, instant) for name, one in said.items()}
+            history = {name: one.by(before, instant) for name, one in said.items()}
             begins = letters[0] if letters else None
             since = instant if begins is None else begins.since
-            letters.append(replace(_letter(spec, instant, told), since=since))
+            letters.append(replace(_letter(spec, instant, history), since=since))
         else:
             letters.append(_blank(spec, instant))
     return Word(tuple(letters), known_to, reached)
@@ -182,7 +182,7 @@ class _Entry:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _History:
     """What was told of a name by a position.
 
     Attributes:
@@ -199,9 +199,9 @@ class _Told:
     instant: int
     has_source: bool
 
-    def by(self, before: int | None, instant: int) -> _Told:
+    def by(self, before: int | None, instant: int) -> _History:
         """What of it was told by an earlier position."""
-        return _Told(
+        return _History(
             [entry for entry in self.entries if entry.since <= instant],
             [outage for outage in self.outages if outage.first <= instant],
             before,
@@ -226,7 +226,7 @@ class _Told:
 
 def _said_of(
     name: str, samples: Sequence[Sample], outages: Sequence[Outage], *, has_source: bool
-) -> _Told:
+) -> _History:
     """All that is told of a name; what was lost comes before what bears the same stamp.
 
     Raises:
@@ -243,25 +243,25 @@ def _said_of(
     ]
     entries.sort(key=lambda entry: (entry.t, not entry.lost))
     last = entries[-1].t if entries else 0
-    return _Told(entries, of_name, None, last, has_source)
+    return _History(entries, of_name, None, last, has_source)
 
 
-def _letter(spec: CheckedSpec, instant: int, told: Mapping[str, _Told]) -> Letter:
+def _letter(spec: CheckedSpec, instant: int, history: Mapping[str, _History]) -> Letter:
     return Letter(
         instant,
-        {name: _signal(told[name], one) for name, one in spec.signals.items()},
-        {name: _event(told[name], one) for name, one in spec.events.items()},
+        {name: _signal(history[name], one) for name, one in spec.signals.items()},
+        {name: _event(history[name], one) for name, one in spec.events.items()},
     )
 
 
-def _event(told: _Told, event: Event) -> EventState:
-    if not told.has_source or told.is_within:
+def _event(history: _History, event: Event) -> EventState:
+    if not history.has_source or history.is_within:
         return _UNKNOWN_EVENT
-    new = [entry for entry in told.entries if told.is_new(entry)]
+    new = [entry for entry in history.entries if history.is_new(entry)]
     told_of = (one for entry in new for one in _occurrences(entry.value))
     found = (replace(one, payload=_at_edge(one.payload, event)) for one in told_of)
     lost = sum(entry.lost for entry in new)
-    return EventState(_updated(told), tuple(found), lost)
+    return EventState(_updated(history), tuple(found), lost)
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:
@@ -271,49 +271,49 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
     }
 
 
-def _signal(told: _Told, signal: Signal) -> SignalState:
-    if not told.has_source:
+def _signal(history: _History, signal: Signal) -> SignalState:
+    if not history.has_source:
         return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True)
-    if not told.entries:
+    if not history.entries:
         return SignalState()
-    said = (_update(entry.t, entry.value) for entry in told.entries)
+    said = (_update(entry.t, entry.value) for entry in history.entries)
     updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in said]
-    last, within = updates[-1], told.is_within
-    stale = signal.stale_after is not None and told.instant > last.t + signal.stale_after
+    last, within = updates[-1], history.is_within
+    stale = signal.stale_after is not None and history.instant > last.t + signal.stale_after
     # What was lost may have been the first value, and the update behind it.
-    may_be_born = bool(told.outages)
+    may_be_born = bool(history.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
         value=None if stale or within else last.value,
-        updated=_updated(told),
-        changed=_changed(told, updates),
+        updated=_updated(history),
+        changed=_changed(history, updates),
         last=last,
         before=updates[-2] if len(updates) > 1 else None,
         born=may_be_born or bool(since_birth),
         moved=may_be_born or len(since_birth) > 1,
-        lost=not stale and (within or told.entries[-1].lost),
+        lost=not stale and (within or history.entries[-1].lost),
     )
 
 
-def _updated(told: _Told) -> Truth:
+def _updated(history: _History) -> Truth:
     """Whether something said of the name falls to this position."""
-    if told.is_within:
+    if history.is_within:
         return Truth.UNKNOWN
-    kept = any(told.is_new(entry) and not entry.lost for entry in told.entries)
-    return disjunction([truth_of(kept), _if_lost(told)])
+    kept = any(history.is_new(entry) and not entry.lost for entry in history.entries)
+    return disjunction([truth_of(kept), _if_lost(history)])
 
 
-def _changed(told: _Told, updates: Sequence[Update]) -> Truth:
+def _changed(history: _History, updates: Sequence[Update]) -> Truth:
     """Whether an update to another value does."""
-    if told.is_within:
+    if history.is_within:
         return Truth.UNKNOWN
-    pairs = zip(pairwise(updates), told.entries[1:], strict=True)
-    new = (_differ(*pair) for pair, entry in pairs if told.is_new(entry))
-    return disjunction([*new, _if_lost(told)])
+    pairs = zip(pairwise(updates), history.entries[1:], strict=True)
+    new = (_differ(*pair) for pair, entry in pairs if history.is_new(entry))
+    return disjunction([*new, _if_lost(history)])
 
 
-def _if_lost(told: _Told) -> Truth:
-    return Truth.UNKNOWN if told.is_touched else Truth.FALSE
+def _if_lost(history: _History) -> Truth:
+    return Truth.UNKNOWN if history.is_touched else Truth.FALSE
 
 
 def _update(t: int, value: Value) -> Update:

@@ -100,7 +100,7 @@ def test_who_writes_a_unit_has_read_the_comment_that_says_another():
     """A comment is prose; what a recording says of itself, or a standard, is none."""
     schema = Schema({"turn": Kind.REAL}, {}, units={"turn": "rad"})
     told = Topic(
-        "/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, told={"turn": "[m] or degrees"}
+        "/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, comments={"turn": "[m] or degrees"}
     )
     sure = Topic("/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, units={"turn": "m"})
     bound = Bound("/turn", Field(("turn",)))
