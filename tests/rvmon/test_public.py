@@ -64,6 +64,20 @@ def test_import_loads_nothing_heavy():
 
 
 @pytest.mark.process
+def test_help_of_coverage_loads_nothing_that_reads_or_judges():
+    """Only a run of the command does."""
+    heavy = ("numpy", "sqlite3", "rvmon.analysis", "rvmon.monitor")
+    code = (
+        "import sys; from rvmon.cli import main; main(['cover', '--help']); "
+        f"print([one for one in {heavy!r} if one in sys.modules])"
+    )
+    shown = subprocess.run(  # noqa: S603 - the interpreter itself
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert shown.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.process
 def test_a_run_loads_what_it_needs(tmp_path):
     """From the second run on no grammar; of JSON no tables; nothing that it was not asked for."""
     spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))

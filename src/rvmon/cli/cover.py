@@ -5,18 +5,19 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import percentage
-from rvmon.coverage import Coverage, Group
-from rvmon.coverage.database import merge, read
-from rvmon.coverage.questions import only
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.report.coverage_summary import Summary
 from rvmon.report.folder import write_file
 from rvmon.texts import did_you_mean
+
+if TYPE_CHECKING:
+    from rvmon.coverage import Coverage, Group
+    from rvmon.report.coverage_summary import Summary
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -73,6 +74,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, show, and return the exit code."""
+    from rvmon.coverage.database import merge, read
+    from rvmon.report.coverage_summary import Summary
+
     with busy("reading databases"):
         coverage = read(arguments.databases)
         if arguments.merge is not None:
@@ -104,6 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
     """What is compared with: a file, or a campaign of what is shown."""
+    from rvmon.coverage.database import read
+
     if Path(arguments.compare).exists() or arguments.compare not in coverage.campaigns:
         return read([arguments.compare])
     if arguments.campaign is None:
@@ -115,6 +121,8 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
 
 
 def _campaign(coverage: Coverage, name: str) -> Coverage:
+    from rvmon.coverage.questions import only
+
     known = coverage.campaigns
     if name not in known:
         listed = ", ".join(f"`{one}`" for one in known) or "none"

@@ -20,6 +20,7 @@ from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.logic.state_formula import FALSE
 from rvmon.logic.three_valued import Reader
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
+from rvmon.monitor.feed import refuse_settle
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import PlannedCore, planned_as
 from rvmon.monitor.recording import RecordingRun
@@ -248,6 +249,7 @@ class CoverageMonitor:
     """
 
     def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
+        refuse_settle(settle)  # also where there is nothing to watch, and so no run that would
         self._watched = watched
         self._runs = [
             _CoverageRun(planned, compiled, Options(settle, sources, None))

@@ -16,6 +16,16 @@ from rvmon.trace.sample import Health, Sample, Value
 from rvmon.trace.time import ticks_of_seconds
 
 
+def refuse_settle(settle: str) -> None:
+    """Check when a sample is to count as complete.
+
+    Raises:
+        UnknownNameError: `settle` is neither `now` nor `next`.
+    """
+    if settle not in ("now", "next"):
+        raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
+
+
 class Feed:
     """Validates samples, holds back the incomplete ones, and passes the others to the core.
 
@@ -31,8 +41,7 @@ class Feed:
         sources: frozenset[str] | None,
         settle: str,
     ) -> None:
-        if settle not in ("now", "next"):
-            raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
+        refuse_settle(settle)
         delay = checked.max_delay or 0
         self._intake = Intake(delay, checked.events) if delay or settle == "next" else None
         self.losses = Losses(checked, planned, core, self._intake)

@@ -4,6 +4,7 @@ import pytest
 
 from rvmon import loads
 from rvmon.coverage import illegal
+from rvmon.errors import UnknownNameError
 
 SIGNALS = """signal p, q : bool
 signal x : real
@@ -151,3 +152,11 @@ def test_combinations_have_names_of_their_own():
     points = "".join(f"coverpoint {n} {own}\n" for n, own in zip("ab", bins, strict=True))
     spec = loads(f"{SIGNALS}{points}cross c = a, b\n")
     assert len(spec.coverage_model.model.groups["c"].items) == 4
+
+
+@pytest.mark.parametrize("goals", ["", "coverpoint c = p {yes: true}"])
+def test_an_unknown_way_to_settle_is_refused(goals):
+    """Also where nothing is to be covered."""
+    model = loads(f"{SIGNALS}{goals}\n").coverage_model
+    with pytest.raises(UnknownNameError, match="no way to settle `later`: there are now, next"):
+        model.monitor(settle="later")
