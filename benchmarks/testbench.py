@@ -30,6 +30,7 @@ import os
 import resource
 import sys
 import time
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -37,7 +38,6 @@ from itertools import islice
 from pathlib import Path
 from statistics import median
 
-from benchmarks.planted_faults import FAULTS
 from msgspec import structs
 
 from handover.campaign.campaign import ROBOTS, handover_campaign
@@ -60,6 +60,7 @@ from rvmon.cdv.shrink import Shrunk, shrink
 from rvmon.session import load
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
+FAULTS = tomllib.loads(Path(__file__).with_name("planted_faults.toml").read_text("utf-8"))
 STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest")
 
 

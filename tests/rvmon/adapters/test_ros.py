@@ -11,9 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from benchmarks.lossy.wires import until
 from tests.rvmon.adapters.talkers import SIMULATOR
-from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
+from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster, until
 
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.messages import MessageFeed
@@ -168,6 +167,43 @@ def test_sources_that_begin_at_once_hear_alike():
     assert told.stdout.count("made") == 12, told.stderr
 
 
+@pytest.mark.process
+def test_what_finds_no_room_in_dds_is_lost(monkeypatch):
+    """Of what its topic feeds, since the last message; as the queue is empty it is known again."""
+    pytest.importorskip("cyclonedds")
+    from cyclonedds.domain import DomainParticipant
+    from cyclonedds.pub import DataWriter
+    from cyclonedds.topic import Topic as DdsTopic
+
+    from rvmon.adapters import dds
+
+    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
+    monkeypatch.setattr(dds, "_DEPTH", 1)
+    domain, topic = 100 + os.getpid() % 100, f"speed{os.getpid()}"
+    spec = loads(f"signal {topic} : real\nrequirement R\n  always {topic} <= 1")
+    driver, gate, taken = Driver(spec), threading.Event(), []
+
+    class Slow(MessageFeed):
+        def take(self, topic, content):
+            taken.append(content)
+            gate.wait(LONG)
+            super().take(topic, content)
+
+    kind = dds._idl_type("std_msgs/msg/Float64", ())
+    robot = DomainParticipant(domain)
+    writer = DataWriter(robot, DdsTopic(robot, f"rt/{topic}", kind))
+    with dds.DdsSource(Slow(driver, spec.schema), domain=domain):
+        until(writer.get_matched_subscriptions)
+        writer.write(kind(data=0.5))
+        until(lambda: taken)
+        writer.write(kind(data=0.5))
+        writer.write(kind(data=5.0))
+        until(lambda: driver.waiting)  # that it found no room
+        gate.set()
+        until(lambda: driver.waiting >= 3)
+    assert driver.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
+
+
 @pytest.fixture
 def linked(monkeypatch):
     """Of a stand-in for rospy what its one connection is, and what its master says."""
@@ -191,7 +227,7 @@ def linked(monkeypatch):
     return link
 
 
-@pytest.mark.parametrize("fault", ["nonsense of the master", "rospy itself"])
+@pytest.mark.parametrize("fault", ["a connection", "nonsense of the master", "rospy itself"])
 def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fault):
     """Nobody knows any more whether something is lost: that is lost."""
     from rvmon.adapters.ros1 import Ros1Source
@@ -203,7 +239,9 @@ def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fau
         if fault == "rospy itself":
             linked.impl.connections = 7
         else:
-            linked.master = lambda: ("", "", "no lists")
+            published = [["/base/speed", ["/robot"]]]
+            is_there = 1, "", (published, [], [])
+            linked.master = lambda: is_there if fault == "a connection" else ("", "", "no lists")
             linked.impl.connections = []
         until(lambda: driver.waiting)
     driver.offer({"base.speed": 0.5})

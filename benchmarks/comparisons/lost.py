@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import random
 import shutil
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
@@ -96,35 +96,24 @@ class Door:
     """What loses something.
 
     Attributes:
-        through: gives the verdicts of trials, in their order; `None`: it refuses the run.
+        through: gives the verdicts of a trial; `None`: it refuses the run.
         traces: what runs may hold.
         ends: whether time goes on behind the last sample, by a tick.
-        plain: whether it takes no events with payloads, nor names that no requirement reads.
     """
 
-    through: Callable[[Iterator[Trial]], Iterable[Verdicts | None]]
+    through: Callable[[Trial], Verdicts | None]
     traces: TraceProfile = _TRACES
     ends: bool = True
-    plain: bool = False
 
 
-def trials(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Trial]:
-    """So many trials whose loss changes a letter that a requirement reads."""
-    return islice(_trials(door, how, seed, folder), count)
-
-
-def _trials(door: str, how: Door, seed: object, folder: Path) -> Iterator[Trial]:
-    profile = Profile(for_each=not how.plain)
+def trials(door: str, how: Door, seed: object, folder: Path) -> Iterator[Trial]:
+    """Trials whose loss changes a letter that a requirement reads, without end."""
     for number in itertools.count():
         spec = None
-        for part, drawn in enumerate(
-            cases_of(f"{door}/{seed}/{number}", profile, how.traces, EACH)
-        ):
-            case = _plain(narrowed(drawn) if how.plain else drawn)
+        drawn = cases_of(f"{door}/{seed}/{number}", Profile(), how.traces, EACH)
+        for part, case in enumerate(map(_plain, drawn)):
             spec = spec or Spec(case.spec)
             if len(case.samples) < 3 or case.spec.max_delay or not is_spoken_of(case.spec):
-                continue
-            if how.plain and any(event.fields for event in case.spec.events.values()):
                 continue
             name = f"{door}/{seed}/{number}/{part}"
             rng = random.Random(name)
@@ -207,13 +196,6 @@ def _filled(rng: random.Random, trial: Trial, case: Case) -> Case:
 
 def outcomes(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
     """What comes of so many trials at a door."""
-    given, kept = itertools.tee(trials(door, how, count, seed, folder))
-    for verdicts, trial in zip(how.through(given), kept, strict=True):
-        yield outcome(trial, how, verdicts)
+    for trial in islice(trials(door, how, seed, folder), count):
+        yield outcome(trial, how, how.through(trial))
         shutil.rmtree(trial.folder)
-
-
-def batches(trials: Iterator[Trial], size: int) -> Iterator[list[Trial]]:
-    """Trials that go through a door together."""
-    while batch := [*islice(trials, size)]:
-        yield batch

@@ -1,0 +1,311 @@
+"""Doors at which something of a run is lost: files, a pipe of lines, `Live`, `DurableMonitor`.
+
+What brokers and middleware lose is told to the same driver; how each notices it, its tests show.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from random import Random
+from time import sleep
+from typing import Any
+
+from benchmarks.comparisons.lost import Door, Trial, Verdicts
+from tests.tools.doors import Content, arrow_of, content_of, written_csv, written_json
+
+from rvmon.adapters.json_objects import JsonObjects, feed_lines
+from rvmon.errors import TraceError
+from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+
+_KNOWN = TraceProfile(advances=False, unknowns=False)
+_TYPES = {Kind.BOOL: "boolean", Kind.INT: "integer", Kind.REAL: "number", Kind.LABEL: "string"}
+
+
+def _object_of(sample: Sample) -> bytes:
+    """A sample as JSON has it."""
+    values = {n: [*v] if isinstance(v, tuple) else v for n, v in sample.values.items()}
+    return json.dumps({"t_ns": sample.t, **values}).encode()
+
+
+def _damaged(rng: Random, line: bytes) -> bytes:
+    """A line, or object, of which nobody can say what it held."""
+    half = line[: rng.randrange(1, len(line) - 1)]
+    large = line.replace(b": ", b': 1e400, "t_ns": ', 1)
+    return rng.choice([half, line[:-1] + b',"q":1,"q":1}', large, b"\xff", b"[]", b'"on"'])
+
+
+def _damaged_row(rng: Random, line: bytes) -> bytes:
+    """A row of a table of which cells are missing, or hold what is none."""
+    short = b",".join(line.split(b",")[: rng.randrange(1, line.count(b",") + 1)])
+    return rng.choice([short, line + b",1", b'"' + line, b"\xff" + line, b"x" + line])
+
+
+def _through_file(write: Callable[[Trial, str], Path], lines: int | None, trial: Trial) -> Any:
+    """A file that is damaged, ends too soon, or lacks what a name feeds.
+
+    Args:
+        write: makes the file, without a name.
+        lines: so many are no rows; `None`: it is no text, and any of its bytes may be others.
+        trial: the run.
+    """
+    rng = trial.rng
+    # In sampled time messages of a topic that is not there are no positions either.
+    is_lacking = trial.case.spec.time is not TimeModel.SAMPLED and rng.random() < 0.2
+    if is_lacking:
+        trial.names = [rng.choice(trial.names)]
+    trial.is_whole = not is_lacking
+    path = write(trial, trial.names[0] if is_lacking else "")
+    if not is_lacking:
+        (_change_bytes if lines is None else partial(_change_line, lines))(trial, path)
+    how: dict[str, Any] = {}
+    if lines is not None:  # text does not say of which names it could speak
+        how["sources"] = _content(trial, trial.names[0] if is_lacking else "").sources
+    try:
+        return trial.spec.evaluate(path, allow_missing=is_lacking, **how).verdicts
+    except TraceError:
+        return None
+
+
+def _change_line(head: int, trial: Trial, path: Path) -> None:
+    rows = path.read_bytes().splitlines()
+    at = trial.case.samples[trial.lost.start].t
+    place = head + [t for t, _ in _content(trial, "").rows].index(at)
+    damage = _damaged_row if head else _damaged
+    rows[place : trial.rng.choice((place + 1, len(rows)))] = [damage(trial.rng, rows[place])]
+    path.write_bytes(b"\n".join([*rows, b""]))
+
+
+def _change_bytes(trial: Trial, path: Path) -> None:
+    """Some bytes are others, or the file ends there."""
+    rng, body = trial.rng, bytearray(path.read_bytes())
+    place = rng.randrange(4, len(body))
+    if rng.random() < 0.2:
+        del body[place:]
+    for at in range(place, min(len(body), place + rng.choice((1, 1, 2, 8)))):
+        body[at] ^= rng.randrange(1, 256)
+    path.write_bytes(body)
+
+
+def _content(trial: Trial, gone: str) -> Content:
+    """The recording in columns, without those of a name."""
+    whole = content_of(Random(trial.name), trial.case)
+
+    def kept(cells: Any) -> Any:
+        return {n: cell for n, cell in cells.items() if n.partition(".")[0] != gone}
+
+    rows = tuple((t, kept(cells)) for t, cells in whole.rows)
+    return Content(kept(whole.columns), whole.events - {gone}, rows)
+
+
+def _csv(trial: Trial, gone: str) -> Path:
+    return written_csv(_content(trial, gone), trial.folder, "")
+
+
+def _json_lines(trial: Trial, gone: str) -> Path:
+    return written_json(_content(trial, gone), trial.folder)
+
+
+def _parquet(trial: Trial, gone: str) -> Path:
+    from pyarrow import parquet
+
+    path, table = trial.folder / "a.parquet", arrow_of(_content(trial, gone))
+    size = trial.rng.randint(1, 9)
+    parquet.write_table(table, path, row_group_size=size, write_page_checksum=True)
+    return path
+
+
+def _mcap(trial: Trial, gone: str) -> Path:
+    """Each name is a topic of JSON; chunks hold some messages each."""
+    from mcap.writer import CompressionType, Writer
+
+    spec, channels, path = trial.case.spec, {}, trial.folder / "a.mcap"
+    packing = trial.rng.choice((CompressionType.NONE, CompressionType.ZSTD, CompressionType.LZ4))
+    with path.open("wb") as file:
+        size = trial.rng.choice((50, 200, 9_000))
+        writer: Any = Writer(file, chunk_size=size, compression=packing)
+        writer.start()
+        for name in (*spec.signals, *spec.events):
+            if name == gone or (trial.case.names is not None and name not in trial.case.names):
+                continue
+            if name in spec.signals:
+                kinds = {"data": spec.signals[name].type.kind}
+            else:
+                kinds = {field: one.kind for field, one in spec.events[name].fields.items()}
+            described = {field: {"type": _TYPES[kind]} for field, kind in kinds.items()}
+            text = json.dumps({"type": "object", "properties": described}).encode()
+            schema = writer.register_schema(name, "jsonschema", text)
+            channels[name] = writer.register_channel(f"/{name}", "json", schema)
+        for sample in trial.case.samples:
+            for name, value in sample.values.items():
+                for one in value if isinstance(value, tuple) else (value,):
+                    said = {"data": one} if name in spec.signals else one
+                    text = json.dumps({} if said is True else said).encode()
+                    if name in channels:
+                        writer.add_message(channels[name], sample.t, text, sample.t)
+        writer.finish()
+    return path
+
+
+def _closed(driver: Driver, clock: SimulatedClock, trial: Trial) -> Verdicts:
+    """The verdicts when all was offered, and a tick is over."""
+    clock.set_ns(max(clock.now_ns(), trial.end))
+    return driver.close()[""][-1].verdicts
+
+
+def _stdin(trial: Trial) -> Verdicts:
+    """Lines that are damaged, come late, or are cut from inside of one to inside of another."""
+    rng, clock = trial.rng, SimulatedClock(trial.case.samples[0].t)
+    driver = Driver(trial.spec, clock=clock, sources=trial.case.names)
+    lines = [_object_of(one) for one in trial.case.samples]
+    lost = [lines[place] for place in trial.lost]
+    kept = [line for place, line in enumerate(lines) if place not in trial.lost]
+    place = trial.lost.start
+    match rng.choice(("damaged", "late", "cut")):
+        case "damaged":
+            kept[place:place] = [_damaged(rng, line) for line in lost]
+        case "late":
+            trial.is_late = trial.is_named = True
+            place = rng.randrange(place + 1, len(kept) + 1)
+            kept[place:place] = lost
+        case _:
+            kept.insert(place, lost[0][: rng.randrange(1, len(lost[0]) - 1)])
+    feed_lines(JsonObjects(driver, clock=clock), kept)
+    return _closed(driver, clock, trial)
+
+
+def _live(trial: Trial) -> Verdicts:
+    """A source that is down, samples that come late, are too many, or are refused."""
+    how = trial.rng.choice((_down, _late, _flood, _refused))
+    clock = SimulatedClock(trial.case.samples[0].t)
+    with Live(trial.spec, clock=clock, sources=trial.case.names) as driver:
+        how(trial, driver, clock)
+        return _closed(driver, clock, trial)
+
+
+def _come(driver: Driver, clock: SimulatedClock, sample: Sample) -> bool:
+    clock.set_ns(max(sample.t, clock.now_ns()))
+    return driver.offer(sample.values, t_ns=sample.t)
+
+
+def _down(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
+    names = trial.rng.choice((None, trial.names))
+    is_heard_at_once = trial.rng.random() < 0.5
+    trial.is_late = not is_heard_at_once
+    since = None
+    for place, sample in enumerate(trial.case.samples):
+        clock.set_ns(sample.t)
+        if place == trial.lost.start:
+            since = sample.t
+            if is_heard_at_once:
+                driver.lose(names, robot="")
+        if place not in trial.lost:
+            driver.offer(sample.values, t_ns=sample.t)
+        elif place == trial.lost[-1]:
+            if not is_heard_at_once:  # what it meant for what was judged is told later
+                driver.lose(names, robot="", since_ns=since)
+            driver.found()
+        if trial.rng.random() < 0.3:
+            sleep(0.0005)
+
+
+def _late(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
+    trial.is_late = trial.is_named = True
+    samples = trial.case.samples
+    for sample in (s for place, s in enumerate(samples) if place not in trial.lost):
+        _come(driver, clock, sample)
+    for place in trial.lost:
+        _come(driver, clock, samples[place])
+
+
+def _flood(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
+    """The lost samples come while the callback of another one takes its time."""
+    trial.is_named = True
+    with driver._working:
+        driver._waiting.room = trial.lost.start + len(driver._waiting)
+        for sample in trial.case.samples[: trial.lost.stop]:
+            _come(driver, clock, sample)
+    driver._waiting.room = 10_000
+    while driver.waiting:
+        sleep(0.0001)
+    for sample in trial.case.samples[trial.lost.stop :]:
+        _come(driver, clock, sample)
+
+
+def _refused(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
+    trial.is_named = True
+    for place, sample in enumerate(trial.case.samples):
+        wrong: dict[str, Any] = {"p": "on"} if "p" in sample.values else {"no such name": 1}
+        values = {**sample.values, **wrong} if place in trial.lost else sample.values
+        _come(driver, clock, Sample(sample.t, values))
+
+
+def _durable(trial: Trial) -> Verdicts:
+    """A run that is killed again and again, of which samples cannot be read or come too late."""
+    rng = trial.rng
+    told: dict[int, object] = {}
+
+    def tell(number: int, attempt: object) -> None:
+        if told.setdefault(number, attempt) != attempt:
+            raise AssertionError(f"{number} was told twice, and otherwise")
+
+    def begun() -> DurableMonitor:
+        path = trial.folder / "run"
+        if rng.random() < 0.3 and path.exists():  # in the midst of an entry
+            with path.open("ab") as file:
+                file.write(b'[5,{"p"')
+        return DurableMonitor(
+            *(trial.spec, path, tell),
+            sources=trial.case.names,
+            settle="next",
+            every=rng.randint(1, 4),
+        )
+
+    how = rng.choice(("missed", "refused", "late"))
+    trial.is_named = how != "missed"
+    monitor = begun()
+    for place, sample in enumerate(trial.case.samples):
+        if rng.random() < 0.3:
+            monitor = begun()
+        if place not in trial.lost:
+            monitor.step_ns(sample.t, dict(sample.values))
+        elif how == "missed":
+            monitor.miss(rng.choice((None, trial.names)))
+        elif how == "refused":
+            _refuse(monitor, sample.t, {**sample.values, "no such name": 1})
+    if how == "late":
+        trial.is_late = True
+        for place in trial.lost:
+            _refuse(monitor, trial.case.samples[place].t, dict(trial.case.samples[place].values))
+            if rng.random() < 0.3:
+                monitor = begun()
+    monitor.advance_ns(trial.end)
+    if rng.random() < 0.3:
+        monitor = begun()
+    return monitor.monitor.finish_ns().verdicts
+
+
+def _refuse(monitor: DurableMonitor, t: int, values: dict[str, Any]) -> None:
+    try:
+        monitor.step_ns(t, values)
+    except TraceError:
+        return
+    raise AssertionError("it was to be refused")
+
+
+DOORS = {
+    "csv": Door(partial(_through_file, _csv, 1), _KNOWN, ends=False),
+    "json lines": Door(partial(_through_file, _json_lines, 0), _KNOWN, ends=False),
+    "parquet": Door(partial(_through_file, _parquet, None), _KNOWN, ends=False),
+    "mcap": Door(partial(_through_file, _mcap, None), _KNOWN, ends=False),
+    "stdin": Door(_stdin),
+    "live": Door(_live),
+    "durable": Door(_durable),
+}
+"""By name."""
