@@ -1,0 +1,291 @@
+"""A monitor that lives long, and processes that are killed.
+
+    python -m benchmarks.endurance soak --samples 100000000
+    python -m benchmarks.endurance kills --kills 200 [--only "rvmon run --resume" …]
+
+`soak` feeds a sample per millisecond, in a pattern of a second: attempts that overlap, keys that
+come again, NaN, a signal that becomes stale. How many attempts pass and fail in each second is
+known, and compared at the end. Prints memory after each tenth, the times of steps with the time to
+ask the clock, and what is said where time itself ends, at 2^62 ns.
+
+`kills` begins runs that are kept (`rvmon watch --state`, a program with a `DurableMonitor`,
+`rvmon run --resume`, shards, a campaign) again after each kill at a random point until they end:
+what they write is compared with what they write undisturbed. Exits 1 if anything is wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import random
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from benchmarks.peers.adapters import resident_kib
+from tests.tools import killed_watch
+from tests.tools.forked import Forked
+
+import handover.cli
+import rvmon
+from rvmon import cli
+from rvmon.errors import TraceError
+from rvmon.trace.time import TIME_LIMIT
+from rvmon.verdict import Verdict
+
+SPEC = """
+spec soak
+signal p : bool
+signal speed : real [m/s]  stale after 10 ms
+event go, odd
+event pick(id: int), done(id: int)
+requirement R1 "of attempts that overlap, four of ten fail"
+  upon go
+  then within 25 ms p
+requirement R2 "an excess; what is not known in between leaves the last attempt undecided"
+  always speed <= 1 m/s
+requirement R3 "of five keys one is never done"
+  upon pick
+  then within 30 ms done.id == n
+  for each n in pick.id
+requirement R4 "a dropout is over in time"
+  upon go
+  then within 25 ms speed >= 0.5 m/s
+requirement R5 "and here it is not: undecided for ever"
+  upon odd
+  then for 3 ms speed < 5 m/s
+"""
+STEP_NS = 1_000_000
+ROWS = 1_000
+TAIL = 60
+"""Samples that say nothing, at the end: behind them no deadline is open."""
+
+BINS, BIN_NS = 400_000, 10
+"""The times of steps are told apart to so many times so many nanoseconds."""
+
+KNOWN = {
+    "R1": (60, 40, 0),
+    "R2": (0, 10, 0),
+    "R3": (40, 10, 0),
+    "R4": (100, 0, 0),
+    "R5": (0, 0, 10),
+}
+"""How many attempts pass, fail and stay undecided in each second."""
+
+
+def _sample(row: int, period: int) -> dict[str, Any]:
+    """Of the samples of a second: ten times the same but for the keys."""
+    found: dict[str, Any] = {"p": 30 <= row < 40 or 60 <= row < 70}
+    if not 70 <= row < 90:  # it is stale from 79 to 90
+        found["speed"] = float("nan") if 10 <= row < 15 else 2.0 if 45 <= row < 48 else 0.8
+    if row % 10 == 0:
+        found["go"] = True
+    if row == 80:
+        found["odd"] = True
+    if row % 20 == 5:
+        found["pick"] = {"id": 5 * period + row // 20}
+    if row % 20 == 17 and row != 97:
+        found["done"] = {"id": 5 * period + row // 20}
+    return found
+
+
+def live(seconds: int, first: int, only: Sequence[str]) -> tuple[dict[str, Any], str]:
+    """Feed a monitor that keeps 100 records of each verdict.
+
+    Returns:
+        Samples taken, KiB of memory after each tenth, verdicts, how many steps took so many times
+        `BIN_NS`, and nanoseconds of the longest; and what was said where a sample was refused.
+    """
+    monitor = rvmon.loads(SPEC).monitor(keep=100, only=only)
+    rows = [_sample(row % 100, row // 100) for row in range(ROWS)]
+    step, clock, t, said = monitor.step_ns, time.perf_counter_ns, first, ""
+    resident, bins, longest = [resident_kib()], np.zeros(BINS, np.int64), 0
+    try:
+        for second in range(seconds + 1):
+            spent = []
+            for row in rows if second < seconds else [{}] * TAIL:
+                began = clock()
+                step(t, row)
+                spent.append(clock() - began)
+                t += STEP_NS
+            longest = max(longest, *spent)
+            bins += np.bincount([min(one // BIN_NS, BINS - 1) for one in spent], minlength=BINS)
+            if (second + 1) * 10 % seconds < 10 and second < seconds:
+                resident.append(resident_kib())
+    except TraceError as error:
+        said = str(error)
+    taken = (t - first) // STEP_NS
+    ends = Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE
+    counts = {name: [own[one] for one in ends] for name, own in monitor.finish().counts.items()}
+    found = {"taken": taken, "resident": resident, "counts": counts}
+    return {**found, "bins": bins, "longest": longest}, said
+
+
+def soak(options: argparse.Namespace) -> int:
+    """Feed, compare, print, and return 1 if a verdict is wrong."""
+    seconds = max(10, options.samples // ROWS)
+    names = [one for one in KNOWN if not options.only or one in options.only]
+    began = time.perf_counter()
+    lived, _ = live(seconds, 0, names)
+    print(f"{lived['taken']:,} samples in {time.perf_counter() - began:.0f} s")
+    print("memory, MiB: " + " ".join(f"{kib / 1024:.1f}" for kib in lived["resident"]))
+    steps = lived["bins"].cumsum()
+    middle, high = (np.searchsorted(steps, np.array((0.5, 0.999)) * steps[-1]) + 1) * BIN_NS / 1000
+    longest = lived["longest"] / 1000
+    print(f"a step, µs: p50 {middle:.2f}, p99.9 {high:.2f}, longest {longest:,.0f}")
+    wrong = 0
+    for name, found in lived["counts"].items():
+        known = [seconds * one for one in KNOWN[name]]
+        known[2] += name == "R2"  # it goes on, and was unknown
+        wrong += found != known
+        mark = "as known" if found == known else f"WRONG, it is {known}"
+        print(f"{name}: {found[0]:,} P, {found[1]:,} F, {found[2]:,} I: {mark}")
+    # One second and a half to the end: the samples before it are judged, the one behind is refused.
+    last, said = live(2, TIME_LIMIT - 1500 * STEP_NS, names)
+    found = last["counts"].get("R1", [90, 58, 2])
+    whole = last["taken"] == 1500 and found == [90, 58, 2] and bool(said)
+    print(f"the end of time: {last['taken']:,} samples are taken, then: {said}")
+    print(f"  R1 {found}: {'as known' if whole else 'WRONG'}")
+    return int(wrong > 0 or not whole)
+
+
+WATCH = "rvmon watch --state"
+_JUDGE = "rvmon run s.rv . --out out/v.csv --resume"
+RESUMED = {
+    "rvmon run --resume": [_JUDGE],
+    "rvmon run --jobs 2 --resume": [f"{_JUDGE} --jobs 2"],
+    "rvmon run --shard": [f"{_JUDGE} --shard 1/2", f"{_JUDGE} --shard 2/2", _JUDGE],
+    "handover run, resumed": ["handover run --tests 40 --legacy --jobs 2 --out out"],
+}
+"""Commands that are ended again and again, with all that they began, until they come to an end."""
+
+SECONDS = re.compile(rb'("seconds": ?|simulated in |\bin )[\d.]+|"spent": ?[\d.]+')
+RESUMED_SPEC = """spec resumed
+signal x : real
+requirement R1
+  always (x > 1 -> eventually[0, 50 s] x < -1)
+"""
+
+
+def _written(folder: Path) -> dict[str, bytes]:
+    """Tables and tests; pages and databases hold when and how they were made."""
+    return {
+        str(path.relative_to(folder)): SECONDS.sub(b"", path.read_bytes())
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in (".csv", ".json", ".tex")
+    }
+
+
+def _main(words: str) -> object:
+    program, *arguments = words.split(" ")
+    return {"rvmon": cli.main, "handover": handover.cli.main}[program](arguments)
+
+
+def _kept(out: Path) -> int:
+    """So many bytes are kept of what is not finished."""
+    size = 0
+    for path in out.rglob("*"):
+        with suppress(FileNotFoundError):  # it is finished just now
+            size += path.stat().st_size * (path.suffix in (".journal", ".unfinished"))
+    return size
+
+
+def _resumed(kind: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
+    """Run commands undisturbed, then killed whenever more than before is kept; again, if need be.
+
+    Each kill interrupts something: what was kept had grown by a random size since it was begun.
+    """
+    (folder / "s.rv").write_text(RESUMED_SPEC)
+    for number in range(100):
+        lines = [f"{row},{dice.gauss(0, 1):.3f}" for row in range(300)]
+        (folder / f"r{number:03}.csv").write_text("\n".join(["t,x", *lines, ""]))
+    found, out, full = Counter[str](), folder / "out", Counter[str]()
+    known: Mapping[str, bytes] = {}
+    while not known or found["kills"] < kills:
+        out.mkdir()
+        for words in RESUMED[kind]:
+            is_over = False
+            while not is_over:
+                least = _kept(out) + (dice.uniform(1, full[words] / 5) if known else math.inf)
+
+                def is_time(words: str = words, least: float = least) -> bool:
+                    full[words] = max(full[words], _kept(out))
+                    return _kept(out) > least
+
+                process = Forked(partial(_main, words), folder, folder / "told")
+                is_over = not process.kill_when(is_time)
+                found["kills"] += not is_over
+        known = known or _written(out)
+        found["runs to the end"] += 1
+        found["changed"] += _written(out) != known
+        found["left behind"] += _kept(out) > 0
+        shutil.rmtree(out)
+    return found
+
+
+def _watched(kind: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
+    """Verdicts of lines, told by lives that are killed, beside those of one that is not."""
+    seed = dice.randrange(1 << 30)
+    killed_watch.written(folder, seed, 40 * kills)
+    expected = killed_watch.whole(folder)
+    run: Callable[[], object] = partial(cli.main, killed_watch.WATCH.split(" "))
+    if kind != WATCH:
+        run = partial(killed_watch.program, folder)
+    found, done = killed_watch.killed(folder, kills, seed, run)
+    return Counter(
+        {
+            "kills": done,
+            "verdicts": len(expected),
+            "lost": len(expected.keys() - found.keys()),
+            "of nobody": len(found.keys() - expected.keys()),
+            "changed": sum(found[n] != expected[n] for n in found.keys() & expected),
+        }
+    )
+
+
+KINDS = {**dict.fromkeys(RESUMED, _resumed), **dict.fromkeys((WATCH, "DurableMonitor"), _watched)}
+WRONG = ("changed", "left behind", "lost", "of nobody")
+"""What must not be counted."""
+
+
+def kills(options: argparse.Namespace) -> int:
+    """Kill, compare, print, and return 1 if anything is wrong."""
+    bad = 0
+    for kind in options.only or KINDS:
+        with tempfile.TemporaryDirectory() as folder:
+            dice = random.Random(options.seed)
+            found = KINDS[kind](kind, Path(folder), options.kills, dice)
+        print(f"{kind}: {options.kills} kills")
+        for what, count in sorted(found.items()):
+            print(f"  {what}: {count:,}", flush=True)
+        bad += sum(found[what] for what in WRONG)
+    return int(bad > 0)
+
+
+def main(argv: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    commands = parser.add_subparsers(required=True)
+    long, killed = commands.add_parser("soak"), commands.add_parser("kills")
+    long.set_defaults(run=soak)
+    long.add_argument("--samples", type=int, default=1_000_000)
+    long.add_argument("--only", nargs="+", choices=KNOWN)
+    killed.set_defaults(run=kills)
+    killed.add_argument("--kills", type=int, default=50, help="of each kind")
+    killed.add_argument("--seed", type=int, default=1)
+    killed.add_argument("--only", choices=KINDS, nargs="+", metavar="KIND")
+    options = parser.parse_args(argv)
+    code: int = options.run(options)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
