@@ -11,23 +11,14 @@ from typing import TYPE_CHECKING
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
-from rvmon.live.waiting import (
-    Dropped,
-    Entry,
-    Gap,
-    NewRun,
-    Offered,
-    OutageReport,
-    Timers,
-    Values,
-    Waiting,
-)
+from rvmon.live.waiting import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
 from rvmon.spec.checked.names_read import sources_asked
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.live.waiting import Entry, Values
     from rvmon.session import Spec
     from rvmon.verdict.report import Report
 
