@@ -5,10 +5,11 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import pytest
 
+from rvmon.cli import main
 from tests.seconds import Seconds
 
 
@@ -57,6 +58,18 @@ def _do_without(message: str) -> NoReturn:
 def chromium() -> str:
     """Path of a headless browser."""
     return _program("chromium")
+
+
+@pytest.fixture
+def says(capsys: pytest.CaptureFixture[str]) -> Callable[..., Any]:
+    """Run a command that is to end with a code: what it says then, to both outputs."""
+
+    def run(code: int, *words: object) -> Any:
+        capsys.readouterr()
+        assert main([*map(str, words)]) == code
+        return capsys.readouterr()
+
+    return run
 
 
 @pytest.fixture

@@ -47,7 +47,6 @@ def tokens(line):
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.name)
 def test_specifications_are_coloured(path):
-    """Every word, number and text of a specification has a colour, words of the language theirs."""
     for line in path.read_text(encoding="utf-8").splitlines():
         coloured = tokens(line)
         code = re.sub(r'"[^"]*"|#.*', "", line)
@@ -67,14 +66,10 @@ def test_every_word_of_the_language_is_known():
         assert coloured.startswith(("keyword", "constant.language")), word
 
 
-def test_functions():
-    """Functions are coloured before their bracket."""
+def test_functions_and_numbers_with_units():
+    """Functions before their bracket; units belong to their number, operators do not."""
     for function in sorted(FUNCTIONS):
         assert tokens(f"x and {function}(y)")[2] == (function, "support.function.rv")
-
-
-def test_numbers_with_units():
-    """Units belong to their number, operators do not."""
     assert tokens("d < 5.5 mm/s and x")[2:4] == [
         ("5.5", "constant.numeric.rv"),
         ("mm/s", "keyword.other.unit.rv"),
@@ -103,7 +98,6 @@ def matchers():
 
 @pytest.mark.parametrize("name", ["rvmon", "rvmon-json", "github"])
 def test_problem_matchers_read_findings(name):
-    """The patterns fit what `rvmon check --format concise` and `--format json` print."""
     from rvmon.diagnostics import render_concise, render_json
 
     pattern = matchers()[name]

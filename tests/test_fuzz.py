@@ -9,7 +9,6 @@ MOST_BYTES = 300_000
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(TARGETS.keys() - {"recording"}))
 def test_kept_inputs_are_read_or_refused(name):
-    """Each target has some; anything but an error for people comes out of it."""
     found = [*seeds(name)]
     assert found
     for data in found:
@@ -18,7 +17,6 @@ def test_kept_inputs_are_read_or_refused(name):
 
 @pytest.mark.slow
 def test_kept_recordings_are_judged_alike():
-    """By columns and by samples; some are judged, not only refused."""
     ends = {run("recording", data) for data in seeds("recording")}
     assert "judged" in ends
 

@@ -50,26 +50,20 @@ def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
 
 
 @pytest.mark.slow
-def test_past_is_stepped() -> None:
+@pytest.mark.parametrize("blind", [False, True])
+def test_past_is_stepped_and_disagreement_is_seen(blind: bool) -> None:
     """A long bound of the past is compared by stepping, and ours is FALSE among the rows."""
-    peer = Played()
+    peer = Played(blind=blind)
     found, said = check(peer, 1000.0)
     assert set(peer.kinds) == {"discrete online"}
     assert found.compared >= 3 * ROWS
-    assert found.equal == found.compared
+    assert (found.equal == found.compared) is not blind
     assert 0 < found.false < found.compared
     assert said == []
 
 
 @pytest.mark.slow
-def test_disagreement_is_seen() -> None:
-    """A peer that never says FALSE does not judge alike."""
-    found, _ = check(Played(blind=True), 1000.0)
-    assert found.equal < found.compared
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("rows", [ROWS // 2, ROWS, 2 * ROWS + 700])
+@pytest.mark.parametrize("rows", [ROWS // 2, 2 * ROWS + 700])
 def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
     """A peer that is slow is asked for so many rows as it steps in the time, failures first."""
     peer = Played()

@@ -24,7 +24,6 @@ def test_the_page_can_be_read():
     ],
 )
 def test_a_tolerance_is_kept(tolerance, fits, fails):
-    """What is within it holds, what is beyond it does not."""
     claim = Claim("", "", "", "5", tolerance)
     assert claim.holds_for(fits)
     assert not claim.holds_for(fails)

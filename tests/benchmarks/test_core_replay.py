@@ -1,6 +1,5 @@
 """The core in C alone: what it says of recorded cases, on this machine and on a smaller one."""
 
-import shutil
 import subprocess
 from argparse import Namespace
 from pathlib import Path
@@ -50,26 +49,25 @@ def said(folder: Path, cases: Path, *compiler: str) -> list[str]:
     return done.stdout.splitlines()
 
 
-@pytest.fixture(scope="module")
-def first(cases: Path, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """What the core says as gcc compiles it for this machine."""
-    return said(tmp_path_factory.mktemp("first"), cases, "gcc")
+MACHINES = ("clang", "gcc -m32 -msse2 -mfpmath=sse", "gcc")
 
 
-@pytest.mark.parametrize("other", ["clang", "gcc -m32 -msse2 -mfpmath=sse"])
-def test_machines_say_the_same(other: str, first: list[str], cases: Path, tmp_path: Path) -> None:
-    """Whoever compiles it, for 64 or 32 bits, however it is driven, in whatever block of memory."""
-    compiler = other.split()
-    if shutil.which(compiler[0]) is None:
-        pytest.skip(f"{other} is not installed")
-    try:
-        assert said(tmp_path, cases, *compiler) == first
-    except subprocess.CalledProcessError as error:
-        if b"gnu/stubs" in error.stderr or b"libgcc" in error.stderr:
-            pytest.skip("gcc has no libraries of 32 bits (gcc-multilib)")
-        raise
-    assert len(first) > CASES / 2
-    wrong = [line for line in first if len(line.split()) > 2]
+def test_machines_say_the_same(cases: Path, tmp_path: Path) -> None:
+    """Two of those that are here, of 64 and of 32 bits if they can be, in any block of memory."""
+    told: list[list[str]] = []
+    for compiler in MACHINES:
+        try:
+            told.append(said(tmp_path, cases, *compiler.split()))
+        except (FileNotFoundError, subprocess.CalledProcessError) as error:
+            missing = getattr(error, "stderr", b"gnu/stubs")  # gcc may lack its 32 bits
+            if b"gnu/stubs" not in missing and b"libgcc" not in missing:
+                raise
+        if len(told) == 2:
+            break
+    one, other = told
+    assert one == other
+    assert len(one) > CASES / 2
+    wrong = [line for line in one if len(line.split()) > 2]
     assert not wrong, "a letter of core_replay.c tells what should never be"
 
 
@@ -77,8 +75,8 @@ def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
     """Most small changes of the core are told from it by some dozens of cases."""
     trial = Trial(tmp_path, cases.read_bytes())
     path = CORE / "formulas" / "graph.c"
-    drawn = draw(c_mutants(path), Namespace(seed=1, count=2))
-    assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 1
+    (mutant,) = draw(c_mutants(path), Namespace(seed=1, count=1))
+    assert trial.outcome(mutant) == "killed"
 
 
 def test_c_changes(tmp_path):

@@ -31,7 +31,7 @@ from tests.tools.build import (
     two,
     x,
 )
-from tests.tools.common_fragment import UntranslatableError, names_in, to_core
+from tests.tools.common_fragment import UntranslatableError, to_core
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import TimeModel
@@ -54,7 +54,6 @@ from rvmon.spec.checked.specification import TimeModel
     ],
 )
 def test_text(dialect: Dialect, formula: Formula, text: str) -> None:
-    """A formula is written in the words and with the brackets of the peer."""
     assert translate(formula, dialect) == text
 
 
@@ -90,7 +89,6 @@ def test_refusal(dialect: Dialect, formula: Formula) -> None:
     ],
 )
 def test_core(formula: Formula) -> None:
-    """The core says the same at every row."""
     columns = {
         "p": [True, True, True, False, True, False],
         "q": [False, True, True, False] + [True] * 2,
@@ -100,8 +98,3 @@ def test_core(formula: Formula) -> None:
         return answers(Question(asked, columns, TimeModel.SAMPLED), ask_oracle)
 
     assert judged(to_core(formula)) == judged(formula)
-
-
-def test_names() -> None:
-    """The names in a formula are those of its propositions and numbers."""
-    assert names_in(two(p, "U", compared(x, "<", 1), 0, 3)) == {"p", "x"}

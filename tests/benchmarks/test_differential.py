@@ -36,7 +36,6 @@ def test_each_is_tried() -> None:
 
 
 def counts(printed: str) -> dict[str, int]:
-    """The table."""
     found = re.findall(r"^  (\S.*?)  +([\d,]+)$", printed, re.MULTILINE)
     return {name: int(figure.replace(",", "")) for name, figure in found}
 
@@ -44,7 +43,6 @@ def counts(printed: str) -> dict[str, int]:
 @pytest.mark.law
 @pytest.mark.parametrize("name", FEW)
 def test_a_few_of_each(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Each comparison tries something, and finds nothing."""
     count, given, what, least = FEW[name]
     settings = ["--set", *given] if given else []
     assert main([name, "--count", str(count), *settings]) == 0
@@ -91,7 +89,6 @@ def test_what_disagrees_is_shown(
 def test_a_setting_that_does_not_exist(
     words: list[str], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It is named, with those that there are."""
     with pytest.raises(SystemExit):
         main(words)
     assert told in capsys.readouterr().err

@@ -38,7 +38,6 @@ def _tools_on_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_each_message_is_as_its_tool_says(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
-    """A row of the table: so many messages, all equal."""
     form, library, write = WRITERS[name]
     pytest.importorskip(library)
     path = write(tmp_path / name, ROWS)

@@ -37,7 +37,6 @@ class Fake:
 
 
 def test_turns() -> None:
-    """Contenders pass in turn, and each leads once."""
     calls: list[str] = []
     contenders = [Fake("a", 10, calls), Fake("b", 20, calls)]
     result = measure(WORKLOAD, contenders, 2, 1.0)
@@ -51,20 +50,13 @@ def test_turns() -> None:
 
 
 def test_slow_contender_gets_fewer_rows() -> None:
-    """Who is slow gets as many rows as fit into the time, and never less than a few."""
     for per_row, rows in ((10_000_000, 100), (1_000_000_000, 50)):
         assert measure(WORKLOAD, [Fake("a", per_row, [])], 1, 1.0).figures[0].rows == rows
 
 
 def test_refusal() -> None:
-    """Who cannot take part is named with the reason."""
     result = measure(WORKLOAD, [Fake("a", 10, [], "no past")], 1, 1.0)
     assert (result.figures, result.refusals) == ((), (("a", "no past"),))
-
-
-def test_changing() -> None:
-    """The share of changing rows counts each row at which some column changes."""
-    assert WORKLOAD.changing == 100 / 199
 
 
 class Dying(Fake):
@@ -84,7 +76,6 @@ def test_death() -> None:
 
 
 def test_very_slow_contender_passes_twice() -> None:
-    """Who takes far too long is measured twice, and still has its figure."""
     calls: list[str] = []
     result = measure(WORKLOAD, [Fake("a", 10**9, calls), Fake("b", 10, calls)], 5, 1.0)
     assert {figure.label for figure in result.figures} == {"a", "b"}

@@ -28,27 +28,18 @@ class Shy:
 
 @pytest.fixture
 def peer(tmp_path: Path):
-    """A peer with an answer, an error and an accident."""
     module = tmp_path / "shy.py"
     module.write_text(MODULE)
     with Peer(Path(sys.executable), "Shy", module) as asked:
         yield asked
 
 
-def test_answer(peer: Peer) -> None:
-    """An answer comes back, whatever the peer prints."""
+def test_a_peer_is_asked_on_whatever_it_prints_raises_or_dies_of(peer: Peer) -> None:
+    """What it raises is an error that says so, its death one with the exit code."""
     assert peer.ask("judge", values=[True, False])["values"] == [False, True]
-
-
-def test_error(peer: Peer) -> None:
-    """What the peer raises is an error that says so, and the peer can be asked again."""
     with pytest.raises(PeerError, match="ValueError: not today"):
         peer.ask("refuse")
     assert peer.ask("judge", values=[True])["values"] == [False]
-
-
-def test_death(peer: Peer) -> None:
-    """A peer that dies is an error with its exit code, and is started anew."""
     with pytest.raises(PeerError, match="code 7"):
         peer.ask("die")
     assert peer.ask("judge", values=[False])["values"] == [True]

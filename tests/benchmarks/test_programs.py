@@ -11,7 +11,6 @@ from benchmarks.growth import cliffs
 
 
 def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    """One line for each; what is none is refused with the list."""
     assert main(["--help"]) == 0
     listed = capsys.readouterr().out
     assert all(f"  {name} " in listed for name in BENCHMARKS)
@@ -24,7 +23,6 @@ def test_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
 def test_each_helps(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`--help` is answered, and names the program."""
     monkeypatch.setattr("sys.argv", ["it", "--help"])
     monkeypatch.delitem(sys.modules, f"benchmarks.{name}", raising=False)
     with pytest.raises(SystemExit) as ended:
@@ -34,7 +32,6 @@ def test_each_helps(
 
 
 def test_hard_streams_have_neighbours() -> None:
-    """Each stream and its neighbour are judged, and have a line."""
     lines = list(cliffs.table(60, 1))
     assert len(lines) == 2 + 15
     assert all(line.count("|") == 8 for line in lines[2:])

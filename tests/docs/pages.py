@@ -21,6 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tests import WITHOUT
+
 from handover.cli import main as handover
 from rvmon.cli import main as rvmon
 from rvmon.errors import ModelError, SpecError
@@ -161,7 +163,7 @@ class Runner:
             out, err = self._captured()
         else:
             path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-            settings = {"PATH": path, "PYTEST_ADDOPTS": "-p no:asyncio -p no:pytest-lsp"}
+            settings = {"PATH": path, "PYTEST_ADDOPTS": WITHOUT}
             done = subprocess.run(  # noqa: S603 - our own pages
                 words, capture_output=True, text=True, check=False, env={**os.environ, **settings}
             )

@@ -44,7 +44,6 @@ def test_operators_of_the_grammar_are_spelled_out(made):
 
 
 def test_every_command_is_described(made):
-    """A command that is added is on the page, with all of its options."""
     text = made("command_line").commands("rvmon")
     titles = re.findall(r"^## rvmon (\w+)", text, re.MULTILINE)
     assert set(titles) == set(COMMANDS)
@@ -58,7 +57,6 @@ def test_every_pattern_is_described(made):
 
 @pytest.mark.parametrize(("page", "text"), PICTURES)
 def test_a_picture_is_drawn(made, page, text):
-    """Each has a row for each name of its recording, and for each requirement."""
     drawn = made("timeline").timeline(text.rstrip("\n"))
     names = text.partition("---\n")[2].partition("\n")[0].split(",")[1:]
     requirements = re.findall(r"^requirement (\w+)", text, re.MULTILINE)

@@ -59,12 +59,10 @@ def test_the_page_is_true(page, tmp_path, monkeypatch, capsys):
 
 
 def test_pages_with_a_test_of_their_own_have_it():
-    """Who moves such a test moves its page along."""
     assert all((ROOT / test).exists() for test in OWN_TESTS.values())
 
 
 def test_links_lead_somewhere():
-    """Every file that a page links to exists."""
     lost = []
     for page in PAGES:
         text, folder = (ROOT / page).read_text("utf-8"), (ROOT / page).parent

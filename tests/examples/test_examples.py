@@ -1,6 +1,8 @@
 """The examples print what their table says; those of ROS run with their adapters."""
 
+import csv
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -10,10 +12,12 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from tests import WITHOUT
 from tests.rvmon.adapters import rclpy_stub
 from tests.tools.servers import Broker, missing, mosquitto
 
 from rvmon import load
+from rvmon.cli import main
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -31,7 +35,6 @@ def play(monkeypatch, capsys):
 
 
 def test_a_stream_in_another_program(play):
-    """Each verdict as it falls, then the requirements."""
     lines = play("base_live.py")
     assert [line.split(" at ")[0] for line in lines if "#" in line] == [
         "B1 #1 FAIL",
@@ -42,7 +45,6 @@ def test_a_stream_in_another_program(play):
 
 
 def test_a_loop_of_asyncio(play):
-    """A deadline passes in the loop, while nothing comes."""
     (line,) = play("asyncio_loop/drive.py")
     assert line.startswith("B2#1 F `for 1 s speed <= 0.001 m/s` had to come true")
 
@@ -84,7 +86,7 @@ def test_tests_of_a_base():
     told = subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"],
         cwd=EXAMPLES / "pytest_plugin",
-        env={**os.environ, "PYTEST_ADDOPTS": "-p no:asyncio -p no:pytest-lsp"},
+        env={**os.environ, "PYTEST_ADDOPTS": WITHOUT},
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -94,7 +96,6 @@ def test_tests_of_a_base():
 
 @pytest.mark.process
 def test_a_fleet_over_mqtt(play, tmp_path):
-    """Each robot by itself: one does not stop, the other does."""
     pytest.importorskip("paho.mqtt.client")
     from rvmon.adapters.json_objects import JsonObjects
     from rvmon.adapters.mqtt import MqttSource, address_of
@@ -156,3 +157,34 @@ def _drive(graph, metres):
         if metres is not None:
             graph.call(graph.timers[-1])
             graph.publish(topic, data=value)
+
+
+def _run(*command, told=""):
+    """What a command prints."""
+    return subprocess.run(  # noqa: S603
+        command, input=told, check=True, stdout=subprocess.PIPE, text=True
+    ).stdout
+
+
+@pytest.mark.process
+def test_the_node_says_what_rvmon_says(gcc, tmp_path):
+    node = EXAMPLES / "ros2_node" / "node.cpp"
+    main(["export", str(EXAMPLES / "base.rv"), "--to", "c", "-o", str(tmp_path)])
+    for name in re.findall(r"<(\w+/.+)>", node.read_text()):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text('#include "rclcpp_stub.hpp"\n')
+    flags = ["-Wall", "-Wextra", "-Werror", f"-I{tmp_path}", f"-I{Path(__file__).parent}"]
+    objects = []
+    for name in ("rvmon_core", "base_plan"):
+        objects.append(tmp_path / f"{name}.o")
+        _run(gcc, "-c", tmp_path / f"{name}.c", "-o", objects[-1])
+    _run("g++", "-std=c++17", *flags, node, *objects, "-o", tmp_path / "node")
+    lines = []
+    with (EXAMPLES / "base.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            t = round(float(row["t"]) * 1e9)
+            lines += [f"{t} time 0", f"{t} odom -{row['speed']}", f"{t} range {row['obstacle']}"]
+            lines += [f"{t} stop {row['stop_request'] or 0}"]
+    told = _run(tmp_path / "node", told="\n".join(lines)).splitlines()
+    attempts = load(EXAMPLES / "base.rv").evaluate(EXAMPLES / "base.csv").attempts
+    assert sorted(told) == sorted(f"{one.name} {one.verdict}" for one in attempts)

@@ -19,7 +19,6 @@ def test_every_row_is_read():
 
 @pytest.mark.parametrize(("path", "function", "taken", "given"), PASSES)
 def test_a_pass_takes_and_gives_what_its_row_says(path, function, taken, given):
-    """Its file has the function, whose signature names both types."""
     found = getattr(import_module(f"rvmon.{path.replace('/', '.')}"), function)
     signature = inspect.signature(found)
     parameters = " ".join(str(one.annotation) for one in signature.parameters.values())

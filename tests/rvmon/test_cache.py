@@ -38,7 +38,6 @@ def test_a_relative_place_is_ignored(folder, monkeypatch):
 
 @pytest.mark.parametrize("said", ["1", "none"])
 def test_what_was_used_last_is_kept(folder, monkeypatch, said):
-    """The folder does not grow beyond what is said; what is no number says nothing."""
     monkeypatch.setenv("RVMON_CACHE_MB", said)
     place = cache_folder()
     assert place is not None
@@ -77,7 +76,6 @@ def test_what_killed_processes_left_is_deleted(folder):
 
 
 def test_files_are_private_whatever_the_umask_says(folder):
-    """Nobody else reads what requirements ask."""
     known = os.umask(0)
     try:
         place = cache_folder()
@@ -91,7 +89,6 @@ def test_files_are_private_whatever_the_umask_says(folder):
 
 @pytest.mark.parametrize("harm", ["cut", "flip", "others", "gone", "pipe", "folder"])
 def test_what_is_damaged_or_foreign_is_not_used(folder, harm):
-    """A file is used only as it was written, and if nobody else can change it."""
     place = cache_folder()
     assert place is not None
     path = place / "spec-0.json"
@@ -148,7 +145,6 @@ def opened(path, flags, *more, real=os.open, **where):
 @pytest.mark.slow
 @pytest.mark.parametrize(("call", "fails"), [("open", opened), ("fsync", full), ("replace", full)])
 def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch, call, fails):
-    """A spec judges as ever, at whichever step the disk is full; nothing is left behind."""
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     with monkeypatch.context() as patch:
@@ -162,7 +158,6 @@ def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch
 
 @pytest.mark.process
 def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_path):
-    """Both judge, nothing unfinished is left, and what is kept is read back."""
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     words = [sys.executable, "-c", COMPILE, str(path)]

@@ -25,7 +25,6 @@ def rendered():
 
 
 def test_only_colours_are_added():
-    """Without the control sequences the text is the same, line by line."""
     text = rendered()
     shown = coloured(text)
     assert re.sub(r"\x1b\[\d+m", "", shown) == text
@@ -33,7 +32,6 @@ def test_only_colours_are_added():
 
 
 def test_who_gets_colours(monkeypatch):
-    """A terminal does, unless NO_COLOR is set or it is a dumb one; a file or pipe does not."""
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setenv("TERM", "xterm")
     assert wants_colour(Terminal())

@@ -31,7 +31,6 @@ BARE = Diagnostic("RV006", "too-many-findings", Severity.WARNING, "so much")
 
 
 def test_full():
-    """Place, line, underline, other places, help; tabs do not shift the underline."""
     assert render_full([FINDING, BARE]) == (
         "error[RV012 unknown-signal]: no signal or event named `relased`\n"
         "  --> specs/demo.rv:3:19\n"
@@ -49,7 +48,6 @@ def test_full():
 
 
 def test_concise():
-    """One line per finding, fit for problem matchers."""
     assert render_concise([FINDING, BARE]).splitlines() == [
         "specs/demo.rv:3:19: error[RV012 unknown-signal]: no signal or event named `relased`"
         " (help: did you mean `released`?)",
@@ -57,27 +55,21 @@ def test_concise():
     ]
 
 
-def test_json():
-    """All that a finding holds, with lines, columns and offsets."""
-    first, second = json.loads(render_json([FINDING, BARE]))
+def test_json_has_all_in_a_line_for_each_finding():
+    """A pattern for lines finds the first place of each."""
+    text = render_json([FINDING, BARE])
+    first, second = json.loads(text)
     assert (first["code"], first["severity"], second["spans"]) == ("RV012", "error", [])
     assert first["spans"][0]["start"] == {"line": 3, "column": 19, "offset": PLACE}
     assert first["spans"][0]["end"]["column"] == 26
     assert first["spans"][1]["text"] == "declared here"
-
-
-def test_json_has_a_line_for_each_finding():
-    """A pattern for lines finds the first place of each."""
-    first, second = render_json([FINDING, BARE]).splitlines()[1:-1]
-    assert first.startswith(
-        '{"file": "specs/demo.rv", "line": 3, "column": 19, "severity": "error"'
-    )
-    assert second.startswith('{"file": "", "line": 0')
+    line, other = text.splitlines()[1:-1]
+    assert line.startswith('{"file": "specs/demo.rv", "line": 3, "column": 19, "severity": "error"')
+    assert other.startswith('{"file": "", "line": 0')
     assert json.loads(render_json([])) == []
 
 
 def test_nothing_steers_the_terminal():
-    """Control characters of a text or a file's name are replaced."""
     source = Source("a\x1b[2J.rv", "\x1b[31m")
     found = Diagnostic(
         "RV001", "syntax", Severity.ERROR, "found `\x1b`", (Label(Span(source, 0, 5)),)
@@ -93,7 +85,6 @@ def lines(text, start, end):
 
 
 def test_places_at_the_edges():
-    """At the end of a text, over several lines, in an empty text."""
     assert lines("ab", 2, 2) == (" 1 | ab", "   |   ^")
     assert lines("", 0, 0) == (" 1 |", "   | ^")
     assert lines("ab\ncd\n", 1, 5) == (" 1 | ab", "   |  ^")
@@ -101,14 +92,12 @@ def test_places_at_the_edges():
 
 
 def test_wide_and_unprintable_characters():
-    """Wide characters take two columns, what does not print is written out."""
     assert lines("数 x", 2, 3) == (" 1 | 数 x", "   |    ^")
     assert lines("\x00\x1b x", 3, 4) == (r" 1 | \x00\x1b x", "   |          ^")
     assert lines("a\r\nb", 0, 1) == (" 1 | a", "   | ^")
 
 
 def test_long_lines_are_cut_around_the_place():
-    """A line of thousands of characters shows the part that matters."""
     line, underline = lines("x" * 5000 + "HERE" + "y" * 5000, 5000, 5004)
     assert len(line) <= 110
     assert line.startswith(" 1 | …")

@@ -14,7 +14,7 @@ import os
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -150,9 +150,7 @@ class Documents:
 
     def uppaal(self) -> bool:
         """Networks as XML."""
-        network = loads_network(
-            "automaton A {\n location l\n start l\n}\nquery q: A[] not deadlock\n"
-        )
+        network = loads_network(_NETWORK)
         queries = [replace(network.queries[0], id="", remark=name) for name in self.names]
         text = uppaal_xml(replace(network, title=self.names[0], queries=tuple(queries)))
         root = ET.fromstring(text.encode())  # noqa: S314 - written by our own writer a line above
@@ -192,11 +190,9 @@ class _Outline(HTMLParser):
         self.found: list[object] = []
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        """Keep the tag with the names of its attributes."""
         self.found.append((tag, *(name for name, _ in attributes)))
 
     def handle_comment(self, _: str) -> None:
-        """Keep that there is one."""
         self.found.append("comment")
 
 
@@ -223,27 +219,14 @@ def _printed(act: Callable[[], object]) -> str:
     return told.getvalue()
 
 
-@dataclass(frozen=True, slots=True)
-class Inputs:
-    """Files in which names stand wherever a file can have them.
+def written(names: Names, folder: Path) -> tuple[Names, str, str, str, str]:
+    """Files in which names stand wherever a file can have them, also in what it is called.
 
-    Attributes:
-        ids: the names, each the id and the text of a requirement.
-        spec: the specification.
-        trace: a recording that it judges, with a column and cells that are names.
-        broken: one with a value that is a name.
-        model: a network of timed automata with names as its title and the remark of each query.
+    Returns:
+        The names, each the id and the text of a requirement; the specification; a recording that it
+        judges, with a column and cells that are names; one with a value that is a name; a network
+        of timed automata with names as its title and the remark of each query.
     """
-
-    ids: Names
-    spec: str
-    trace: str
-    broken: str
-    model: str
-
-
-def written(names: Names, folder: Path) -> Inputs:
-    """Write the files; their names are hostile, too."""
     ids = [name for name in names if "\r" not in name]  # files end lines there
     cell = next(name for name in ids if name == shown_line(name) or "\x00" not in name)
     file = re.sub(r"[/\x00]", "_", ids[-1])[:60]
@@ -261,13 +244,12 @@ def written(names: Names, folder: Path) -> Inputs:
     body = f"automaton A {{\n  location l\n  location m\n  start l\n{edges}}}\n"
     text = f"network N {quoted_ids[-1]}\nunit 50 ms\n{body}{queries}"
     Path(model).write_text(text, encoding="utf-8")
-    return Inputs(ids, spec, trace, broken, model)
+    return ids, spec, trace, broken, model
 
 
 def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
     """What commands make of names, each with whether all is well."""
-    files = written(names, folder)
-    ids, spec, trace, broken, model = files.ids, files.spec, files.trace, files.broken, files.model
+    ids, spec, trace, broken, model = written(names, folder)
     run = ["run", spec, trace]
     words = {
         "run": run,
@@ -329,12 +311,10 @@ def documents() -> list[Documents]:
 
 @pytest.mark.parametrize("writer", WRITERS, ids=lambda writer: writer.__name__)
 def test_what_is_written_reads_back_as_names(documents, writer):
-    """JSON, the terminal, JUnit XML, CSV, LaTeX, HTML, strings of DOT, UPPAAL's XML, messages."""
     assert all(map(writer, documents))
 
 
 def test_every_command_shows_names_and_obeys_none(tmp_path):
-    """Also in what it refuses."""
     names = [*hostile_names(NAMES)]
     for first in range(0, NAMES, BATCH):
         found = dict(through_commands(names[first : first + BATCH], tmp_path))

@@ -29,20 +29,17 @@ def spec():
     [np.array([0.2, 1.9]), np.array([0.0, np.nan]), [0, "1"], [0, None], [False, True], [0, 2e30]],
 )
 def test_ticks_are_whole_numbers(spec, stamps):
-    """A column of ticks is not truncated."""
     with pytest.raises(TraceError, match=r"whole number of nanoseconds|out of range"):
         spec.evaluate({"t_ns": stamps, "gap": np.array([1.0, 5.0])}, time="t_ns", only=["D2"])
 
 
 def test_whole_floats_are_ticks(spec):
-    """Ticks that a table holds as floats are exact if they are whole."""
     table = {"t_ns": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     [attempt] = spec.evaluate(table, time="t_ns", only=["D2"]).attempts
     assert (attempt.verdict.value, attempt.decided) == ("F", 2)
 
 
 def test_robustness_of_an_unknown_requirement(spec):
-    """It is named as `evaluate` names it."""
     for judge in (spec.robustness, spec.evaluate):
         with pytest.raises(UnknownNameError, match="no requirement `Z`: there are D1, D2"):
             judge([(0, {"gap": 1.0})], only=["Z"])
@@ -56,7 +53,6 @@ def test_sources_are_declared(spec):
 
 
 def test_numpy_numbers_are_seconds(spec):
-    """A monitor takes any number as its instant, exactly."""
     monitor = spec.monitor(only=["D2"])
     monitor.step(np.float32(0.5), {"gap": np.float32(1)})
     [attempt] = monitor.step(np.int64(100_000_000), {"gap": 5.0})
@@ -77,7 +73,6 @@ def test_numpy_numbers_are_seconds(spec):
     ],
 )
 def test_a_wrong_sample_is_told(spec, t, values, message):
-    """What was expected is said, at the first sample and at a later one."""
     monitor = spec.monitor()
     for _ in range(2):
         with pytest.raises(TraceError, match=message):
@@ -88,19 +83,16 @@ def test_a_wrong_sample_is_told(spec, t, values, message):
 
 @pytest.mark.parametrize("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
 def test_a_wrong_trace_is_told(spec, trace):
-    """A trace is a path, several, columns or pairs."""
     with pytest.raises(TraceError, match=r"expected|no finite number"):
         spec.evaluate(trace)
 
 
 def test_a_snapshot_is_bytes(spec):
-    """A text is none."""
     with pytest.raises(SnapshotError, match="expected the bytes of a snapshot, found str"):
         spec.restore("abc")
 
 
 def test_no_requirement_is_judged(spec):
-    """An empty choice has an empty report, whatever judges."""
     arrays = {"t": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
         report = spec.evaluate(trace, only=[])
@@ -109,7 +101,6 @@ def test_no_requirement_is_judged(spec):
 
 @pytest.mark.parametrize("wrong", [1.5, 1.0, "1", b"1", None, [], 1j, 10**400, np.array([1, 2])])
 def test_ticks_given_online_are_whole_numbers(spec, wrong):
-    """A wrong instant is told in words, and the monitor goes on as if it had not come."""
     monitor = spec.monitor()
     monitor.step_ns(1, {"knock": True, "closed": True})
     ends = () if wrong is None else (monitor.finish_ns,)

@@ -1,6 +1,7 @@
 """The plugin of pytest, in a pytest of its own."""
 
 import pytest
+from tests import WITHOUT
 
 pytest_plugins = ["pytester"]
 SPEC = """
@@ -18,7 +19,7 @@ requirement D2
 @pytest.fixture
 def folder(pytester, monkeypatch):
     """A folder with a specification, and the plugins that the tests of ours run with."""
-    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:asyncio -p no:pytest-lsp")
+    monkeypatch.setenv("PYTEST_ADDOPTS", WITHOUT)
     pytester.makefile(".rv", door=SPEC)
     return pytester
 
@@ -30,7 +31,6 @@ def _run(folder, test, *words):
 
 @pytest.mark.process
 def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
-    """In the test itself, not behind it; a table stands at the end."""
     told = _run(
         folder,
         """
@@ -52,7 +52,6 @@ def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
 
 @pytest.mark.process
 def test_verdicts_can_be_wanted_and_recordings_checked(folder):
-    """`expect` for one that has to fail, `strict` for all that have to be triggered."""
     (folder.path / "run.csv").write_text("t,closed,knock\n0,1,1\n3,,\n")
     told = _run(
         folder,
@@ -77,7 +76,6 @@ def test_verdicts_can_be_wanted_and_recordings_checked(folder):
 
 @pytest.mark.process
 def test_specifications_are_tests_of_recordings(folder):
-    """One for each recording and requirement; verdicts stand in JUnit XML, also by xdist."""
     (folder.path / "run.csv").write_text("t,closed,knock\n0,0,1\n3,,\n")
     (folder.path / "other.csv").write_text("t,closed,knock\n0,1,\n3,,\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
@@ -90,7 +88,6 @@ def test_specifications_are_tests_of_recordings(folder):
 
 @pytest.mark.process
 def test_wrong_specifications_and_recordings_are_told(folder):
-    """With place and fix, and no traceback of rvmon."""
     folder.makefile(".csv", run="t,closed\n0,maybe\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
     told = folder.runpytest_subprocess("-p", "no:cacheprovider")

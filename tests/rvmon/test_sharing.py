@@ -1,12 +1,10 @@
 """A specification is shared by threads, tasks and processes; a monitor is put away by name."""
 
-import asyncio
 import copy
 import multiprocessing
 import pickle
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from itertools import count
 from pathlib import Path
 from threading import Barrier
 
@@ -39,7 +37,6 @@ _TRACE = "t,x,e,p\n" + "".join(
 
 @pytest.fixture
 def trace(tmp_path: Path) -> Path:
-    """A recording of the rows."""
     path = tmp_path / "trace.csv"
     path.write_text(_TRACE)
     return path
@@ -76,33 +73,9 @@ def test_eight_threads_share_a_new_specification(trace: Path, way: str) -> None:
             assert found == {judge(rvmon.loads(text))}
 
 
-def test_tasks_share_a_monitor() -> None:
-    """Tasks that take turns at `await` are one thread."""
-    spec = rvmon.loads(_SPEC)
-    monitor = spec.monitor()
-    clock = count()
-
-    async def feed(own: int) -> None:
-        for _ in range(20):
-            number = next(clock)
-            monitor.step(number, {"x": number % 5})
-            await asyncio.sleep(0)
-        assert own >= 0
-
-    async def all_of_them() -> None:
-        await asyncio.gather(*(feed(own) for own in range(5)))
-
-    asyncio.run(all_of_them())
-    alone = spec.monitor()
-    for number in range(100):
-        alone.step(number, {"x": number % 5})
-    assert monitor.finish(100).to_json() == alone.finish(100).to_json()
-
-
 @pytest.mark.parametrize("method", ["fork", "spawn"])
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) -> None:
-    """Pickled or inherited, it judges there as here."""
     if method not in multiprocessing.get_all_start_methods():
         pytest.skip(f"there is no {method} here")
     spec = rvmon.loads(_SPEC)
@@ -116,7 +89,6 @@ def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) 
 
 @pytest.mark.parametrize("act", [pickle.dumps, copy.copy, copy.deepcopy])
 def test_a_monitor_is_neither_pickled_nor_copied(act: Callable[[object], object]) -> None:
-    """The error says how a run is put away."""
     monitor = rvmon.loads(_SPEC).monitor()
     with pytest.raises(rvmon.RvmonError, match=r"monitor\.snapshot\(\).*spec\.restore"):
         act(monitor)

@@ -2,13 +2,14 @@
 
 import json
 
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.tools.hostile import STEERING, hostile_names
 
-from rvmon.texts import shown, shown_json, shown_line
+from rvmon.texts import percent, percent_text, shown, shown_json, shown_line
 
 
 def test_nothing_that_steers_is_left():
-    """Neither in texts, where ends of lines stay, nor in lines, nor in JSON, which reads back."""
     for name in hostile_names(5000):
         assert not STEERING.search(shown(f"{name}\n"))
         assert "\n" not in shown_line(f"{name}\n")
@@ -17,13 +18,32 @@ def test_nothing_that_steers_is_left():
             assert json.loads(shown_json(text)) == name
 
 
-def test_what_prints_stays():
-    """Letters of all scripts, and every kind of space."""
+def test_what_prints_or_was_shown_stays():
+    """Letters of all scripts, and every kind of space; to show twice is to show once."""
     text = "Größe 3\u00a0m: 名前\u3000🤖\n"
     assert shown(text) == text
-
-
-def test_what_was_shown_stays():
-    """To show twice is to show once."""
     for name in hostile_names(1000):
         assert shown(shown(name)) == shown(name)
+
+
+@settings(deadline=None)
+@given(st.integers(1, 10**9), st.data())
+def test_nought_and_hundred_are_exact(whole, data):
+    part = data.draw(st.integers(0, whole))
+    assert (percent(part, whole) == 0) == (part == 0)
+    assert (percent(part, whole) == 100) == (part == whole)
+    assert (percent_text(part, whole) == "0 %") == (part == 0)
+    assert (percent_text(part, whole) == "100 %") == (part == whole)
+
+
+@settings(deadline=None)
+@given(st.integers(1, 10**6), st.data())
+def test_a_percentage_is_close(whole, data):
+    """It is never off by more than what keeps it from 0 and 100."""
+    part = data.draw(st.integers(0, whole))
+    assert abs(percent(part, whole) - 100 * part / whole) <= 0.1
+
+
+def test_of_nothing_all_is_covered():
+    assert percent(0, 0) == 100
+    assert percent_text(0, 0) == "100 %"

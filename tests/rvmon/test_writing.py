@@ -10,8 +10,6 @@ from rvmon.files import write_whole
 
 
 def test_a_file_that_cannot_be_finished_stays_as_it_was(tmp_path, monkeypatch):
-    """On a full disk, what was there is still there, and nothing beside it."""
-
     def full(_from: object, _to: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -25,7 +23,6 @@ def test_a_file_that_cannot_be_finished_stays_as_it_was(tmp_path, monkeypatch):
 
 
 def test_rights_and_links_stay(tmp_path):
-    """The file that a link leads to is written, with the rights that it had."""
     path, link, twin = tmp_path / "a", tmp_path / "link", tmp_path / "twin"
     path.write_text("before")
     path.chmod(0o751)
@@ -39,7 +36,6 @@ def test_rights_and_links_stay(tmp_path):
 
 
 def test_what_is_no_file_is_written_to(tmp_path):
-    """A device stays one."""
     write_whole("/dev/null", "text")
     assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
     with pytest.raises(IsADirectoryError):
@@ -47,7 +43,6 @@ def test_what_is_no_file_is_written_to(tmp_path):
 
 
 def test_a_new_file_has_the_rights_of_new_files(tmp_path):
-    """As the umask says."""
     known = os.umask(0o027)
     try:
         write_whole(tmp_path / "a", "text")

@@ -4,7 +4,7 @@ import warnings
 
 import pytest
 
-from rvmon import RvmonError, Verdict, loads
+from rvmon import Verdict, loads
 
 gymnasium = pytest.importorskip("gymnasium")
 SPEC = """
@@ -29,7 +29,6 @@ def _judged(**options):
 
 
 def test_a_wrapped_environment_is_a_good_one():
-    """As Gymnasium's own checker says."""
     from gymnasium.utils.env_checker import check_env
 
     with warnings.catch_warnings():  # the wrapper is not the bare environment, which it advises
@@ -38,7 +37,6 @@ def test_a_wrapped_environment_is_a_good_one():
 
 
 def test_each_episode_is_a_run():
-    """Verdicts so far after each step; those of the report with the last one."""
     env = _judged()
     for _ in range(2):
         _, info = env.reset(seed=1)
@@ -53,7 +51,6 @@ def test_each_episode_is_a_run():
 
 
 def test_a_failure_can_end_the_episode():
-    """Sooner than the environment does."""
     lengths = {}
     for ends in (True, False):
         env = _judged(ends_on_failure=ends)
@@ -97,11 +94,3 @@ def test_samples_within_a_step_have_their_instants():
         *_, info = env.step(action)
         decided.append([(one.name, one.triggered, one.decided) for one in info["rv"]["decided"]])
     assert decided == [[], [], [], [], [], [("P2#1", 30_000_000, 230_000_001)]]
-
-
-def test_a_step_takes_time():
-    """Else nothing could ever be due."""
-    from rvmon.adapters.gym import Judged
-
-    with pytest.raises(RvmonError, match="step_s"):
-        Judged(gymnasium.make("CartPole-v1"), loads(SPEC), lambda *_: {}, step_s=0.0)

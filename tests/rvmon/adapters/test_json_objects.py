@@ -52,7 +52,6 @@ def test_the_clock_follows_the_stamps(live):
 
 
 def test_a_line_that_cannot_be_read_may_have_said_anything(live):
-    """Nothing passes on what it may have said."""
     driver, _, source = live
     found = _verdicts(driver, [b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], source)
     assert found == {"": Verdict.INCONCLUSIVE}
@@ -79,77 +78,47 @@ def test_names_that_only_a_later_specification_declares_are_read(live, waits, ve
     assert latter.verdicts == {"R": verdict}
 
 
-def test_names_that_are_not_declared_are_counted(live):
-    """As in recordings."""
-    driver, _, source = live
-    assert _verdicts(driver, [b'{"t": 0, "x": 0, "y": 1}', b"", b'{"t": 1}'], source) == {
-        "": Verdict.PASS
-    }
-    assert source.ignored == {"y": 1}
-
-
 def test_a_name_that_a_declared_one_may_be_meant_by_is_told_at_once(live, caplog):
-    """With how to map it; once."""
     driver, _, source = live
     _verdicts(driver, [b'{"t": 0, "state": {"x": 0}, "y": 1}', b'{"t": 1, "state.x": 0}'], source)
     [told] = [one.getMessage() for one in caplog.records if "feeds nothing" in one.getMessage()]
     assert told == "`state.x` feeds nothing, and `x` is declared: is `--map x=state.x` meant?"
 
 
-def test_names_that_keep_coming_take_no_room_for_ever(live):
+def test_names_that_are_not_declared_are_counted_and_take_no_room_for_ever(live):
     """Of fresh names in each line so many are told apart, the others counted together."""
     driver, _, source = live
     lines = [b'{"t": %d, "x": 0, "y%d": 1}' % (number, number) for number in range(1_200)]
-    assert _verdicts(driver, lines, source) == {"": Verdict.PASS}
+    assert _verdicts(driver, [*lines, b""], source) == {"": Verdict.PASS}
     assert len(source.ignored) == MOST_NAMES + 1
     assert source.ignored["y0"] == 1
     assert source.ignored[MORE] == 200
 
 
-def test_robots_that_are_turned_away_take_no_room(live):
-    """What was last heard is known of those alone that there are."""
-    spec, clock = loads(SPEC), SimulatedClock()
-    driver = Driver(spec, clock=clock, most_robots=2)
-    source = JsonObjects(driver, clock=clock)
-    feed_lines(source, [b'{"t": 0, "x": 0, "r": "%d"}' % name for name in range(50)], "r")
-    feed_lines(source, [b"x: 7"], "r")
-    while driver.work() == 0:
-        pass
-    driver.close()
-    assert len(source._last) == len(driver.status()) == 2
-
-
 def test_lines_without_a_time_are_stamped_as_they_arrive():
-    """By the clock of the driver."""
-    spec, clock = loads(SPEC), SimulatedClock(7)
-    driver = Driver(spec, clock=clock)
+    driver = Driver(loads(SPEC), clock=SimulatedClock(7))
     assert _verdicts(driver, [b'{"x": 2}'], JsonObjects(driver)) == {"": Verdict.FAIL}
     assert driver.close()[""][0].attempts[0].decided == 7
 
 
 def test_a_stamp_of_another_epoch_is_told_and_stops_nothing():
     """The clock runs by itself: what the line said is unknown, the next one is judged."""
-    spec = loads(SPEC)
-    driver = Driver(spec)
-    source = JsonObjects(driver)
+    source = JsonObjects(driver := Driver(loads(SPEC)))
     lines = [b'{"x": 0}', b'{"x": 0, "t": 1800000000}', b'{"x": 2}']
     assert _verdicts(driver, lines, source) == {"": Verdict.FAIL}
     assert source.unread == 1
 
 
 def test_lines_that_come_after_the_end_are_nobodys(live):
-    """Who reads them ends, without a complaint."""
     driver, _, source = live
     driver.close()
     feed_lines(source, iter([b'{"t": 0, "x": 0}', b"nonsense"]))
     assert source.unread == 0
 
 
-def test_a_field_names_the_robot():
+def test_a_field_names_the_robot(live):
     """A line without it is of nobody known: it may be of any."""
-    spec, clock = loads(SPEC), SimulatedClock()
-    driver = Driver(spec, clock=clock)
-    source = JsonObjects(driver, clock=clock)
+    driver, _, source = live
     lines = [
         b'{"t": 0, "id": "left", "x": 0}',
         b'{"t": 0, "id": 2, "x": 3}',
@@ -157,22 +126,16 @@ def test_a_field_names_the_robot():
         b'{"t": 1, "x": 0}',
         b'{"t": 2, "id": "left"}',
     ]
-    assert _verdicts(driver, lines, source, "id") == {
-        "left": Verdict.INCONCLUSIVE,
-        "2": Verdict.FAIL,
-    }
+    found = _verdicts(driver, lines, source, "id")
+    assert found == {"left": Verdict.INCONCLUSIVE, "2": Verdict.FAIL}
 
 
-def test_a_line_of_nobody_may_have_been_the_first_of_a_robot_that_comes_later():
+@pytest.mark.parametrize(("lines", "verdict"), [([b"torn {"], "I"), ([], "P")])
+def test_a_line_of_nobody_may_have_been_the_first_of_a_robot_that_comes_later(live, lines, verdict):
     """Whose it was cannot be read; who was heard before has lost it as well."""
-    spec = loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
-    for lines, expected in ((["torn {"], "I"), ([], "P")):
-        driver = Driver(spec, clock=SimulatedClock())
-        stamped = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
-        objects = JsonObjects(driver, clock=driver._clock)
-        feed_lines(objects, [*(one.encode() for one in lines), *stamped], "id")
-        (report,) = driver.close()["left"]
-        assert report.verdicts["R"] == expected
+    driver, _, source = live
+    stamped = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
+    assert _verdicts(driver, [*lines, *stamped], source, "id") == {"left": verdict}
 
 
 def test_lines_are_read_as_they_come():
@@ -188,7 +151,6 @@ def test_lines_are_read_as_they_come():
 
 
 def test_the_stamp_of_a_line():
-    """`None` if it has none, or is no line."""
     schema = loads(SPEC).schema
     assert stamp_of(b'{"t_ns": 5}', schema) == 5
     assert stamp_of(b'{"x": 5}', schema) is None

@@ -8,6 +8,9 @@ from contextlib import contextmanager
 import pytest
 from tests.tools.servers import LONG, Broker, missing, mosquitto, until
 
+pytest.importorskip("paho.mqtt.client")
+from paho.mqtt.client import CallbackAPIVersion, Client
+
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.json_objects import JsonObjects
 from rvmon.adapters.mqtt import MqttSource, address_of
@@ -27,8 +30,6 @@ requirement R2
 
 @pytest.fixture
 def broker(tmp_path):
-    """A broker on a port of its own."""
-    pytest.importorskip("paho.mqtt.client")
     if mosquitto() is None:
         missing("mosquitto")
     made = Broker(tmp_path)
@@ -39,8 +40,6 @@ def broker(tmp_path):
 @pytest.fixture
 def publish(broker):
     """What publishes a text, as soon as the broker is there."""
-    from paho.mqtt.client import CallbackAPIVersion, Client
-
     client = Client(CallbackAPIVersion.VERSION2)
     client.connect("127.0.0.1", broker.port)
     client.loop_start()
@@ -52,8 +51,6 @@ def publish(broker):
 @pytest.mark.process
 def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
     """A value under a topic, an object above it, an event; each robot by itself."""
-    from paho.mqtt.client import CallbackAPIVersion, Client
-
     heard = []
     listener = Client(CallbackAPIVersion.VERSION2)
     listener.on_message = lambda _, __, message: heard.append((message.topic, message.payload))
@@ -84,7 +81,6 @@ def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
 
 @pytest.mark.process
 def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
-    """Nothing passes over the gap; a failure behind it is found, as the subscription comes back."""
     spec = loads(SPEC)
     failed = threading.Event()
     live = Live(spec, on_failure=lambda _: failed.set())
@@ -105,7 +101,6 @@ def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
 
 @pytest.mark.process
 def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
-    """It may have said anything."""
     spec = loads(SPEC)
     live = Live(spec)
     objects = JsonObjects(live)
@@ -118,7 +113,6 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
 
 def test_what_a_broker_has_dropped_may_have_been_ours():
     """It says how many of all clients; between two of its reports nobody knows what was lost."""
-    pytest.importorskip("paho.mqtt.client")
     spec = loads(SPEC)
     driver = Driver(spec, clock=(clock := SimulatedClock()))
     source = MqttSource(JsonObjects(driver), address_of("mqtt://127.0.0.1:1/#"))
@@ -166,8 +160,6 @@ def _answers(*answers):
 
 
 def test_a_topic_that_may_not_be_read_is_told():
-    """Nothing would be heard, and all be well."""
-    pytest.importorskip("paho.mqtt.client")
     driver = Driver(loads(SPEC), clock=SimulatedClock())
     with _answers(b"\x90\x04\x00\x01\x80\x00") as port:
         source = MqttSource(JsonObjects(driver), address_of(f"mqtt://127.0.0.1:{port}/arm/#"))
@@ -178,7 +170,6 @@ def test_a_topic_that_may_not_be_read_is_told():
 
 def test_a_message_that_no_broker_should_let_through_is_lost():
     """Its topic is no text; those behind it are heard."""
-    pytest.importorskip("paho.mqtt.client")
     driver = Driver(loads(SPEC), clock=SimulatedClock())
     objects = JsonObjects(driver)
     good = b"\x30\x0c\x00\x09arm/speed1"
@@ -194,8 +185,6 @@ def test_a_message_that_no_broker_should_let_through_is_lost():
 
 
 def test_a_broker_that_is_not_there_is_told():
-    """With its place."""
-    pytest.importorskip("paho.mqtt.client")
     spec = loads(SPEC)
     with (
         Live(spec) as live,
@@ -210,6 +199,5 @@ def test_a_broker_that_is_not_there_is_told():
     ["mqtt://host", "mqtt:///a", "http://host/a", "mqtt://host:99999/a", "mqtt://h/a/#/b"],
 )
 def test_a_wrong_address_is_told(url):
-    """With the form that it should have."""
     with pytest.raises(RvmonError, match=r"mqtt://|behind the last"):
         address_of(url)

@@ -73,7 +73,6 @@ def _failures(folder, source, talker, environment):
 
 @pytest.fixture
 def master():
-    """The address of a master of ROS 1."""
     if rosmaster() is None:
         missing("rosmaster, or rospy")
     with master_of_ros1() as address:
@@ -82,7 +81,6 @@ def master():
 
 @pytest.mark.process
 def test_topics_of_ros_1_are_judged(tmp_path, master):
-    """Names lead to topics; types come with the messages."""
     pytest.importorskip("rosbags")
     environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
     talker = ["/usr/bin/python3", EXAMPLES / "ros1" / "talker.py"]
@@ -159,7 +157,6 @@ for one in robots:
 
 @pytest.mark.process
 def test_sources_that_begin_at_once_hear_alike():
-    """In a process of their own, where no type was made before."""
     pytest.importorskip("cyclonedds")
     words = [sys.executable, "-c", FLEET, str(100 + os.getpid() % 100)]
     environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
@@ -249,15 +246,12 @@ def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fau
     assert driver.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
-def test_what_is_not_there_is_told(tmp_path, monkeypatch):
-    """With what to install, or where nobody answers."""
+def test_rospy_that_is_missing_is_told(feed, monkeypatch):
     from rvmon.adapters.ros1 import Ros1Source
 
-    spec = loads(SPEC)
-    feed = MessageFeed(Driver(spec, clock=SimulatedClock()), spec.schema)
     monkeypatch.setitem(sys.modules, "rospy", None)
     with pytest.raises(RvmonError, match="python3-rospy"):
-        Ros1Source(feed)
+        Ros1Source(feed[0])
 
 
 FLOAT = Topic("/base/speed", "std_msgs/msg/Float64", {"data": Kind.REAL})
@@ -265,14 +259,12 @@ FLOAT = Topic("/base/speed", "std_msgs/msg/Float64", {"data": Kind.REAL})
 
 @pytest.fixture
 def feed():
-    """A feed, its driver and clock."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
     return MessageFeed(driver, spec.schema), driver, clock
 
 
 def test_names_lead_to_the_topics_that_are_read(feed):
-    """A name may be a topic, or a field of one."""
     assert set(feed[0].topics()) == {"/base/speed", "/base", "/stop"}
 
 
@@ -286,7 +278,6 @@ class Odd:
 
 @pytest.mark.parametrize("odd", [{"data": "fast"}, Odd()])
 def test_a_message_that_does_not_fit_is_unknown(feed, odd):
-    """What its topic feeds; the rest is judged as before, and who gave it goes on."""
     messages, driver, clock = feed
     messages.take(FLOAT, SimpleNamespace(data=0.5) if isinstance(odd, Odd) else {"data": 0.5})
     messages.take(FLOAT, odd)
@@ -300,7 +291,6 @@ def test_a_message_that_does_not_fit_is_unknown(feed, odd):
 
 
 def test_a_topic_that_cannot_be_read_is_lost_for_good(feed):
-    """What it feeds, as nothing of it is heard; the rest is judged as before."""
     messages, driver, clock = feed
     messages.take(FLOAT, {"data": 0.5})
     messages.lose("/stop", "nobody knows its type", for_good=True)

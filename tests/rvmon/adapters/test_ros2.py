@@ -92,7 +92,6 @@ def test_what_is_promised_is_asked_for(graph, started):
 
 
 def test_a_topic_is_read_when_somebody_publishes_it(graph, started):
-    """Also after the node has begun; once."""
     _at(graph, started, 0)
     graph.publishers["/base"] = ("std_msgs/msg/Bool", [LATCHED])
     before = dict(graph.subscriptions)
@@ -102,7 +101,6 @@ def test_a_topic_is_read_when_somebody_publishes_it(graph, started):
 
 
 def test_what_was_lost_is_unknown(graph, started):
-    """The middleware says that messages were lost: what they feed is unknown from there on."""
     _at(graph, started, 0)
     _moves(graph, 0.5)
     started.work()
@@ -153,7 +151,6 @@ def test_a_topic_that_can_never_be_read_is_lost_for_good(graph, caplog, several)
 
 @pytest.mark.parametrize("kind", ["sequence<float>", "sequence<float, 9>", "float[2]"])
 def test_a_binding_may_read_arrays(graph, tmp_path, kind):
-    """Bounded or not, with the kind of their elements."""
     graph.types["sensor_msgs/msg/LaserScan"] = stub.message(ranges=kind)
     graph.publishers = {"/scan": ("sensor_msgs/msg/LaserScan", [CARELESS])}
     (tmp_path / "b.toml").write_text('[bind.near]\ntopic = "/scan"\nvalue = "min(ranges)"\n')
@@ -166,7 +163,6 @@ def test_a_binding_may_read_arrays(graph, tmp_path, kind):
 
 
 def test_rclpy_that_is_missing_is_told(monkeypatch):
-    """With what to do without it."""
     monkeypatch.setitem(sys.modules, "rclpy", None)
     spec = loads(SPEC)
     with pytest.raises(RvmonError, match="dds:DOMAIN"):

@@ -7,7 +7,6 @@ import pytest
 from tests.tools import build
 
 import rvmon
-from rvmon.analysis.choices import choices_of
 from rvmon.analysis.example import Budget
 from rvmon.analysis.examples import analyse, shortest_examples
 from rvmon.analysis.vacuity import possible
@@ -45,7 +44,6 @@ def analysis_of(text):
 
 @pytest.fixture(scope="module")
 def analysed():
-    """The analysis of `SPEC`."""
     return analysis_of(SPEC)
 
 
@@ -90,7 +88,6 @@ def test_a_clock_that_is_started_at_every_position(time, required, passes):
 @pytest.mark.law
 @pytest.mark.parametrize("model", list(TimeModel))
 def test_what_cannot_be_is_never_seen(model):
-    """Random requirements: none passes, or fails, of which that was ruled out."""
     rng = random.Random(model.value)
     claims = 0
     for _ in range(60):
@@ -110,7 +107,6 @@ def test_what_cannot_be_is_never_seen(model):
 
 @pytest.mark.slow
 def test_timelines_trigger_what_conflicts(analysed):
-    """The timeline of a conflict triggers its requirements as said."""
     assert [conflict.ids for conflict, _ in analysed.timelines] == [
         ("R1", "R2"),
         ("R4", "R8"),
@@ -128,58 +124,55 @@ def test_timelines_trigger_what_conflicts(analysed):
     assert {verdict.value for verdict in first.verdicts.values()} == {"I"}
 
 
-def conflicts_of(text):
-    """The conflicts of a specification over some common names."""
-    head = "event a, b\nsignal p, q, r : bool\n"
-    return [(c.ids, c.offsets) for c in analysis_of(head + text).examination.conflicts]
-
-
-@pytest.mark.slow
-def test_conflict_of_four():
-    """Sets of more than three are found, and none with a member too many."""
-    text = """
+CONFLICTS = {
+    "of four, and none with a member too many": (
+        """
 requirement R1 upon a then within 2 s (p or q or r)
 requirement R2 upon a then for 3 s not p
 requirement R3 upon a then for 3 s not q
 requirement R4 upon a then for 3 s not r
 requirement R5 upon a then within 3 s b
-"""
-    assert conflicts_of(text) == [(("R1", "R2", "R3", "R4"), (0, 0, 0, 0))]
-    found = analysis_of("event a, b\nsignal p, q, r : bool\n" + text).findings
-    assert "R1, R2, R3 and R4 cannot all hold" in found[0].message
-
-
-def test_conflict_with_itself_when_triggered_again():
-    """A requirement that a second trigger makes impossible to meet; its timeline has both."""
-    text = """
-requirement R1 upon a then (always[2 s, 3 s] p) and (for 1 s not p)
-"""
-    assert conflicts_of(text) == [(("R1", "R1"), (0, 10**9))]
-    analysis = analysis_of("event a\nsignal p : bool\n" + text)
-    assert "cannot hold once it is triggered again, 1 s later" in analysis.findings[0].message
-    ((_, example),) = analysis.timelines
-    assert [attempt.triggered for attempt in example.attempts] == [0, 10**9]
-
-
-def test_conflict_of_a_window_in_a_window():
-    """Wherever the inner window begins, it covers the stretch that another requirement needs."""
-    text = """
+""",
+        (("R1", "R2", "R3", "R4"), (0, 0, 0, 0)),
+        "R1, R2, R3 and R4 cannot all hold",
+    ),
+    "with itself when it is triggered again": (
+        "requirement R1 upon a then (always[2 s, 3 s] p) and (for 1 s not p)\n",
+        (("R1", "R1"), (0, 10**9)),
+        "cannot hold once it is triggered again, 1 s later",
+    ),
+    "wherever the inner window begins": (
+        """
 requirement R1 upon a then within 500 ms for 1 s p
 requirement R2 upon a then eventually[600 ms, 1 s] not p
 requirement R3 upon a then eventually[600 ms, 1200 ms] not p
-"""
-    assert conflicts_of(text) == [(("R1", "R2"), (0, 0))]
-
-
-@pytest.mark.slow
-def test_conflict_apart_with_what_holds_always():
-    """Two that are triggered apart conflict only because of a third that holds at all times."""
-    text = """
+""",
+        (("R1", "R2"), (0, 0)),
+        "",
+    ),
+    "only because of a third that holds at all times": (
+        """
 requirement R1 upon a then always[2 s, 3 s] p
 requirement R2 upon b then for 1 s q
 requirement R3 always not (p and q)
-"""
-    assert conflicts_of(text) == [(("R1", "R2", "R3"), (0, 10**9, 0))]
+""",
+        (("R1", "R2", "R3"), (0, 10**9, 0)),
+        "",
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CONFLICTS)
+def test_the_least_conflict_is_found_and_its_timeline_triggers_it(name):
+    text, expected, told = CONFLICTS[name]
+    analysis = analysis_of("event a, b\nsignal p, q, r : bool\n" + text)
+    (conflict,) = analysis.examination.conflicts
+    assert (conflict.ids, conflict.offsets) == expected
+    assert told in analysis.findings[0].message
+    if conflict.ids[0] == conflict.ids[-1]:
+        ((_, example),) = analysis.timelines
+        assert [attempt.triggered for attempt in example.attempts] == [0, 10**9]
 
 
 @pytest.mark.parametrize(
@@ -216,7 +209,6 @@ def test_implications(text, implied):
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(2))
 def test_claims_about_random_specs_are_not_refuted(seed):
-    """Random requirements: no run meets a conflict, or fails what is implied alone."""
     rng = random.Random(seed)
     claims = 0
     for _ in range(40):
@@ -301,40 +293,21 @@ def _fails_alone(one):
     return goal
 
 
-def test_choices_see_both_sides_of_every_comparison():
-    """The valuations for a comparison include values at, below and above where it turns."""
-    checked = rvmon.loads(
-        "signal x : real [m]\nevent go(k: int)\nrequirement Q\n upon go.k > 3\n"
-        " then immediately x < 50 cm\n"
-    ).checked
-    one = compile_spec(checked).requirements["Q"]
-    choices = choices_of(checked, [state.leaf for state, _ in one.leaves], one.reads)
-    xs = {valuation["x"] for valuation in choices.valuations}
-    assert min(xs) < 0.5 <= max(xs)
-    ks = {v["go"]["k"] for v in choices.valuations if isinstance(v["go"], dict)}
-    assert min(ks) <= 3 < max(ks)
-    assert choices.complete
-
-
 @pytest.mark.slow
-def test_check_analyse(tmp_path, capsys):
-    """`rvmon check --analyse` warns with places and draws the shortest conflicting timeline."""
+def test_check_analyse(tmp_path, says):
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     patient = ["check", str(path), "--analyse", "--seconds", "9999"]
-    assert main(patient) == 0
-    shown = capsys.readouterr()
+    shown = says(0, *patient)
     assert "RV073 conflict]: R1 and R2 cannot both hold" in shown.err
     assert f"{path}:5:1" in shown.err
     assert "After this, one of R1, R2 fails, whatever comes:" in shown.out
     assert all(len(line) <= 80 for line in shown.out.splitlines())
     assert main([*patient, "--strict"]) == 1
-    capsys.readouterr()
-    assert main(["check", str(path), "--analyse", "--seconds", "0"]) == 0
-    assert "not decided" in capsys.readouterr().out
+    assert "not decided" in says(0, "check", path, "--analyse", "--seconds", "0").out
 
 
-def test_help_speaks_of_what_is_there(tmp_path, capsys):
+def test_help_speaks_of_what_is_there(tmp_path, says):
     """No deadline is asked for where there is one, and no trigger is narrowed that is not there."""
     path = tmp_path / "a.rv"
     path.write_text(
@@ -342,8 +315,7 @@ def test_help_speaks_of_what_is_there(tmp_path, capsys):
         " upon go then within 1 s (v > 1 or v <= 1)\n"
         "requirement SLOW\n always v < 1\nrequirement FAST\n always v > 2\n"
     )
-    assert main(["check", str(path), "--analyse", "--seconds", "9999"]) == 0
-    shown = capsys.readouterr().err
+    shown = says(0, "check", path, "--analyse", "--seconds", "9999").err
     assert "RV071" in shown
     assert "give it a deadline" not in shown
     assert "RV073" in shown

@@ -1,25 +1,18 @@
 """Drawn automata: their conditions lead where the machine goes."""
 
 import random
-import re
 
 import pytest
 from tests.tools import build
 
-from rvmon.analysis.example import Budget
-from rvmon.analysis.examples import shortest_examples, verdict_of
 from rvmon.analysis.graph import ANY, cubes_of, graph_of
-from rvmon.analysis.vacuity import possible
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import show_spec
 
 pytestmark = pytest.mark.law
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_cubes_cover_exactly(seed):
-    """Random sets of vectors: their cubes cover them and, but for what never is, nothing else."""
     rng = random.Random(seed)
     for _ in range(40):
         size = rng.randint(1, 4)
@@ -37,7 +30,6 @@ def test_cubes_cover_exactly(seed):
 
 
 def test_a_response():
-    """The automaton of a timed response, as drawn."""
     spec = build.spec_of(build.requirement(build.eventually(build.f, 0, 7), upon=build.e))
     one = compile_spec(spec).requirements["R"]
     edges = [
@@ -50,43 +42,3 @@ def test_a_response():
         ("start", "", "f", "P"),
         ("start", "", "not f", "A"),
     ]
-
-
-def test_random_automata_are_drawn():
-    """Every automaton of a random requirement is drawn: each edge between places, none empty."""
-    rng = random.Random(3)
-    drawn = 0
-    for _ in range(40):
-        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
-        one = compile_spec(spec).requirements["R1"]
-        if one.automaton is None:
-            continue
-        graph = graph_of(one, one.automaton, spec)
-        names = {place.name for place in graph.places}
-        assert all({edge.source, edge.target} <= names for edge in graph.edges)
-        assert all(re.fullmatch(r"start|P|F|[A-Z]|L\d+", name) for name in names)
-        drawn += 1
-    assert drawn > 20
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_what_is_said_to_be_impossible_is_not_found(seed):
-    """Random requirements: no run shows what the automaton excludes."""
-    rng = random.Random(50 + seed)
-    excluded = 0
-    for _ in range(40):
-        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
-        compiled = compile_spec(spec)
-        one = compiled.requirements["R1"]
-        can = possible(spec, one.obligation.trigger, one.automaton, one.requirement.at_end)
-        wanted = [
-            verdict
-            for verdict, may in (("P", can.pass_), ("F", can.fail))
-            if may is False or can.trigger is False
-        ]
-        excluded += len(wanted)
-        if wanted:
-            budget = Budget(runs=80, samples=3, step=2)
-            found = shortest_examples(compiled, [one], verdict_of("R1"), wanted, budget)
-            assert not found.examples, (show_spec(spec), found.examples)
-    assert excluded

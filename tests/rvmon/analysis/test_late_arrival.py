@@ -64,7 +64,6 @@ CASES = {
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("name", CASES)
 def test_what_came_too_late_is_found_with_its_instant(name, time):
-    """It is the first instant after the deadline at which what was awaited was true."""
     text, rows, expected = CASES[name]
     spec = rvmon.loads(HEAD.format(time=time) + text + "\n")
     samples = [Sample(round(t * SECOND), values) for t, values in rows]

@@ -65,7 +65,6 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_what_the_trigger_lacked(name):
-    """The sentence names what was missing while the most of the rest was there."""
     trigger, rows, expected = CASES[name]
     spec = loads(SPEC.format(trigger)).checked
     samples = [Sample(t, values) for t, values in rows]
@@ -73,7 +72,6 @@ def test_what_the_trigger_lacked(name):
 
 
 def test_a_name_without_a_source_is_never_known():
-    """What has no column is unknown throughout, never false."""
     spec = loads(SPEC.format("a and b")).checked
     samples = [Sample(0, {"a": True})]
     found = why_not_triggered(spec, spec.requirements["R1"], samples, 9, frozenset({"a"}))

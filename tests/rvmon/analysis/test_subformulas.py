@@ -1,9 +1,9 @@
 """The truth shown of each subformula is that of the definitions."""
 
 import random
+from dataclasses import replace
 
 import pytest
-from tests.tools import build
 
 from rvmon.analysis.spans import hold, joined, outside, within
 from rvmon.analysis.subformulas import dissect
@@ -24,7 +24,6 @@ PROFILE = Profile(requirements=1, depth=3, captures=False, for_each=False)
 
 
 def ticks(spans):
-    """All ticks of a set."""
     return {t for low, high in spans for t in range(low, high + 1)}
 
 
@@ -32,11 +31,10 @@ def ticks(spans):
 @pytest.mark.parametrize("time", list(TimeModel))
 @pytest.mark.parametrize("seed", range(4))
 def test_subformulas_have_the_truth_of_the_oracle(time, seed):
-    """At every position of a random recording, for every subformula of a random requirement."""
     rng = random.Random(seed)
     compared = set()
     for _ in range(25):
-        spec = random_spec(rng, Profile(**{**_fields(PROFILE), "time": time}))
+        spec = random_spec(rng, replace(PROFILE, time=time))
         case = random_trace(rng, spec, TraceProfile(samples=6, span=14, advances=False))
         samples = [action for action in case.actions if isinstance(action, Sample)]
         if not samples:
@@ -58,12 +56,6 @@ def test_subformulas_have_the_truth_of_the_oracle(time, seed):
     assert compared == {Truth.TRUE, Truth.UNKNOWN, Truth.FALSE}
 
 
-def _fields(profile):
-    from dataclasses import fields
-
-    return {field.name: getattr(profile, field.name) for field in fields(profile)}
-
-
 def _shown(sure, may, t):
     if any(low <= t <= high for low, high in sure):
         return Truth.TRUE
@@ -72,7 +64,6 @@ def _shown(sure, may, t):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_spans_are_sets(seed):
-    """Intervals that touch are joined; cut, turned round and asked as sets of ticks are."""
     rng = random.Random(seed)
     for _ in range(200):
         edges = sorted(rng.sample(range(2, 19), 2 * rng.randint(0, 4)))
@@ -91,7 +82,6 @@ def test_spans_are_sets(seed):
 
 
 def test_an_attempt_of_an_instance_and_with_captures():
-    """An instance sees its own occurrences; captured values are those of the attempt."""
     import rvmon
 
     spec = rvmon.loads(
@@ -111,17 +101,3 @@ def test_an_attempt_of_an_instance_and_with_captures():
     assert ticks(found["pick"].true) == {2}
     assert min(ticks(found["x > v"].true)) == 5
     assert second.decided == 5
-
-
-def test_the_window_reaches_around_the_attempt():
-    """The trigger and the decision are inside the window that is shown."""
-    spec = build.spec_of(build.requirement(build.eventually(build.f, 0, 7), upon=build.e))
-    samples = list(build.timeline(e=".....1"))
-    monitor = build_monitor(compile_spec(spec))
-    for sample in samples:
-        monitor.step_ns(sample.t, sample.values)
-    attempt = monitor.finish_ns(30).attempts[0]
-    breakdown = dissect(spec, samples, 30, attempt)
-    assert breakdown.start <= attempt.triggered < attempt.decided <= breakdown.end
-    required = next(s for s in breakdown.part_truths if s.part == "required" and s.depth == 0)
-    assert attempt.triggered in ticks(required.false)

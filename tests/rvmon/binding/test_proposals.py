@@ -62,33 +62,18 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     rvmon.load(spec).evaluate(bag, binding=binding, allow_missing=True)
 
 
-def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
-    """What the messages hold is shown beside what they should mean."""
+def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, says):
     topics = {"/battery": ("sensor_msgs/msg/BatteryState", {"percentage": 75.0})}
     spec, bag = write(Robot(topics, "signal battery_level : real [%]"), tmp_path)
-    assert main(["init", bag, "--for", spec]) == 0
-    told = capsys.readouterr().out
+    told = says(0, "init", bag, "--for", spec).out
     assert 'value = "percentage"  # always 75\nunit = "1"\n# It looks like per cent' in told
     binding = tmp_path / "a.toml"
     binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
     assert main(["check", spec, "--binding", str(binding)]) == 0
 
 
-def test_what_is_called_otherwise_is_shown_by_its_unit(tmp_path, capsys):
-    """Nothing is filled in; first what shares a word with the name, with its values."""
-    spec, bag = write(ROBOTS["amr"], tmp_path)
-    assert main(["init", bag, "--for", spec]) == 1
-    told = capsys.readouterr().out
-    shown = told[told.index("# Nothing is called like `bus_voltage` (real [V]).") :].splitlines()
-    assert shown[1:3] == [
-        "# [bind.bus_voltage]",
-        '# topic = "/power/main_battery", value = "voltage"  # always 24.5',
-    ]
-
-
 @pytest.mark.parametrize(("turn", "value"), [("yaw", 0.5), ("pitch", 0.2), ("roll", -0.3)])
 def test_turns_of_a_quaternion(tmp_path, turn, value):
-    """About z, then y, then x, as they were turned."""
     halves = (0.25, 0.1, -0.15)
     (cz, cy, cx), (sz, sy, sx) = map(math.cos, halves), map(math.sin, halves)
     turned = {
@@ -120,14 +105,6 @@ def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
     assert 'write `unit = "mA"` in a binding' in capsys.readouterr().err
     binding.write_text(f'{place}unit = "mA"\n')
     assert main(["run", spec, bag, "--binding", str(binding), "--allow-missing"]) == 0
-
-
-def test_a_leader_is_a_guess(tmp_path, capsys):
-    """That it is the first of several is told where it is proposed."""
-    spec, bag = write(ROBOTS["turtle"], tmp_path)
-    main(["init", bag, "--for", spec])
-    told = capsys.readouterr().out
-    assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told
 
 
 DATABASE = """VERSION ""
@@ -162,7 +139,7 @@ def test_a_scale_that_nobody_knows_is_left_open(tmp_path, capsys):
     }
 
 
-def test_a_number_that_never_changes_is_no_clear_choice(tmp_path, capsys):
+def test_a_number_that_never_changes_is_no_clear_choice(tmp_path, says):
     """What drives on a plane says of its pitch that it is 0, and another one says what it is."""
     imu = [{"angular_velocity": {"y": rate}} for rate in (0.1, 0.2)]
     sent = [("/odom", START, {}), ("/imu", START + 1, imu[0]), ("/imu", START + 2, imu[1])]
@@ -170,7 +147,6 @@ def test_a_number_that_never_changes_is_no_clear_choice(tmp_path, capsys):
     bag = write_ros1(tmp_path / "a.bag", sent, types)
     spec = tmp_path / "a.rv"
     spec.write_text("spec s\nsignal pitch_rate : real [rad/s]\nrequirement R1\n  always true\n")
-    assert main(["init", str(bag), "--for", str(spec)]) == 1
-    told = capsys.readouterr().out
+    told = says(1, "init", bag, "--for", spec).out
     assert '# topic = "/odom", value = "twist.twist.angular.y"  # always 0' in told
     assert '# topic = "/imu", value = "angular_velocity.y"  # 0.1 … 0.2' in told

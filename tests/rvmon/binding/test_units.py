@@ -6,7 +6,6 @@ import pytest
 from tests.tools.bags import START, write_ros1
 
 import rvmon
-from rvmon.cli import main
 from rvmon.errors import RvmonError
 
 pytest.importorskip("rosbags")
@@ -60,37 +59,31 @@ def told(tmp_path, text, spec=SPEC):
     ],
 )
 def test_a_value_of_another_unit_is_an_error(tmp_path, name, value, more, message):
-    """By the type that the binding names, and by that in the recording."""
     text = ODOM.format(name=name, type=TYPE, value=value, more=more)
     assert re.search(message, told(tmp_path, text))
 
 
 def test_an_angle_is_no_speed_whatever_feeds_it(tmp_path):
-    """`yaw` is an angle of any message."""
     path = tmp_path / "base.toml"
     path.write_text('[bind.speed]\ntopic = "/o"\nvalue = "yaw(q)"\nunit = "m/s"\n')
     with pytest.raises(RvmonError, match=r"\[bind.speed\]: .*`yaw\(q\)` of topic /o is in \[rad\]"):
         rvmon.loads(SPEC).reading(binding=path)
 
 
-def test_a_field_found_by_its_name_is_compared_too(tmp_path, capsys):
-    """With the fix that converts; a name that is mapped is one."""
+def test_a_field_found_by_its_name_is_compared_too(tmp_path, says):
     spec = "spec s\nsignal odom.twist.twist.linear.x : real [km/h]\nsignal turn : real [m]\n"
     body = "requirement R1\n  always odom.twist.twist.linear.x < 1 km/h\n"
     (tmp_path / "s.rv").write_text(spec + body)
     bag = str(write_ros1(tmp_path / "a.bag", [("/odom", START, {})]))
-    assert main(["run", str(tmp_path / "s.rv"), bag, "--allow-missing"]) == 2
-    found = capsys.readouterr().err
+    found = says(2, "run", tmp_path / "s.rv", bag, "--allow-missing").err
     assert "is in [m/s]" in found
     assert 'write `unit = "m/s"` in a binding' in found
     (tmp_path / "s.rv").write_text((spec + body).replace("[km/h]", "[m/s]"))
     mapped = ["--map", "turn=/odom.twist.twist.angular.z"]
-    assert main(["run", str(tmp_path / "s.rv"), bag, *mapped]) == 2
-    assert "`turn` is declared [m]" in capsys.readouterr().err
+    assert "`turn` is declared [m]" in says(2, "run", tmp_path / "s.rv", bag, *mapped).err
 
 
 def test_a_payload_is_compared_too(tmp_path):
-    """A field of an event has a unit as well."""
     text = f'[bind.seen]\ntopic = "/odom"\n{TYPE}fields = {{ at = "twist.twist.linear.x" }}\n'
     assert "`seen.at` is declared [m], and `twist" in told(tmp_path, text)
 
@@ -108,7 +101,6 @@ def test_numbers_may_change_the_scale(tmp_path):
 
 
 def test_a_binding_of_another_robot_is_told(tmp_path):
-    """A topic of another type than the binding names."""
     path = tmp_path / "base.toml"
     path.write_text('[bind.speed]\ntopic = "/odom"\ntype = "a_msgs/Own"\nvalue = "x"\n')
     bag = write_ros1(tmp_path / "a.bag", [("/odom", START, {})])

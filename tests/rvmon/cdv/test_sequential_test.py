@@ -59,14 +59,12 @@ def test_errors_are_as_stated(share):
 
 @pytest.mark.parametrize("before", [[], [P] * 20, [P] * 30 + [F], [I] * 4, [P] * 56])
 def test_so_many_tests_are_missing(before):
-    """One fewer does not decide it."""
     missing = decide(LEAST, before).missing
     assert decide(LEAST, before + [P] * missing).holds is True
     assert decide(LEAST, before + [P] * (missing - 1)).holds is None
 
 
 def test_what_is_decided_is_said_with_its_errors():
-    """Also how near to all or none the indifference goes."""
     assert str(decide(LEAST, [P] * 9 + [I])) == (
         "undecided (9 of 10 triggered tests passed, 1 inconclusive): 69 more tests at least, "
         "if all pass"

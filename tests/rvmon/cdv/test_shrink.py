@@ -81,7 +81,6 @@ OUTCOME = outcome(R1="F", R2="F")
 
 
 def test_no_test_is_played_twice():
-    """Its outcome is known already."""
     seen = []
 
     def play(test):
@@ -107,7 +106,6 @@ def test_a_run_that_does_not_complete_is_shrunk_to_one_that_ends_alike():
 
 
 def test_what_is_not_wrong_is_not_shrunk():
-    """A test that passes, a requirement that passes; one that does not exist is told."""
     assert shrink(steps(1), outcome(R1="P", R2="I"), fails_if(bool)) is None
     assert shrink(steps(1), outcome(R1="P", R2="F"), fails_if(bool), "R1") is None
     with pytest.raises(UnknownNameError, match="no requirement `R9`: there are R1, R2"):
@@ -115,15 +113,12 @@ def test_what_is_not_wrong_is_not_shrunk():
 
 
 def test_the_failure_that_a_test_knows_comes_first():
-    """Of several requirements that fail it is that which the test is about."""
     both = outcome(R1="F", R2="F")
     found = shrink(steps(1, expected={"R0": "P", "R2": "F"}), both, lambda _: both)
     assert str(found.failure) == "R2 fails"
 
 
 def test_a_test_that_cannot_be_played_is_no_smaller_one():
-    """As one whose type refuses it."""
-
     def play(test):
         if len(test.numbers) < 2:
             raise TestError("two at least")
@@ -134,7 +129,6 @@ def test_a_test_that_cannot_be_played_is_no_smaller_one():
 
 @pytest.mark.parametrize("ended", [KeyboardInterrupt, None])
 def test_a_search_that_is_ended_keeps_what_it_found(ended):
-    """By Ctrl-C, or by the number of tests; it says that there may be a smaller one."""
     played = []
 
     def play(test):
@@ -182,7 +176,6 @@ def test_a_regression_test_knows_what_is_to_come_out(campaign, tmp_path, more, e
 
 @pytest.mark.process
 def test_what_ends_its_process_is_shrunk_in_others(campaign, tmp_path, capsys):
-    """One that is lost, or hangs, takes nothing with it."""
     made = campaign(("lost", {"does": "exit"}))
     (test,) = made.strategies["climbs"](1, 1)
     assert main(made, ["shrink", str(save(test, tmp_path))]) == 0
@@ -243,7 +236,6 @@ if __name__ == "__main__":
 
 @pytest.mark.process
 def test_a_campaign_shrinks_what_fails_and_its_page_says_so(spec, tmp_path, monkeypatch, capsys):
-    """The page says how the smallest test is found; its test fails until the robot is fixed."""
     script, out = tmp_path / "jumps.py", tmp_path / "out"
     script.write_text(CAMPAIGN)
 

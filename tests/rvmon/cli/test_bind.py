@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
+from tests.rvmon.cli.test_run_results import interrupted
+from tests.tools.bags import START, write_ros1, write_ros2
 
 from rvmon.cli import main
 
@@ -44,7 +45,6 @@ SENT = [
 
 @pytest.fixture
 def words(tmp_path):
-    """A specification and a bag."""
     (tmp_path / "base.rv").write_text(SPEC)
     return [str(tmp_path / "base.rv"), str(write_ros1(tmp_path / "a.bag", SENT))]
 
@@ -59,8 +59,7 @@ def bound(words, capsys):
     return told.out.replace(open_, 'labels = { 0 = "idle", 1 = "busy" }')
 
 
-def test_what_is_proposed_runs(words, tmp_path, capsys):
-    """By names, types, and what ROS calls things; with what else may be meant."""
+def test_what_is_proposed_runs(words, tmp_path, capsys, says):
     proposed = bound(words, capsys)
     for line in (
         'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"  # always 1',
@@ -71,8 +70,7 @@ def test_what_is_proposed_runs(words, tmp_path, capsys):
         assert line in proposed
     (tmp_path / "base.toml").write_text(proposed)
     binding = ["--binding", str(tmp_path / "base.toml")]
-    assert main(["check", words[0], *binding]) == 0
-    assert "does not bind" not in capsys.readouterr().out
+    assert "does not bind" not in says(0, "check", words[0], *binding).out
     assert main(["run", *words, *binding, "--strict"]) == 0
     assert main(["why", *words, "R2", *binding]) == 0
     assert main(["run", *words, *binding, "--report", str(tmp_path / "pages")]) == 0
@@ -80,51 +78,28 @@ def test_what_is_proposed_runs(words, tmp_path, capsys):
     assert "--binding" in page
 
 
-def test_what_finds_nothing_is_told(words, tmp_path, capsys):
-    """In the binding and beside it."""
-    (tmp_path / "base.rv").write_text(SPEC.replace("mode ", "arm_torque"))
+def test_what_finds_nothing_is_told(words, tmp_path, says):
     (tmp_path / "base.rv").write_text(SPEC.replace("event  go", "event  go, zapped"))
-    assert main(["init", words[1], "--for", words[0]]) == 1
-    told = capsys.readouterr()
+    told = says(1, "init", words[1], "--for", words[0])
     assert "# Nothing was found for `zapped` (event):" in told.out
     assert "what feeds `zapped` is left open" in told.err
 
 
-def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
-    """And what is wrong with it."""
+def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys, says):
     path = tmp_path / "base.toml"
     path.write_text('[bind.go]\ntopic = "/go"\n')
     assert main(["check", words[0], "--binding", str(path)]) == 0
     assert "does not bind speed, heading, scan_state, mode, ready, pick" in capsys.readouterr().out
     path.write_text('[bind.goo]\ntopic = "/go"\n')
-    assert main(["check", words[0], "--binding", str(path)]) == 2
-    assert "did you mean `go`?" in capsys.readouterr().err
+    assert "did you mean `go`?" in says(2, "check", words[0], "--binding", path).err
 
 
-def test_columns_have_no_topics(words, tmp_path, capsys):
-    """Their names are mapped."""
+def test_columns_have_no_topics(words, tmp_path, says):
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
-    assert main(["init", str(tmp_path / "a.csv"), "--for", words[0]]) == 2
-    assert "use --map" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(("name", "writer"), [("a.bag", write_ros1), ("b.mcap", write_json_mcap)])
-def test_a_starter_of_a_bag_runs_on_it(tmp_path, monkeypatch, capsys, name, writer):
-    """Names lead to topics and fields; what cannot be declared is told."""
-    monkeypatch.chdir(tmp_path)
-    sent = [*SENT, ("/speed", START + 10, {"data": 2.5}), ("/base/scan", START + 11, {"state": 0})]
-    writer(tmp_path / name, sent)
-    assert main(["init", name, "-o", "a.rv"]) == 0
-    text = " ".join((tmp_path / "a.rv").read_text().split())
-    assert "signal speed : real" in text
-    assert "signal mode : {busy}" in text
-    assert "signal base.odom.twist.twist.linear.x : real" in text
-    assert "event go" in text
-    assert main(["run", "a.rv", name, "--strict"]) == 0
+    assert "use --map" in says(2, "init", tmp_path / "a.csv", "--for", words[0]).err
 
 
 def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
-    """As one of any table."""
     arrow = pytest.importorskip("pyarrow")
     monkeypatch.chdir(tmp_path)
     table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.5], "mode": ["idle", "busy", "idle"]}
@@ -137,8 +112,7 @@ def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
 
 
 @pytest.mark.process
-def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys):
-    """Also shared among processes."""
+def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys, says):
     runs = tmp_path / "runs"
     runs.mkdir()
     for number in range(6):
@@ -147,15 +121,13 @@ def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, 
     (tmp_path / "base.toml").write_text(bound(words, capsys))
     for jobs in ("1", "2"):
         binding = ["--binding", str(tmp_path / "base.toml"), "--jobs", jobs]
-        assert main(["run", words[0], str(runs), *binding]) == 2
-        told = capsys.readouterr()
+        told = says(2, "run", words[0], runs, *binding)
         assert "3.bag: cannot be read as a bag" in told.err
         assert all(f"{number}.bag" in told.out.replace("\n", "") for number in (0, 1, 2, 4, 5))
 
 
 @pytest.mark.slow
-def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys):
-    """Unless a bag, or the binding, is another one since."""
+def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys, says):
     runs = tmp_path / "runs"
     runs.mkdir()
     for number in range(3):
@@ -164,23 +136,15 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
     binding.write_text(bound(words, capsys))
     command = ["run", words[0], str(runs), "--binding", str(binding)]
     command += ["--out", str(tmp_path / "out.csv"), "--resume"]
-
-    def ended(*_):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patched:
-        patched.setattr("rvmon.verdict.table_file.write_whole", ended)
-        assert main(command) == 130
-        (runs / "1" / "1.mcap").touch()
-        assert main(command) == 130
+    interrupted(monkeypatch, command)
+    (runs / "1" / "1.mcap").touch()
+    interrupted(monkeypatch, command)
     assert "2 of 3 recordings were evaluated before" in capsys.readouterr().err
     binding.write_text(binding.read_text().replace('unit = "rad"', 'unit = "rad" '))
-    assert main(command) == 2
-    assert "begun with another specification" in capsys.readouterr().err
+    assert "begun with another specification" in says(2, *command).err
 
 
 def test_two_names_on_one_field_are_told(words, tmp_path, capsys):
-    """Beside the proposal, and by `check`."""
     two = SPEC.replace("signal heading ", "signal robot_speed : real [m/s]\nsignal heading ")
     (tmp_path / "base.rv").write_text(two)
     main(["init", words[1], "--for", words[0]])

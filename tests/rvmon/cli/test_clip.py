@@ -33,7 +33,6 @@ ROWS = [
 
 @pytest.fixture
 def base(tmp_path, monkeypatch):
-    """A folder with a specification and a recording."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "base.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text("\n".join(ROWS))
@@ -41,12 +40,10 @@ def base(tmp_path, monkeypatch):
 
 
 def clip(*words):
-    """The exit code of cutting `a.csv`."""
     return main(["clip", "base.rv", "a.csv", *words])
 
 
 def test_rows_are_copied_as_they_stand_and_values_are_carried(base, capsys):
-    """What was last known comes first, of names that the specification declares."""
     assert clip("R1#1", "--before", "1s", "--after", "1 s", "-o", "b.csv") == 0
     rows = (base / "b.csv").read_text().splitlines()
     assert rows == [ROWS[0], "14,0.7,False,,".lower(), *ROWS[4:7]]
@@ -58,7 +55,6 @@ def test_rows_are_copied_as_they_stand_and_values_are_carried(base, capsys):
 
 
 def test_quoted_ends_of_lines_stay(base):
-    """A row is more than a line."""
     assert clip("--from", "11", "--to", "16", "-o", "b.csv") == 0
     assert '12,0.7,,,"two\nlines"\n' in (base / "b.csv").read_text()
 
@@ -74,14 +70,11 @@ def test_a_last_line_without_its_end_has_none_in_the_piece(base):
 def test_an_episode_is_cut_around_what_failed(base, capsys):
     """It may have begun hours before; in the piece it begins with it."""
     assert clip("R2", "--before", "0", "--after", "0", "-o", "b.csv") == 0
-    assert (base / "b.csv").read_text().splitlines() == [ROWS[0], "17,,false,,", ROWS[6]] or (
-        base / "b.csv"
-    ).read_text().splitlines() == [ROWS[0], ROWS[6]]
+    assert (base / "b.csv").read_text().splitlines() == [ROWS[0], ROWS[6]]
     assert "R2#1 is R2#1 in it: F, decided at 17 s" in capsys.readouterr().out
 
 
 def test_what_a_past_operator_remembers_needs_more_before(base, capsys):
-    """The piece is written, and said to differ."""
     assert clip("R3#1", "--before", "2s", "-o", "b.csv") == 1
     told = capsys.readouterr().err
     assert "R3#1 is P in a.csv and not so in b.csv, where R3 is F" in told
@@ -98,14 +91,12 @@ def test_what_ends_too_early_is_said(base, capsys):
 
 
 def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
-    """What was decided before counts; what lies behind the piece is not read."""
     (base / "a.csv").write_text("\n".join([*ROWS, "broken"]))
     assert clip("R1#1", "--after", "2s", "-o", "b.csv") == 0
     assert "what was decided before that counts" in capsys.readouterr().err
 
 
 def test_late_rows_are_found(base, capsys):
-    """Under `max delay` they stand behind later ones."""
     (base / "base.rv").write_text(SPEC.replace("spec base\n", "spec base\nmax delay 5 s\n"))
     (base / "a.csv").write_text(
         "t,speed,ready,go\n0,0.5,false,\n9,0.4,,\n8,0.3,,\n12,,,\n10,,,1\n20,,,\n"
@@ -131,7 +122,6 @@ def test_late_rows_are_found(base, capsys):
     ],
 )
 def test_mistakes_are_told(base, capsys, words, told):
-    """With what would fix them; nothing is written, and the recording stays."""
     (base / "link.csv").symlink_to("a.csv")
     assert clip(*words) == 2
     assert told in capsys.readouterr().err
@@ -140,7 +130,7 @@ def test_mistakes_are_told(base, capsys, words, told):
     assert not list(base.glob(".rvmon-*"))
 
 
-def test_a_bag_is_not_replaced(base, capsys):
+def test_a_bag_is_not_replaced(base, says):
     """It is a folder, which may hold other things."""
     pytest.importorskip("rosbags")
     from tests.tools.bags import START, write_ros2
@@ -148,15 +138,13 @@ def test_a_bag_is_not_replaced(base, capsys):
     write_ros2(base / "bag", [("/speed", START, {"data": 2.0})], "sqlite3")
     (base / "b").mkdir()
     words = ["clip", "base.rv", "bag", "R2", "-o", "b", "--allow-missing"]
-    assert main(words) == 2
-    assert "cannot write b: it is there, and a bag is a new folder" in capsys.readouterr().err
+    assert "cannot write b: it is there, and a bag is a new folder" in says(2, *words).err
 
 
 @pytest.mark.parametrize(
     ("kind", "second"), [("datetime64[ms]", 1000), ("timedelta64[ms]", 1000), ("timedelta64[s]", 1)]
 )
-def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, capsys, kind, second):
-    """It keeps its type; the values that are brought along have a stamp of it."""
+def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, says, kind, second):
     pyarrow = pytest.importorskip("pyarrow")
     numpy = pytest.importorskip("numpy")
     parquet = pytest.importorskip("pyarrow.parquet")
@@ -164,8 +152,7 @@ def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, capsys,
     columns = {"t": (numpy.arange(100) * second).astype(kind), "speed": speed}
     parquet.write_table(pyarrow.table(columns), "a.parquet")
     (base / "v.rv").write_text("spec s\nsignal speed : real\nrequirement R1\n  always speed <= 1")
-    assert main(["clip", "v.rv", "a.parquet", "R1#1", "--out", "b.parquet"]) == 0
-    assert "40 s to 55 s" in capsys.readouterr().out
+    assert "40 s to 55 s" in says(0, "clip", "v.rv", "a.parquet", "R1#1", "--out", "b.parquet").out
     piece = parquet.read_table("b.parquet")
     assert piece.schema == parquet.read_table("a.parquet").schema
     assert main(["run", "v.rv", "b.parquet", "--quiet"]) == 1
@@ -173,9 +160,7 @@ def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, capsys,
 
 @pytest.mark.parametrize("name", ["a.ulg", "a.blf", "a.mf4", "a.h5"])
 @pytest.mark.parametrize("out", [["-o", "piece.csv"], ["--reproducer", "a.rvcase"]])
-def test_what_no_piece_is_cut_out_of_says_what_one_is(base, capsys, name, out):
-    """Before it is read."""
+def test_what_no_piece_is_cut_out_of_says_what_one_is(base, says, name, out):
     (base / name).write_bytes(b"")
-    assert main(["clip", "base.rv", name, "R1", *out]) == 2
-    told = capsys.readouterr().err
+    told = says(2, "clip", "base.rv", name, "R1", *out).err
     assert f"error: {name}: no piece can be cut out of this format, as out of CSV" in told

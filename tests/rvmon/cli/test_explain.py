@@ -2,8 +2,6 @@
 
 import pytest
 
-from rvmon.cli import main
-
 SPEC = """
 spec door "A door"
 signal closed : bool input
@@ -30,21 +28,13 @@ requirement D6
 
 @pytest.fixture
 def door(tmp_path, monkeypatch):
-    """A folder with a spec."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "door.rv").write_text(SPEC)
     return tmp_path
 
 
-def shown(capsys, *words):
-    """What the command prints."""
-    assert main(["explain", *words]) == 0
-    return capsys.readouterr().out
-
-
-def test_words_facts_automaton_and_runs(door, capsys):
-    """A requirement is told in words, with its automaton and a run for each verdict."""
-    text = shown(capsys, "door.rv", "D1")
+def test_words_facts_automaton_and_runs(door, says):
+    text = says(0, "explain", "door.rv", "D1").out
     assert "Each time that knock occurs:" in text
     assert "within 2 s, closed is false." in text
     assert "1 clock" in text
@@ -63,54 +53,40 @@ def test_words_facts_automaton_and_runs(door, capsys):
         ("duration(closed, 5 s) >= 3 s", "for 3 s or more in the last 5 s, closed is true"),
     ],
 )
-def test_what_is_measured_is_said(tmp_path, capsys, measured, said):
+def test_what_is_measured_is_said(tmp_path, says, measured, said):
     (tmp_path / "s.rv").write_text(f"{SPEC}requirement W\n upon knock then eventually {measured}\n")
-    text = shown(capsys, str(tmp_path / "s.rv"), "W")
+    text = says(0, "explain", str(tmp_path / "s.rv"), "W").out
     assert said in " ".join(text.split())
     assert "`upon`" not in text
 
 
-def test_all_requirements_within_80_columns(door, capsys):
-    """Without an id all are told; no line is wider than 80 columns."""
-    text = shown(capsys, "door.rv")
+def test_all_requirements_within_80_columns(door, says):
+    text = says(0, "explain", "door.rv").out
     assert all(len(line) <= 80 for line in text.splitlines()), text
     assert text.count("The shortest run on which it") == 6
 
 
-def test_what_cannot_be_is_said(door, capsys):
-    """It is said why there is no example."""
-    text = shown(capsys, "door.rv", "D3")
+def test_what_cannot_be_is_said(door, says):
+    text = says(0, "explain", "door.rv", "D3").out
     assert "fails: never, whatever comes" in text
     assert "is not triggered: never, every run triggers it" in text
-    assert "nothing can trigger it" in shown(capsys, "door.rv", "D5")
+    assert "nothing can trigger it" in says(0, "explain", "door.rv", "D5").out
+    assert "not decided" in says(0, "explain", "door.rv", "D1", "--runs", "2").out
 
 
-def test_too_small_a_budget_is_said(door, capsys):
-    """Where the search ends early nothing is claimed."""
-    assert "not decided" in shown(capsys, "door.rv", "D1", "--runs", "2")
-
-
-def test_the_difference_of_two(door, capsys):
-    """Two requirements: a run on which one fails and the other does not."""
-    text = shown(capsys, "door.rv", "D1", "D2", "--runs", "300")
+def test_the_difference_of_two(door, says):
+    text = says(0, "explain", "door.rv", "D1", "D2", "--runs", "300").out
     difference = text.split("one fails and the other does not")[1]
     rows = {line.split()[0]: line for line in difference.splitlines() if line.strip()}
     assert "✗ F" in rows["D1"]
     assert "✗ F" not in rows["D2"]
 
 
-def test_a_requirement_differs_not_from_its_twin(tmp_path, capsys):
-    """Equal requirements: none is found, and it is said after how many runs."""
+def test_a_requirement_differs_not_from_its_twin(tmp_path, says):
     path = tmp_path / "twins.rv"
     path.write_text("event a\nrequirement R1\n upon a\n then immediately a\n"
                     "requirement R2\n upon a\n then immediately a\n")  # fmt: skip
-    assert "No run was found" in shown(capsys, str(path), "R1", "R2")
-
-
-def test_a_code_has_its_page(capsys):
-    """A diagnostic's code is explained by its page, in either case of letters."""
-    assert "# RV012 unknown-signal" in shown(capsys, "RV012")
-    assert "# RV012 unknown-signal" in shown(capsys, "rv012")
+    assert "No run was found" in says(0, "explain", str(path), "R1", "R2").out
 
 
 @pytest.mark.parametrize(
@@ -125,7 +101,5 @@ def test_a_code_has_its_page(capsys):
         (["door.rv", "D1", "--const", "T"], "NAME=VALUE"),
     ],
 )
-def test_wrong_words_are_answered_with_a_fix(door, capsys, words, said):
-    """One message, exit code 2, no traceback."""
-    assert main(["explain", *words]) == 2
-    assert said in capsys.readouterr().err
+def test_wrong_words_are_answered_with_a_fix(door, says, words, said):
+    assert said in says(2, "explain", *words).err

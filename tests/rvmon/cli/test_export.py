@@ -27,16 +27,13 @@ def spec(tmp_path):
     return str(path)
 
 
-def test_dot(spec, capsys):
-    """A digraph per requirement."""
-    assert main(["export", spec, "--to", "dot"]) == 0
-    shown = capsys.readouterr().out
+def test_dot(spec, says):
+    shown = says(0, "export", spec, "--to", "dot").out
     assert shown.count("digraph") == 2
     assert "within 2 s not closed" in shown
 
 
 def test_json(spec, tmp_path):
-    """Locations with what is required and the instants that matter, edges with their conditions."""
     path = tmp_path / "door.json"
     assert main(["export", spec, "--to", "json", "-o", str(path)]) == 0
     first, second = json.loads(path.read_text())
@@ -45,10 +42,9 @@ def test_json(spec, tmp_path):
     assert {edge["target"] for edge in second["edges"]} <= {"A", "P"}
 
 
-def test_hoa(spec, capsys):
+def test_hoa(spec, capsys, says):
     """What has windows is left out with the reason; where nothing is left, that is an error."""
-    assert main(["export", spec, "--to", "hoa"]) == 0
-    told = capsys.readouterr()
+    told = says(0, "export", spec, "--to", "hoa")
     assert told.out.startswith('HOA: v1\nname: "D2: At last it is closed"')
     assert told.err.startswith("left out: D1 has windows of time")
     assert main(["export", spec, "--to", "hoa", "--only", "D1"]) == 2
@@ -69,7 +65,6 @@ def test_c_wants_a_folder(spec, tmp_path, capsys):
 
 
 def test_c_takes_samples_in_order(spec, tmp_path, capsys):
-    """What is to hold late samples back is refused, with what to do."""
     late = tmp_path / "late.rv"
     late.write_text(SPEC.replace("\nsignal", "\nmax delay 1 s\nsignal", 1))
     assert "max delay" in late.read_text()
@@ -91,18 +86,14 @@ def test_c_is_the_core_and_a_plan(spec, tmp_path, capsys):
     assert "DOOR_REQUIREMENT_D2 = 0, /* D2 */" in (folder / "door_plan.h").read_text()
 
 
-def test_unknown_requirements_are_named(spec, capsys):
-    """The ones there are stand in the message."""
-    assert main(["export", spec, "--to", "dot", "--only", "D7"]) == 2
-    assert "there are D1, D2" in capsys.readouterr().err
+def test_unknown_requirements_are_named(spec, says):
+    assert "there are D1, D2" in says(2, "export", spec, "--to", "dot", "--only", "D7").err
 
 
 @pytest.mark.parametrize("form", ["dot", "hoa", "json"])
-def test_a_spec_without_requirements_has_no_automata(tmp_path, capsys, form):
-    """That is said, and nothing is printed."""
+def test_a_spec_without_requirements_has_no_automata(tmp_path, says, form):
     (tmp_path / "door.rv").write_text(SPEC.partition("requirement")[0])
-    assert main(["export", str(tmp_path / "door.rv"), "--to", form]) == 2
-    shown = capsys.readouterr()
+    shown = says(2, "export", tmp_path / "door.rv", "--to", form)
     assert shown.out == ""
     assert "no requirement" in shown.err
 
@@ -111,26 +102,21 @@ MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
 def test_a_model_for_uppaal_comes_back(tmp_path):
-    """Its queries have the same answers."""
     path = tmp_path / "fischer.xml"
     assert main(["export", str(MODELS / "fischer.ta"), "--to", "uppaal", "-o", str(path)]) == 0
     assert main(["verify", str(path), "--query", "exclusion"]) == 0
 
 
-def test_a_model_for_graphviz(capsys):
-    """A cluster per automaton, an arrow per edge."""
+def test_a_model_for_graphviz(says):
     assert main(["export", str(MODELS / "dock.ta"), "--to", "dot", "--const", "X=1"]) == 2
-    assert main(["export", str(MODELS / "dock.ta"), "--to", "dot"]) == 0
-    drawn = capsys.readouterr().out
+    drawn = says(0, "export", MODELS / "dock.ta", "--to", "dot").out
     assert drawn.startswith("digraph network {")
     assert "->" in drawn
 
 
-def test_queries_that_uppaal_has_not_are_named(tmp_path, capsys):
-    """UPPAAL has no bounded operators: one line for each such query."""
+def test_queries_that_uppaal_has_not_are_named(tmp_path, says):
     out = ["-o", str(tmp_path / "d.xml")]
-    assert main(["export", str(MODELS / "dock.ta"), "--to", "uppaal", *out]) == 0
-    (line,) = capsys.readouterr().err.splitlines()
+    (line,) = says(0, "export", MODELS / "dock.ta", "--to", "uppaal", *out).err.splitlines()
     assert line == (
         "warning: not a query of UPPAAL, left out: `soon`: robot.docked -->[<=20] charging"
     )
@@ -148,7 +134,5 @@ def test_queries_that_uppaal_has_not_are_named(tmp_path, capsys):
         (["door.rv", "--to", "uppaal"], "is no model"),
     ],
 )
-def test_what_cannot_be_exported_is_said(words, told, capsys):
-    """On standard error, with code 2."""
-    assert main(["export", *words]) == 2
-    assert told in capsys.readouterr().err
+def test_what_cannot_be_exported_is_said(words, told, says):
+    assert told in says(2, "export", *words).err

@@ -37,7 +37,6 @@ LACKING = [
 def test_a_missing_extra_names_the_line_that_installs_it(
     tmp_path, monkeypatch, capsys, package, words, extra
 ):
-    """Before anything is judged or played, and it is no error of ours."""
     monkeypatch.chdir(tmp_path)
     for name in ("base.rv", "base.csv"):
         shutil.copy(ROOT / "examples" / name, tmp_path)
@@ -58,7 +57,6 @@ def test_a_missing_extra_names_the_line_that_installs_it(
 
 
 def test_every_package_is_in_its_extra():
-    """The lines install what is missing."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     brought = project["optional-dependencies"]
     for package, extra in EXTRAS.items():

@@ -26,10 +26,9 @@ def examples(program, words, capsys):
     return [one for line in lines for one in re.split(r" && | \| | > .+? && ", line.strip())]
 
 
-def test_the_commands_fit_a_screen(capsys):
+def test_the_commands_fit_a_screen(says):
     """Of 24 lines and 80 columns, each with its purpose, but for what editors start."""
-    assert main(["--help"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = says(0, "--help").out.splitlines()
     assert len(lines) <= 24
     assert max(map(len, lines)) <= 80
     assert {line.split()[0] for line in lines if line.startswith("  ")} == {
@@ -41,7 +40,6 @@ def test_the_commands_fit_a_screen(capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["", *COMMANDS])
 def test_every_example_of_help_runs(command, tmp_path, monkeypatch, capsys):
-    """From the folder of the project, in the order in which they stand."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     for name in ("examples", "specs"):
@@ -62,7 +60,6 @@ def test_every_example_of_help_runs(command, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("command", HANDOVER)
 def test_every_example_of_handover_is_understood(command, capsys, monkeypatch):
-    """By the parser of its own."""
     monkeypatch.setenv("COLUMNS", "80")
     for one in examples(handover.cli.main, command, capsys):
         program, *words = shlex.split(one)
@@ -80,10 +77,8 @@ def test_every_example_of_handover_is_understood(command, capsys, monkeypatch):
         ("", "check recordings against a specification"),
     ],
 )
-def test_a_wrong_command_line_says_what_was_meant_or_how_it_is_done(words, told, capsys):
-    """In few lines, on standard error, with code 2."""
-    assert main(words.split()) == 2
-    shown = capsys.readouterr()
+def test_a_wrong_command_line_says_what_was_meant_or_how_it_is_done(words, told, says):
+    shown = says(2, *words.split())
     assert told in shown.err
     assert shown.out == ""
     assert len(shown.err.splitlines()) < (9 if words else 50)

@@ -12,21 +12,18 @@ pytestmark = pytest.mark.process
 
 
 def run(folder, *words):
-    """Run the campaign that was written."""
     command = [sys.executable, str(folder / "campaign.py"), *words]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)  # noqa: S603
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
-    """A folder with a starter campaign."""
     folder = tmp_path_factory.mktemp("init") / "mine"
     assert main(["init", "--campaign", str(folder)]) == 0
     return folder
 
 
 def test_it_passes_its_strict_gate_and_finds_its_planted_fault(written):
-    """All requirements are triggered, none fails, and the specification is laid out as it is to."""
     done = run(written, "run", "--tests", "20", "--jobs", "1", "--strict")
     assert (done.returncode, done.stderr) == (0, "")
     assert "2 of 2 directed tests ended as they should, 1 of them with a fault" in done.stdout
@@ -34,7 +31,6 @@ def test_it_passes_its_strict_gate_and_finds_its_planted_fault(written):
 
 
 def test_it_closes(written):
-    """With what it calls unreachable, nothing stays open, and floors stay within their bounds."""
     done = run(written, "close", "--jobs", "1", "--format", "json", "--out", "closed")
     assert done.returncode == 0, done.stdout + done.stderr
     found = json.loads(done.stdout)
@@ -45,17 +41,14 @@ def test_it_closes(written):
 
 
 def test_it_is_mutated(written):
-    """Most small wrong changes of its code are seen."""
     words = ("mutate", "--of", "code", "--tests", "4", "--strategy", "anyone", "--jobs", "1")
     done = run(written, *words, "--only", "next_state", "--format", "json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)
 
 
-def test_nothing_is_overwritten(written, capsys):
-    """Unless that is asked for; and a recording or a campaign is to be named, not both."""
-    assert main(["init", "--campaign", str(written)]) == 2
-    assert "is there already" in capsys.readouterr().err
+def test_nothing_is_overwritten(written, says):
+    assert "is there already" in says(2, "init", "--campaign", written).err
     assert main(["init", "--campaign", str(written), "--force"]) == 0
     assert main(["init"]) == 2
     assert main(["init", "some.csv", "--campaign", "there"]) == 2

@@ -38,9 +38,8 @@ def recording(tmp_path):
     return tmp_path
 
 
-def test_each_name_has_its_kind_rate_gap_and_values(recording, capsys):
-    assert main(["look", str(recording / "base.csv")]) == 0
-    told = capsys.readouterr().out
+def test_each_name_has_its_kind_rate_gap_and_values(recording, says):
+    told = says(0, "look", recording / "base.csv").out
     lines = {line.split()[0]: line for line in told.splitlines() if line.split()}
     assert "400 samples in 39.9 s" in told.replace("\n", "")
     assert "real [m/s]" in lines["speed"]
@@ -54,11 +53,9 @@ def test_each_name_has_its_kind_rate_gap_and_values(recording, capsys):
     assert "  " in drawn.strip()
 
 
-def test_with_a_specification_what_feeds_its_requirements_comes_first(recording, capsys):
-    """Under each; what nothing feeds is told."""
+def test_with_a_specification_what_feeds_its_requirements_comes_first(recording, says):
     words = [str(recording / "base.csv"), str(recording / "base.rv")]
-    assert main(["look", *words]) == 0
-    told = capsys.readouterr().out
+    told = says(0, "look", *words).out
     assert told.index("R1  Slow") < told.index("real [m/s]") < told.index("R2  Stops")
     assert "left out: never: nothing feeds it" in told
 
@@ -75,25 +72,22 @@ def test_a_page_holds_each_name_and_nothing_of_it_is_markup(recording, capsys):
     assert text.count('class="event"') == 2
 
 
-def test_what_a_log_lost_is_told_and_shaded(tmp_path, capsys):
+def test_what_a_log_lost_is_told_and_shaded(tmp_path, says):
     pytest.importorskip("pyulog")
     rows = [(t, t / 1e6, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
-    assert main(["look", str(path)]) == 0
-    assert "lost: everything from 0.1 s (stamp 1.1 s) on:" in capsys.readouterr().out
+    assert "lost: everything from 0.1 s (stamp 1.1 s) on:" in says(0, "look", path).out
     assert main(["look", str(path), "-o", str(tmp_path / "a.html")]) == 0
     page = (tmp_path / "a.html").read_text()
     assert 'class="lost"' in page
     assert '<code title="drive.speed">speed</code>' in page  # it stands under its topic
 
 
-def test_what_falls_silent_is_drawn_up_to_there(tmp_path, monkeypatch, capsys):
-    """At the instants of the axis, which are round."""
+def test_what_falls_silent_is_drawn_up_to_there(tmp_path, monkeypatch, says):
     monkeypatch.chdir(tmp_path)
     rows = [f"{k / 100},{k % 7}," for k in range(100)] + [f"{1 + k},,{k}" for k in range(200)]
     Path("a.csv").write_text("\n".join(["t,early,late", *rows, ""]))
-    assert main(["look", "a.csv"]) == 0
-    early, late = capsys.readouterr().out.splitlines()[1:3]
+    early, late = says(0, "look", "a.csv").out.splitlines()[1:3]
     assert [sum(one in "▁▂▃▄▅▆▇█" for one in line) for line in (early, late)] == [1, 20]
     assert main(["look", "a.csv", "-o", "a.html"]) == 0
     text = Path("a.html").read_text()
@@ -134,24 +128,20 @@ def test_a_course_is_bounded_and_loses_no_peak():
         ["check", "a.rv", "--binding", "gone.toml"],
     ],
 )
-def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, capsys, words):
-    """By its name, and nothing else is wrong with it."""
+def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, says, words):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.rv").write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 1\n")
-    assert main(words) == 2
-    told = capsys.readouterr().err
+    told = says(2, *words).err
     assert re.search(r"gone[.\w/]*: No such file or directory", told)
     assert " + " not in told
 
 
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
-def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, capsys):
-    """Text behind 20,000 numbers, be it nearly a number, or two."""
+def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):
     rows = "".join(f"{t},{t / 7},{t % 3}\n" for t in range(20_000))
     path = tmp_path / "long.csv"
     path.write_text(f't,x,n\n{rows}20000,"{odd}",1\n')
-    assert main(["look", str(path)]) == 0
-    told = capsys.readouterr().out
+    told = says(0, "look", path).out
     assert "x: numbers and text" in " ".join(told.split())
     assert "0 … 2" in told
 
@@ -164,12 +154,10 @@ def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, capsys):
     ],
     ids=["a double", "larger than one"],
 )
-def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, tmp_path, capsys):
-    """What is too large for that is an error with its line."""
+def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, tmp_path, says):
     path = tmp_path / "large.jsonl"
     path.write_text("".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
-    assert main(["look", str(path)]) == code
-    assert told in " ".join("".join(capsys.readouterr()).split())
+    assert told in " ".join("".join(says(code, "look", path)).split())
 
 
 def test_unsigned_numbers_take_64_bits(tmp_path, capsys):

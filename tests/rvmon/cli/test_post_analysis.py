@@ -65,7 +65,6 @@ def traces(request, tmp_path):
 @pytest.mark.parametrize("until", [None, 60.0])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
 def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
-    """Whichever rows were looked at, the sentence is the same."""
     text = HEAD.format(time=time) + "".join(
         f"requirement R{number}\n  upon {trigger}\n  then within 1 s q\n"
         for number, trigger in enumerate(SILENT.values())
@@ -86,7 +85,6 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
 @pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
-    """Cover goals by columns and by samples."""
     text = HEAD.format(time="held") + (
         "requirement R1\n  always (p or not p)\n"
         "cover shown = F (p and q and F[1 s, 9 s] go)\n"
@@ -137,7 +135,6 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, h
 
 
 def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, monkeypatch):
-    """What came late is told of at least one failure of each requirement."""
     monkeypatch.setattr("rvmon.cli.post_analysis.MOST_LATE_IN_ALL", 4)
     text = "spec s\nevent e\nsignal p : bool\n" + "".join(
         f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(9)
@@ -151,7 +148,6 @@ def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, m
 
 
 def test_a_trigger_of_instances_hides_no_miss(tmp_path):
-    """Of two requirements with one trigger, one `for each`, the other has its sentence."""
     text = (
         "spec s\nevent go(k: int)\nsignal p, q : bool\n"
         "requirement R1\n  upon p and q then within 1 s go.k == k\n  for each k in go.k\n"
@@ -164,7 +160,6 @@ def test_a_trigger_of_instances_hides_no_miss(tmp_path):
 
 
 def test_nothing_is_looked_up_for_nobody(tmp_path):
-    """Where only verdicts are counted a recording is not read once more."""
     (tmp_path / "a.csv").write_text("t,p\n0,0\n1,0\n")
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  upon p then within 1 s not p\n")
     assert judge(spec, str(tmp_path / "a.csv"), Options()).report.misses

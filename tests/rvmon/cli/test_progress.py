@@ -31,7 +31,6 @@ def screen(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_recordings_are_counted(screen, jobs):
-    """One bar for all, whoever judges them."""
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl", "two.jsonl", "--jobs", jobs]) == 0
     assert "recordings" in screen.getvalue()
@@ -40,14 +39,12 @@ def test_recordings_are_counted(screen, jobs):
 
 @pytest.mark.slow
 def test_a_single_recording_shows_how_far_it_is_read(screen):
-    """By its name, be it read as columns, in pieces or sample by sample."""
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl"]) == 0
     assert "one.jsonl" in screen.getvalue()
 
 
 def test_short_work_and_files_show_no_bar(screen, monkeypatch):
-    """Nothing is in the way of what is told."""
     monkeypatch.setattr(output, "PATIENCE_S", 1e9)
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl", "two.jsonl"]) == 0
@@ -55,7 +52,6 @@ def test_short_work_and_files_show_no_bar(screen, monkeypatch):
 
 
 def test_what_nobody_can_count_is_named_while_it_lasts(screen):
-    """An analysis, which may take its seconds."""
     with redirect_stderr(screen):
         assert main(["check", "s.rv", "--analyse"]) == 0
     assert "analysing s.rv" in screen.getvalue()

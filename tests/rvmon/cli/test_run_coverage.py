@@ -33,7 +33,6 @@ WILD = "t,near,state\n0,false,idle\n1,true,moving\n1.5,,idle\n4,,moving\n"
 
 @pytest.fixture
 def files(tmp_path, monkeypatch):
-    """A specification, a recording that is calm, and one that is not."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "arm.rv").write_text(SPEC)
     (tmp_path / "calm.csv").write_text(CALM)
@@ -41,36 +40,29 @@ def files(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_an_illegal_bin_is_an_error_of_the_run(files, capsys):
-    """It is named with its first instant in text, JSON, JUnit; the exit code is 1."""
-    assert main(["run", "arm.rv", "calm.csv"]) == 0
-    assert "illegal:" not in capsys.readouterr().out
+def test_an_illegal_bin_is_an_error_of_the_run(files, capsys, says):
+    assert "illegal:" not in says(0, "run", "arm.rv", "calm.csv").out
     assert main(["run", "arm.rv", "wild.csv", "--junit", "j.xml", "--report", "pages"]) == 1
     line = "illegal: `yes × moving` of `both` was hit at 1 s, 2 times in all"
     assert line in capsys.readouterr().out
     (failure,) = ET.parse("j.xml").getroot().iter("failure")  # noqa: S314 - our own
     assert failure.get("message") == line
     assert line in next((files / "pages").glob("*wild*.html")).read_text()
-    assert main(["run", "arm.rv", "wild.csv", "--format", "json"]) == 1
-    shown = json.loads(capsys.readouterr().out)
+    shown = json.loads(says(1, "run", "arm.rv", "wild.csv", "--format", "json").out)
     assert shown["illegal"] == [
         {"group": "both", "item": "yes × moving", "count": 2, "first": 10**9}
     ]
     assert shown["requirements"]["A1"]["verdict"] == "P"
 
 
-def test_what_was_hit_is_told_without_a_database(files, capsys):
-    """Of each recording and of all together: how often each bin was hit, and what was not."""
-    assert main(["run", "arm.rv", "calm.csv"]) == 0
-    text = capsys.readouterr().out
+def test_what_was_hit_is_told_without_a_database(files, says):
+    text = says(0, "run", "arm.rv", "calm.csv").out
     assert "person: 2 of 2 covered; hit: yes 1, no 2" in text
     assert "both: not covered: yes × stops" in text
-    assert main(["run", "arm.rv", "calm.csv", "wild.csv", "--quiet"]) == 1
-    text = capsys.readouterr().out
+    text = says(1, "run", "arm.rv", "calm.csv", "wild.csv", "--quiet").out
     assert "person: 2 of 2 covered; hit: yes 2, no 3" in text
     assert "both: not covered" not in text
-    assert main(["run", "arm.rv", "calm.csv", "--format", "json"]) == 0
-    shown = json.loads(capsys.readouterr().out)["coverage"]
+    shown = json.loads(says(0, "run", "arm.rv", "calm.csv", "--format", "json").out)["coverage"]
     assert [group["name"] for group in shown] == ["person", "arm", "both"]
     assert shown[0]["bins"][1] == {
         "name": "no",
@@ -83,33 +75,17 @@ def test_what_was_hit_is_told_without_a_database(files, capsys):
     assert missed == ["yes × moving", "yes × stops"]
 
 
-def test_coverage_outlives_an_unfinished_run(files, capsys):
-    """What was judged before is told as what is judged now."""
-    report = main(["run", "arm.rv", "calm.csv", "--format", "json"])
-    assert report == 0
-    text = capsys.readouterr().out
-    kept = Report.from_json(text)
-    assert json.loads(kept.to_json())["coverage"] == json.loads(text)["coverage"]
-
-
-def test_up_to_an_instant(files):
-    """What comes behind `--until` was not hit."""
-    assert main(["run", "arm.rv", "wild.csv", "--until", "0.5"]) == 0
-
-
-def test_a_column_that_a_coverpoint_reads(files, capsys):
+def test_a_column_that_a_coverpoint_reads(files, says):
     """Without it, no bin would be hit in silence."""
     (files / "few.csv").write_text("t,state\n0,idle\n")
     spec = SPEC.replace("  upon near\n", "  upon state == moving\n")
     (files / "arm.rv").write_text(spec)
-    assert main(["run", "arm.rv", "few.csv"]) == 2
-    assert "`near`, read by person" in capsys.readouterr().err
+    assert "`near`, read by person" in says(2, "run", "arm.rv", "few.csv").err
     assert main(["run", "arm.rv", "few.csv", "--allow-missing"]) == 1
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_the_database(files, jobs):
-    """All recordings are in it, with verdicts and hits; the same ones again add nothing."""
     command = ["run", "arm.rv", "calm.csv", "wild.csv", "--coverage", "c.db", "--jobs", jobs]
     assert main(command) == 1
     assert main(command) == 1
@@ -118,26 +94,21 @@ def test_the_database(files, jobs):
     assert coverage.entries[0].record.verdicts == {"A1": "P"}
 
 
-def test_a_first_hit_is_told_in_seconds_of_its_run(files, capsys):
+def test_a_first_hit_is_told_in_seconds_of_its_run(files, says):
     """As all instants are, with the stamp beside it where the log has another clock."""
     (files / "calm.csv").write_text("t,near,state\n1700000000,false,idle\n1700000000.5,true,\n")
     assert main(["run", "arm.rv", "calm.csv", "--coverage", "c.db"]) == 0
-    capsys.readouterr()
-    assert main(["cover", "c.db", "--bins"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = " ".join(says(0, "cover", "c.db", "--bins").out.split())
     assert "calm.csv at 0.5 s (stamp 1700000000.5 s, 2023-11-14 22:13:20 UTC)" in told
 
 
-def test_a_place_that_cannot_be_written(files, capsys):
-    """It is told before anything is judged."""
-    assert main(["run", "arm.rv", "calm.csv", "--coverage", "none/c.db"]) == 2
-    shown = capsys.readouterr()
+def test_a_place_that_cannot_be_written(files, says):
+    shown = says(2, "run", "arm.rv", "calm.csv", "--coverage", "none/c.db")
     assert "there is no folder none" in shown.err
     assert not shown.out
 
 
 def test_from_standard_input(files, monkeypatch):
-    """A stream is watched as it goes by."""
     lines = ['{"t": 0, "near": true, "state": "moving"}', '{"t": 1, "state": "idle"}']
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))
     assert main(["run", "arm.rv", "-"]) == 1
@@ -175,7 +146,7 @@ def test_a_full_disk_is_told_and_takes_nothing_away(tmp_path, kilobytes):
     assert [entry.record for entry in read([database]).entries] == kept
 
 
-def test_cover_goals_are_shown_or_open(tmp_path, capsys):
+def test_cover_goals_are_shown_or_open(tmp_path, capsys, says):
     """A run shows a goal, or could still have, or cannot any more; several make it met or open."""
     spec = tmp_path / "s.rv"
     spec.write_text(
@@ -187,8 +158,7 @@ def test_cover_goals_are_shown_or_open(tmp_path, capsys):
         trace = tmp_path / f"{name}.csv"
         trace.write_text(f"t,a,e\n0,1,0\n1,{last},{last}\n")
         traces.append(str(trace))
-    assert main(["run", str(spec), *traces]) == 0
-    shown = capsys.readouterr().out
+    shown = says(0, "run", spec, *traces).out
     assert "met  P ✓  shown" in shown
     assert "met  I ?  not shown, still possible at the end" in shown
     assert "never  NT –  not shown" in shown

@@ -33,8 +33,18 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+def interrupted(monkeypatch, words):
+    """A run that is ended as its results are about to be written."""
+
+    def full(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("rvmon.verdict.table_file.write_whole", full)
+        assert main(words) == 130
+
+
 def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
-    """The exit codes are those of the run."""
     assert main(["run", "s.rv", "good.csv", "--out", "v.csv"]) == 0
     assert main(["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]) == 1
     found = [(row.recording, row.requirement, row.verdict) for row in read_results("v.csv")]
@@ -51,32 +61,22 @@ def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
 
 
 @pytest.mark.parametrize("resume", [True, False])
-def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
-    """What was judged is not judged again, unless its file has changed; outputs are the same."""
+def test_a_run_that_was_ended_goes_on(folder, capsys, says, monkeypatch, resume):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
-    assert main(words) == 1
-    whole, table = capsys.readouterr().out, (folder / "v.csv").read_text()
+    whole, table = says(1, *words).out, (folder / "v.csv").read_text()
     (folder / "v.csv").unlink()
-
-    def full(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("rvmon.verdict.table_file.write_whole", full)
-    assert main(words) == 130
-    monkeypatch.undo()
-    monkeypatch.chdir(folder)
+    interrupted(monkeypatch, words)
     assert len(journal.entries(folder / "v.csv.unfinished")) == 3
     capsys.readouterr()
     (folder / "good.csv").write_text("t,p\n0,1\n5,1\n\n")
-    assert main([*words, *(["--resume"] if resume else [])]) == 1
-    told = capsys.readouterr()
+    told = says(1, *words, *["--resume"] if resume else [])
     assert told.out == whole
     assert ("1 of 2 recordings were evaluated before" in told.err) is resume
     assert (folder / "v.csv").read_text() == table
 
 
 @pytest.mark.parametrize(("changed", "kept"), [("a.log", "1 of 2 recordings"), ("car.dbc", "")])
-def test_what_has_changed_is_judged_again(folder, capsys, monkeypatch, changed, kept):
+def test_what_has_changed_is_judged_again(folder, says, monkeypatch, changed, kept):
     """Also where size and time are the same, and where only what says what it holds is another."""
     pytest.importorskip("can")
     for name in ("a.log", "b.log"):
@@ -84,26 +84,18 @@ def test_what_has_changed_is_judged_again(folder, capsys, monkeypatch, changed, 
     spec = "signal Drive.speed : real\nrequirement R\n  always Drive.speed < 1"
     (folder / "drive.rv").write_text(spec)
     words = ["run", "drive.rv", "a.log", "b.log", "--out", "v.csv"]
-
-    def full(*_):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patched:
-        patched.setattr("rvmon.verdict.table_file.write_whole", full)
-        assert main(words) == 130
+    interrupted(monkeypatch, words)
     other = folder / changed
     times, text = other.stat(), other.read_text()
     other.write_text(text.replace("0000803E", "00008040").replace("(1,0)", "(8,0)"))
     assert len(text) == other.stat().st_size
     os.utime(other, ns=(times.st_atime_ns, times.st_mtime_ns))
-    capsys.readouterr()
-    assert main([*words, "--resume"]) == 1
-    told = capsys.readouterr().err
+    told = says(1, *words, "--resume").err
     assert kept in told
     assert ("evaluated before" in told) is bool(kept)
 
 
-def test_shards_are_joined(folder, capsys):
+def test_shards_are_joined(folder, says):
     """Wherever each was judged; what broke off, and a shard that is missing, is judged here."""
     recordings = ["good.csv", "bad.csv", "cut.csv", "more.csv", "last.csv"]
     for copy in recordings[3:]:
@@ -115,9 +107,7 @@ def test_shards_are_joined(folder, capsys):
     parts = [[row.recording for row in read_results(part)] for part in folder.glob("v.shard-*.csv")]
     assert sorted(map(set, parts), key=len) == [{"cut.csv"}, {"good.csv", "more.csv"}]
     (folder / "more.csv").unlink()  # as it is on another machine
-    capsys.readouterr()
-    assert main([*words, "v.csv", "--resume"]) == 2
-    assert "2 of 5 recordings were evaluated before" in capsys.readouterr().err
+    assert "2 of 5 recordings were evaluated before" in says(2, *words, "v.csv", "--resume").err
     assert (folder / "v.csv").read_text() == (folder / "whole.csv").read_text()
     assert not list(folder.glob("*.unfinished"))
 
@@ -127,33 +117,22 @@ def test_shards_are_joined(folder, capsys):
     [
         (["--shard", "1/2"], "name the file by --out"),
         (["--out", "v.csv", "--shard", "3/9"], "there are 2 recordings"),
+        *((["--shard", text], "--shard") for text in ("0/2", "3/2", "1", "a/b", "1/", "/2")),
     ],
 )
-def test_a_share_of_nothing_is_refused(folder, capsys, words, told):
-    """With what fixes it."""
-    assert main(["run", "s.rv", "good.csv", "bad.csv", *words]) == 2
-    assert told in capsys.readouterr().err
+def test_a_share_of_nothing_is_refused(folder, says, words, told):
+    assert told in says(2, "run", "s.rv", "good.csv", "bad.csv", *words).err
 
 
-@pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/", "/2"])
-def test_no_share_is_refused(folder, capsys, text):
-    """Before anything is judged."""
-    assert main(["run", "s.rv", "good.csv", "--shard", text]) == 2
-    assert "--shard" in capsys.readouterr().err
-
-
-def test_shards_of_another_specification_are_refused(folder, capsys):
-    """It is told which file."""
+def test_shards_of_another_specification_are_refused(folder, says):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     assert main([*words, "--shard", "2/2"]) == 1
     (folder / "s.rv").write_text(SPEC.replace("1 s", "2 s"))
-    assert main([*words, "--resume"]) == 2
-    assert "v.shard-2-of-2.csv.unfinished" in capsys.readouterr().err
+    assert "v.shard-2-of-2.csv.unfinished" in says(2, *words, "--resume").err
 
 
 @pytest.mark.parametrize("option", ["--out", "--junit"])
 def test_what_is_judged_is_not_written_over(folder, capsys, option):
-    """By whatever name it is called."""
     before = (folder / "good.csv").read_text()
     (folder / "link.csv").symlink_to(folder / "good.csv")
     assert main(["run", "s.rv", "bad.csv", "good.csv", option, "link.csv"]) == 2
@@ -162,7 +141,6 @@ def test_what_is_judged_is_not_written_over(folder, capsys, option):
 
 
 def test_many_attempts_have_the_rows_that_few_have(folder):
-    """Those of a recording in columns are written together."""
     rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
     (folder / "many.csv").write_text(f"t,p\n{rows}")
     spec = rvmon.load("s.rv")
@@ -171,21 +149,17 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
     assert [*report.rows()] == [*replace(report, attempts=tuple(report.attempts)).rows()]
 
 
-def test_another_run_does_not_go_on_with_it(folder, capsys):
-    """Nor is what is no unfinished run taken for one."""
+def test_another_run_does_not_go_on_with_it(folder, says):
     words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
     journal.begin(folder / "v.csv.unfinished", [b"another"])
-    assert main(words) == 2
-    assert "was begun with another specification" in capsys.readouterr().err
+    assert "was begun with another specification" in says(2, *words).err
     assert main([*words[:-1]]) == 0
-    assert main(["run", "s.rv", "good.csv", "--resume"]) == 2
-    assert "name it by --out" in capsys.readouterr().err
+    assert "name it by --out" in says(2, "run", "s.rv", "good.csv", "--resume").err
     assert main(["run", "s.rv", "good.csv", "--out", "v.xls"]) == 2
     assert main(["run", "s.rv", "good.csv", "--out", "none/v.csv"]) == 2
 
 
-def test_known_failures_fail_no_run(folder, capsys):
-    """They are told, skipped in JUnit, and expected in databases of coverage."""
+def test_known_failures_fail_no_run(folder, capsys, says):
     known = folder / "known.toml"
     known.write_text(
         '[[known]]\nrequirement = "R1"\nreason = "worn"\nuntil = 2999-01-01\n'
@@ -201,13 +175,10 @@ def test_known_failures_fail_no_run(folder, capsys):
     assert "1 fail as is known, 1 not triggered" in index
     assert main(["cover", "c.db", "--strict"]) == 0
     known.write_text(known.read_text().replace("2999", "1999", 1))
-    capsys.readouterr()
-    assert main(words) == 1
-    assert "R1 (worn) was known to fail until 1999-01-01, and fails" in capsys.readouterr().err
+    assert "R1 (worn) was known to fail until 1999-01-01, and fails" in says(1, *words).err
 
 
 def test_what_fails_stands_first_in_the_list_of_recordings(folder):
-    """What cannot be judged stands before, with the reason; cells lead to the failure."""
     assert main(["run", "s.rv", "good.csv", "bad.csv", "cut.csv", "--report", "pages"]) == 2
     index = (folder / "pages" / "index.html").read_text()
     places = [index.index(f'data-name="{name}.csv') for name in ("cut", "bad", "good")]
@@ -218,24 +189,16 @@ def test_what_fails_stands_first_in_the_list_of_recordings(folder):
     assert 'class="filters" hidden="hidden"' in index
 
 
-def test_two_runs_are_compared(folder, capsys):
-    """The exit code is 1 if less holds than before."""
+def test_two_runs_are_compared(folder, says):
     main(["run", "s.rv", "good.csv", "--out", "old.csv"])
     main(["run", "s.rv", "good.csv", "--out", "same.csv"])
-    capsys.readouterr()
-    assert main(["compare", "old.csv", "same.csv"]) == 0
-    assert capsys.readouterr().out == "2 verdicts are as before\n"
+    assert says(0, "compare", "old.csv", "same.csv").out == "2 verdicts are as before\n"
     (folder / "good.csv").write_text((folder / "bad.csv").read_text())
     main(["run", "s.rv", "good.csv", "--out", "new.csv"])
-    capsys.readouterr()
-    assert main(["compare", "old.csv", "new.csv"]) == 1
-    text = capsys.readouterr().out
+    text = says(1, "compare", "old.csv", "new.csv").out
     assert "2 fails now:" in text
     assert "R1 in good.csv: P → F: R1#1: `p` became false at 5 s" in text
-    assert main(["compare", "old.csv", "new.csv", "--format", "json"]) == 1
-    found = json.loads(capsys.readouterr().out)
+    found = json.loads(says(1, "compare", "old.csv", "new.csv", "--format", "json").out)
     assert [one["change"] for one in found["differences"]] == ["fails now", "fails now"]
-    assert main(["compare", "new.csv", "old.csv"]) == 0
-    assert "fixed" in capsys.readouterr().out
-    assert main(["compare", "old.csv", "none.csv"]) == 2
-    assert "there is no file none.csv" in capsys.readouterr().err
+    assert "fixed" in says(0, "compare", "new.csv", "old.csv").out
+    assert "there is no file none.csv" in says(2, "compare", "old.csv", "none.csv").err

@@ -21,14 +21,12 @@ LINES = '{"t":0,"closed":true}\n{"t":1,"closed":false}\n'
 
 @pytest.fixture
 def folder(tmp_path):
-    """A specification, and a recording."""
     (tmp_path / "door.rv").write_text(SPEC)
     (tmp_path / "run.jsonl").write_text(LINES)
     return tmp_path
 
 
 def rvmon(folder, *words, **options):
-    """What the program does."""
     command = [sys.executable, "-m", "rvmon", *words]
     return subprocess.run(  # noqa: S603
         command, cwd=folder, stderr=subprocess.PIPE, timeout=60, check=False, **options
@@ -37,7 +35,6 @@ def rvmon(folder, *words, **options):
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
 def test_a_pipe_is_read_once(folder):
-    """Lines are judged as they come; what has to be read twice is refused."""
     pipe = folder / "pipe.jsonl"
     os.mkfifo(pipe)
     writer = Thread(target=pipe.write_text, args=(LINES,))
@@ -64,7 +61,6 @@ def test_a_reader_that_leaves_is_no_fault(folder):
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no full device")
 def test_a_full_disk_is_told(folder):
-    """With its cause, and not as an error of ours."""
     with open("/dev/full", "w") as full:
         done = rvmon(folder, "run", "door.rv", "run.jsonl", stdout=full)
     assert done.returncode == 2
@@ -73,14 +69,12 @@ def test_a_full_disk_is_told(folder):
 
 @pytest.mark.skipif(os.name != "posix", reason="closes a descriptor")
 def test_a_closed_output_costs_nothing_but_the_output(folder):
-    """The exit code still tells."""
     done = rvmon(folder, "run", "door.rv", "run.jsonl", preexec_fn=lambda: os.close(1))
     assert (done.returncode, done.stderr) == (1, b"")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="file names are bytes")
 def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
-    """What cannot be shown is replaced."""
     name = os.fsencode(folder) + b"/n\xff.jsonl"
     with open(name, "w") as file:
         file.write(LINES)
@@ -92,7 +86,6 @@ def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are not kept elsewhere")
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
-    """Where that is not enough there is a message, from workers, too."""
     (folder / "big.jsonl").write_text('{"t":0,"x":[[]' + ",[]" * 20_000_000 + "]}\n")
     words = ("--max-memory", "512", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
     done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
@@ -122,7 +115,6 @@ def test_a_parquet_file_that_needs_more_memory_is_not_called_damaged(folder):
 
 @pytest.mark.parametrize("name", ["zero.csv", "zero.jsonl"])
 def test_no_line_fills_the_memory(folder, name):
-    """A device that never ends a line is left, with the place and the reason."""
     (folder / name).symlink_to("/dev/zero")
     done = rvmon(folder, "run", "door.rv", name, stdout=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")

@@ -10,14 +10,14 @@ from rvmon.cli import main
 MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
-def test_all_queries_hold(capsys):
-    """A model whose queries all hold exits with 0."""
-    assert main(["verify", str(MODELS / "fischer.ta"), "--const", "N=2"]) == 0
-    assert capsys.readouterr().out.count("holds: A[]") == 2
+def test_queries_hold_or_are_not_decided(capsys, says):
+    model = str(MODELS / "fischer.ta")
+    assert says(0, "verify", model, "--const", "N=2").out.count("holds: A[]") == 2
+    assert main(["verify", model, "--max-states", "10", "--format", "json"]) == 1
+    assert json.loads(capsys.readouterr().out)["queries"][0]["holds"] is None
 
 
 def test_json_has_the_promised_shape(capsys):
-    """Query, answer, trace of delays, edges and states, cost: as other programs rely on."""
     model = str(MODELS / "fischer_broken.ta")
     assert main(["verify", model, "--const", "N=2", "--format", "json"]) == 1
     exclusion, alive = json.loads(capsys.readouterr().out)["queries"]
@@ -33,31 +33,12 @@ def test_json_has_the_promised_shape(capsys):
     assert (alive["holds"], alive["trace"]) == (True, None)
 
 
-def test_a_budget_gives_null(capsys):
-    """A query that the budget did not decide is null, and the exit code says so."""
-    model = str(MODELS / "fischer.ta")
-    assert main(["verify", model, "--max-states", "10", "--format", "json"]) == 1
-    assert json.loads(capsys.readouterr().out)["queries"][0]["holds"] is None
-
-
-def test_queries_by_id_and_by_text(capsys):
-    """A query of the model is meant by its id, any other is read."""
+def test_queries_by_id_and_by_text(says):
     model = str(MODELS / "bridge.ta")
     texts = ["--query", "quicker", "--query", "E<> Torch.two"]
-    assert main(["verify", model, *texts, "--format", "json"]) == 1
-    first, second = json.loads(capsys.readouterr().out)["queries"]
+    first, second = json.loads(says(1, "verify", model, *texts, "--format", "json").out)["queries"]
     assert (first["id"], first["holds"]) == ("quicker", False)
     assert second["holds"] is True
-
-
-def test_the_run_is_shown_in_seconds(tmp_path, capsys):
-    """A model with a unit of time shows its run in seconds."""
-    model = tmp_path / "slow.ta"
-    model.write_text("""unit 50 ms clock x
-    automaton A { location a location b start a edge a -> b when x >= 10 }
-    query: E<> A.b""")
-    assert main(["verify", str(model)]) == 0
-    assert "0.5 s  A: a → b   (after [0.5 s, ∞))" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -78,12 +59,14 @@ def test_the_run_is_shown_in_seconds(tmp_path, capsys):
         ([str(MODELS / "bridge.ta"), "--spec", "a.rv", "--suite", "edges"], "not allowed with"),
         ([str(MODELS / "bridge.ta"), "--suite", "edges", "--query", "over"], "does nothing"),
         ([str(MODELS / "bridge.ta"), "--bind", "a=b"], "does nothing without --spec"),
+        (
+            [str(MODELS / "fischer.ta"), "--query", "exclusion,alive"],
+            "write --query exclusion --query alive",
+        ),
     ],
 )
-def test_wrong_input_exits_with_2(arguments, message, capsys):
-    """What cannot be checked is said on standard error, without a traceback."""
-    assert main(["verify", *arguments]) == 2
-    error = capsys.readouterr().err
+def test_wrong_input_exits_with_2(arguments, message, says):
+    error = says(2, "verify", *arguments).err
     assert message in error
     assert "Traceback" not in error
 
@@ -103,7 +86,6 @@ automaton Lamp {
 
 @pytest.fixture
 def lamp(tmp_path):
-    """A model and a specification of it."""
     model, spec = tmp_path / "lamp.ta", tmp_path / "lamp.rv"
     model.write_text(LAMP)
     spec.write_text(
@@ -114,56 +96,34 @@ def lamp(tmp_path):
     return str(model), str(spec)
 
 
-def test_requirements_on_all_runs(lamp, capsys):
-    """Each requirement is decided, with runs that trigger, pass and fail it."""
+def test_requirements_on_all_runs(lamp, says):
+    """Each is decided, with runs that trigger, pass and fail it, drawn as a recording would be."""
     model, spec = lamp
-    assert main(["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]) == 1
-    out = capsys.readouterr().out
+    words = ["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]
+    out = says(1, *words).out
     assert "OK: holds on all runs" in out
     assert "BAD: fails on some run" in out
     assert out.count("fails:") == 1
-    arguments = ["--spec", spec, "--bind", "lit=Lamp.on", "--format", "json"]
-    assert main(["verify", model, *arguments]) == 1
-    ok, bad = json.loads(capsys.readouterr().out)["requirements"]
+    lines = [line.strip() for line in out.splitlines()]
+    drawn = [line.split()[-1] for line in lines if line.startswith(("OK ", "BAD "))]
+    assert drawn == ["P", "P", "F"]
+    assert "lit      ▇▇▇▇▇▇▇▇▇▁▁▁▁▁▁▁▁▁" in lines
+    ok, bad = json.loads(says(1, *words, "--format", "json").out)["requirements"]
     assert (ok["holds"], ok["failing"]) == (True, None)
     assert bad["failing"][-1]["state"]["locations"] == {"Lamp": "off"}
 
 
-def test_suites(lamp, capsys):
-    """Few runs that go through all edges are shown, as text and as data."""
+def test_suites(lamp, says):
     model, _ = lamp
-    assert main(["verify", model, "--suite", "edges"]) == 0
-    assert "1 runs go through 2 of 2 edges" in capsys.readouterr().out
-    assert main(["verify", model, "--suite", "edge-pairs", "--format", "json"]) == 0
-    suite = json.loads(capsys.readouterr().out)
+    assert "1 runs go through 2 of 2 edges" in says(0, "verify", model, "--suite", "edges").out
+    suite = json.loads(says(0, "verify", model, "--suite", "edge-pairs", "--format", "json").out)
     assert suite["missing"] == []
     assert suite["runs"][0]["trace"]
 
 
-def test_a_binding_needs_a_signal(lamp, capsys):
-    """A name that the specification does not declare is told with those that it does."""
-    assert main(["verify", lamp[0], "--spec", lamp[1], "--bind", "light=Lamp.on"]) == 2
+def test_names_that_the_specification_or_the_model_lacks_are_told(lamp, capsys):
+    model, spec = lamp
+    assert main(["verify", model, "--spec", spec, "--bind", "light=Lamp.on"]) == 2
     assert "no signal of that name is declared: lit" in capsys.readouterr().err
-
-
-def test_runs_are_drawn_as_timelines(lamp, capsys):
-    """What a requirement reads along each run stands below it, judged as a recording would be."""
-    model, spec = lamp
-    assert main(["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]) == 1
-    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
-    drawn = [line.split() for line in lines if line.startswith(("OK ", "BAD "))]
-    assert [line[-1] for line in drawn] == ["P", "P", "F"]
-    assert "lit      ▇▇▇▇▇▇▇▇▇▁▁▁▁▁▁▁▁▁" in lines
-
-
-def test_a_requirement_beyond_the_model_is_said_plainly(lamp, capsys):
-    """The line gives the reason and no second word for it, and the exit code is 1."""
-    model, spec = lamp
     assert main(["verify", model, "--spec", spec]) == 1
     assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out
-
-
-def test_several_queries_in_one_word(capsys):
-    """Each has its own option."""
-    assert main(["verify", "examples/models/fischer.ta", "--query", "exclusion,alive"]) == 2
-    assert "write --query exclusion --query alive" in capsys.readouterr().err

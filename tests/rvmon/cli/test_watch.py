@@ -11,6 +11,7 @@ from io import StringIO
 from types import SimpleNamespace
 
 import pytest
+from tests.rvmon.cli.conftest import DOOR
 
 from rvmon import loads
 from rvmon.cli import main
@@ -18,37 +19,23 @@ from rvmon.cli.watch_output import tables
 from rvmon.live import Driver, SimulatedClock
 from rvmon.report.terminal import Terminal
 
-SPEC = """
-spec door "A door"
-signal closed : bool input
-event knock input
-requirement D1 "Knocking opens the door"
-  upon knock
-  then within 2 s not closed
-"""
 FAILS = '{"t": 0, "closed": true, "knock": true}\n{"t": 3, "closed": false, "noise": 1}\n'
 
 
 @pytest.fixture
-def door(tmp_path, monkeypatch):
-    """A folder with a spec and a stream that fails."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "door.rv").write_text(SPEC)
-    (tmp_path / "a.jsonl").write_text(FAILS)
-    return tmp_path
+def door(door):
+    """With a stream that fails."""
+    (door / "a.jsonl").write_text(FAILS)
+    return door
 
 
-def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys):
+def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys, says):
     """The exit code says whether something failed; what is ignored is said."""
-    assert main(["watch", "door.rv", "a.jsonl"]) == 1
-    told = capsys.readouterr()
+    told = says(1, "watch", "door.rv", "a.jsonl")
     assert told.out.startswith("2.000000001 s  D1#1 F ✗  `closed` had to become false")
     assert "D1   F  ✗" in told.out
     assert "noise is not declared" in told.err
-
-
-def test_as_json_each_line_can_be_read(door, capsys):
-    """A line for each verdict, and the last one for the robot."""
+    assert "D1#1 F ✗" in says(1, "watch", "door.rv", "a.jsonl", "--format", "view").out
     assert main(["watch", "door.rv", "a.jsonl", "--format", "json"]) == 1
     first, last = map(json.loads, capsys.readouterr().out.splitlines())
     assert (first["attempt"], first["verdict"], first["decided"]) == ("D1#1", "F", 2_000_000_001)
@@ -58,7 +45,7 @@ def test_as_json_each_line_can_be_read(door, capsys):
 @pytest.mark.parametrize(
     ("fault", "told"), [(OSError(5, "Input/output error"), "Input/output"), (MemoryError(), "Mem")]
 )
-def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch, fault, told):
+def test_a_stream_that_breaks_off_passes_nothing(door, says, monkeypatch, fault, told):
     """As a serial line that is unplugged: what came behind it nobody heard."""
     pieces = [b'{"t": 0, "closed": true}\n']
 
@@ -68,19 +55,18 @@ def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch, faul
         raise fault
 
     monkeypatch.setattr("rvmon.adapters.json_objects.os.read", read)
-    assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
-    shown = capsys.readouterr()
+    shown = says(1, "watch", "door.rv", "a.jsonl", "--format", "text")
     assert "D1   I  ?" in shown.out
     assert f"a.jsonl: {told}" in shown.err
     assert "rror: nothing more was heard" in shown.err
 
 
-def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, capsys, monkeypatch):
+def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, monkeypatch):
     """Topics are chosen as the watch begins: a name that is new would be taken for silent."""
     source = nullcontext(SimpleNamespace(publish=print))
     source.publish = print
     monkeypatch.setattr("rvmon.adapters.dds.DdsSource", lambda *_, **__: source)
-    changes = [SPEC + "event other\n", SPEC + "\n"]
+    changes = [DOOR + "event other\n", DOOR + "\n"]
 
     def sleep(_):
         if not changes:
@@ -89,39 +75,28 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, capsys
         os.replace("new.rv", "door.rv")
 
     monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
-    assert main(["watch", "door.rv", "dds:7", "--format", "text"]) == 0
-    said = capsys.readouterr()
+    said = says(0, "watch", "door.rv", "dds:7", "--format", "text")
     said = " ".join((said.out + said.err).split())
     assert "`other` is new, and topics are chosen as the watch begins" in said
     assert "The former specification goes on. door.rv has changed: the new one holds" in said
 
 
-def test_a_watch_of_too_many_robots_is_no_success(door, capsys):
-    """Of some of them there is no verdict."""
+def test_a_watch_of_too_many_robots_is_no_success(door, says):
     lines = [json.dumps({"t": 0, "robot": n, "closed": True}) for n in range(1_001)]
     (door / "a.jsonl").write_text("\n".join(lines) + "\n")
-    assert main(["watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json"]) == 1
-    told = capsys.readouterr()
+    told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json")
     assert len(told.out.splitlines()) == 1_000
     assert "robot '1000' is one too many: at most 1000" in told.err
 
 
 def test_what_passes_can_be_left_out(door, capsys):
-    """With `--failures`; the exit code is 0 where nothing failed."""
     lines = FAILS.replace('"t": 3', '"t": 1')
     (door / "a.jsonl").write_text(lines)
     assert main(["watch", "door.rv", "a.jsonl", "--failures", "--format", "text"]) == 0
     assert "D1#1" not in capsys.readouterr().out
 
 
-def test_the_view_holds_what_failed(door, capsys):
-    """Also where nobody can see it move."""
-    assert main(["watch", "door.rv", "a.jsonl", "--format", "view"]) == 1
-    assert "D1#1 F ✗" in capsys.readouterr().out
-
-
 def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
-    """The first ones, and each tenfold."""
     (door / "a.jsonl").write_text(FAILS + "nonsense\n" * 123)
     assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
     told = [line for line in capsys.readouterr().err.splitlines() if "not taken" in line]
@@ -130,7 +105,6 @@ def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
 
 
 def test_a_view_of_much_fits_and_begins_with_what_failed():
-    """Robots as well as requirements; what is left out is counted."""
     text = "spec s\nsignal x : real\nevent e\n" + "".join(
         f"requirement R{number}\n  upon e\n  then within {100 + number} s x > {number}\n"
         for number in range(100)
@@ -167,11 +141,9 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
         (["watch", "door.rv", "dds:1", "--time", "t:ms"], "--binding"),
     ],
 )
-def test_wrong_input_is_told(door, capsys, words, why):
-    """Before anything is judged, with code 2."""
+def test_wrong_input_is_told(door, says, words, why):
     (door / "empty.jsonl").write_text("\n")
-    assert main(words) == 2
-    assert why in capsys.readouterr().err
+    assert why in says(2, *words).err
 
 
 @pytest.mark.process
@@ -192,7 +164,7 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
         process.stdin.write('{"closed": true}\n{"knock": true, "closed": false}\n')
         process.stdin.flush()
         assert "UTC)  D1#1 P" in process.stdout.readline()
-        for text, said in ((SPEC + "requirement", "RV001"), (SPEC + "\n", "has changed")):
+        for text, said in ((DOOR + "requirement", "RV001"), (DOOR + "\n", "has changed")):
             (door / "new.rv").write_text(text)
             os.replace("new.rv", "door.rv")
             assert any(said in line for line in iter(process.stdout.readline, ""))
@@ -210,7 +182,6 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
 
 @pytest.mark.process
 def test_it_ends_when_nobody_reads_what_it_says(door):
-    """As `head` leaves a pipe, while the robot goes on."""
     command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "json"]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen(command, **pipes) as process:  # noqa: S603

@@ -27,8 +27,7 @@ def underlined(text):
 
 
 @pytest.mark.parametrize("columns", ["40", "80", "200"])
-def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, columns):
-    """Of verdicts and of diagnostics: lines of files are cut where they do not fit."""
+def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, says, columns):
     monkeypatch.setenv("COLUMNS", columns)
     main(["run", f"{BASE}.rv", f"{BASE}.csv"])
     (tmp_path / "wrong.rv").write_text(WRONG)
@@ -36,8 +35,7 @@ def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, column
     assert next(underlined(shown)) == "speed <= 300 mm/s"
     for words in (["check", "wrong.rv"], ["run", "wrong.rv", f"{BASE}.csv"]):
         monkeypatch.chdir(tmp_path)
-        assert main(words) == 2
-        told = capsys.readouterr().err
+        told = says(2, *words).err
         assert list(underlined(told))[-1] == "spede"
         shown += told
     lines = [line for line in shown.splitlines() if re.match(r" *\d+ \| ", line)]

@@ -26,6 +26,14 @@ pytest.importorskip("pyarrow")
 FAST = "spec s\nsignal speed : real\nrequirement R\n  always speed < {}\n"
 
 
+def clipped(folder, spec, path, *words, out=None):
+    """A piece of a recording, cut by a specification's text."""
+    (folder / "s.rv").write_text(spec)
+    out = folder / (out or f"out{path.suffix}")
+    assert main(["clip", str(folder / "s.rv"), str(path), *words, "-o", str(out)]) == 0
+    return out
+
+
 def write_parquet(path, sent):
     """The same as rows of Parquet, by way of CSV."""
     from pyarrow import csv, parquet
@@ -48,7 +56,6 @@ def write_jsonl(path, sent):
 
 
 def write_packed(path, sent):
-    """CSV, packed."""
     plain = write_csv(path.with_suffix(""), sent, HEADER)
     path.write_bytes(gzip.compress(plain.read_bytes()))
     return path
@@ -120,19 +127,13 @@ def messages(path):
 
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap", "c.mcap"])
 def test_messages_are_copied_byte_for_byte(tmp_path, name):
-    """Also those of topics that nothing is declared for; the definitions come along."""
     sent = sent_at_random(random.Random(1), 300)
     path = FORMATS[name](tmp_path / name, sent)
-    (tmp_path / "s.rv").write_text(
-        "spec s\nsignal speed : real\nrequirement R\n  always speed < 9\n"
-    )
-    out = tmp_path / f"out{path.suffix}"
     place = sorted(t for _, t, _ in sent)
     start, stop = place[100], place[200]
     words = ["--from", f"{start}ns", "--to", f"{stop}ns"]
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
+    piece = messages(clipped(tmp_path, FAST.format(9), path, *words))
     whole = [one for one in messages(path) if start <= one[4] <= stop]
-    piece = messages(out)
     carried = [one for one in piece if one not in whole]
     assert [(one[0], one[4]) for one in carried] in ([], [("/speed", start)])
     assert [one for one in piece if one not in carried] == whole
@@ -140,7 +141,6 @@ def test_messages_are_copied_byte_for_byte(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap"])
 def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
-    """The last message of a latched topic stands at the piece's start."""
     import numpy as np
     from rosbags import rosbag1, rosbag2
     from rosbags.interfaces import (
@@ -153,7 +153,7 @@ def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
     )
     from rosbags.typesys import Stores, get_typestore
 
-    path, out = tmp_path / name, tmp_path / f"out-{name}"
+    path = tmp_path / name
     is_1 = name == "a.bag"
     store = get_typestore(Stores.ROS1_NOETIC if is_1 else Stores.LATEST)
     text, number = store.types["std_msgs/msg/String"], store.types["std_msgs/msg/Float64"]
@@ -177,12 +177,8 @@ def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
         for t in range(2, 9):
             value = number(np.float64(t))
             writer.write(speeds, START + t * 10**9, pack(value, number.__msgtype__))
-    (tmp_path / "s.rv").write_text(
-        "spec s\nsignal speed : real\nrequirement R\n  always speed < 6\n"
-    )
     words = ["R", "--before", "0", "--after", "1s"]
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
-    found = messages(out)
+    found = messages(clipped(tmp_path, FAST.format(6), path, *words, out=f"out-{name}"))
     assert [one[0] for one in found] == ["/map", "/speed", "/speed"]
     assert found[0][4] == START + 6 * 10**9
     assert b"new" in found[0][5]
@@ -195,57 +191,46 @@ def test_topics_without_messages_stay(tmp_path, name):
     sent = [("/go", START, {}), *sent]
     path = FORMATS[name](tmp_path / name, sent)
     spec = rvmon.loads(FAST.format(2) + "event go\nrequirement R2\n  upon go then speed < 9\n")
-    (tmp_path / "s.rv").write_text(FAST.format(2))
-    out = tmp_path / f"out{path.suffix}"
-    words = ["--from", f"{START + 10**9}ns", "-o", str(out)]
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words]) == 0
+    out = clipped(tmp_path, FAST.format(2), path, "--from", f"{START + 10**9}ns")
     assert spec.evaluate(out).verdicts == {"R": "F", "R2": "NT"}
 
 
-def test_a_file_without_an_index_is_cut(tmp_path):
-    """Its channels are found by its messages."""
+RISING = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
+
+
+def write_bare(path):
+    """MCAP without an index, whose channels are found by its messages."""
     from mcap.writer import IndexType
 
-    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
     bare = {"index_types": IndexType.NONE, "use_summary_offsets": False, "use_statistics": False}
     bare |= {"repeat_channels": False, "repeat_schemas": False}
-    path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **bare)
-    (tmp_path / "s.rv").write_text(FAST.format(2))
-    words = ["R", "--before", "1s", "--after", "1s"]
-    assert (
-        main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(tmp_path / "b.mcap")])
-        == 0
-    )
+    return write_json_mcap(path / "a.mcap", RISING, schemas=False, **bare)
 
 
-def test_a_database_alone_is_cut(tmp_path):
+def write_database(path):
     """A `.db3` without the folder of its bag."""
-    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
-    folder = write_ros2(tmp_path / "bag", sent, "sqlite3")
-    path = next(folder.glob("*.db3")).rename(tmp_path / "a.db3")
-    (tmp_path / "s.rv").write_text(FAST.format(2))
+    folder = write_ros2(path / "bag", RISING, "sqlite3")
+    return next(folder.glob("*.db3")).rename(path / "a.db3")
+
+
+@pytest.mark.parametrize("write", [write_bare, write_database])
+def test_a_part_of_what_there_should_be_is_cut(tmp_path, write):
     words = ["R", "--before", "1s", "--after", "1s"]
-    out = tmp_path / "b.db3"
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
+    out = clipped(tmp_path, FAST.format(2), write(tmp_path), *words)
     assert rvmon.loads(FAST.format(2)).evaluate(out).end == START + 5 * 10**9
 
 
 @pytest.mark.parametrize("late", [0, 3])
 def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
-    """Be the clock of the recorder another one; the attempt is the same."""
     sent = []
     for t in range(12):
         header = {"stamp": {"sec": 100 + t, "nanosec": 0}}
         at = START + (t + late) * 10**9
         sent.append(("/base/scan", at, {"header": header, "ranges": [t / 2], "state": t}))
     path = write_ros2(tmp_path / "bag", sent, "mcap")
-    (tmp_path / "s.rv").write_text(
-        "spec s\nsignal state : int\nrequirement R\n  always state < 6\n"
-    )
+    spec = "spec s\nsignal state : int\nrequirement R\n  always state < 6\n"
     words = ["R", "--map", "state=/base/scan.state", "--clock"]
-    words += ["header", "--before", "2s", "--after", "1s"]
-    out = tmp_path / "out"
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
+    out = clipped(tmp_path, spec, path, *words, "header", "--before", "2s", "--after", "1s")
     stamps = [one[4] - START for one in messages(out)]
     assert stamps[-4:] == [(t + late) * 10**9 for t in (4, 5, 6, 7)]
 
@@ -268,7 +253,7 @@ def test_parquet_keeps_its_types(tmp_path, kind):
         times = times.cast(pa.timestamp("us", "UTC"))
     speed = pa.array([1.5] + [None] * 8, pa.float32())
     go = pa.array([None] * 4 + [True] + [None] * 4)
-    path, out = tmp_path / "a.parquet", tmp_path / "out.parquet"
+    path = tmp_path / "a.parquet"
     mode = pa.array(["a"] * 9).dictionary_encode()
     parts = pa.array([{"x": 1.0}] * 9)
     columns = [times, speed, go, pa.array(range(9)), mode, parts]
@@ -277,15 +262,10 @@ def test_parquet_keeps_its_types(tmp_path, kind):
     required = pa.field("other", pa.int64(), nullable=False)
     table = table.cast(table.schema.set(3, required))
     parquet.write_table(table, path)
-    (tmp_path / "s.rv").write_text(
-        "spec s\nsignal speed : real\nsignal mode : {a, b}\nevent go\n"
-        "requirement R\n  upon go then speed < 1\n"
-    )
+    spec = "signal speed : real\nsignal mode : {a, b}\nevent go\nrequirement R\n  upon go then "
     unit = {"float64": "s", "int64": "ns"}.get(kind, "iso")
-    words = ["R#1", "--time", f"stamp:{unit}"]
-    words += ["--before", "100ms", "--after", "125ms", "-o", str(out)]
-    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words]) == 0
-    piece = parquet.read_table(out)
+    words = ["R#1", "--time", f"stamp:{unit}", "--before", "100ms", "--after", "125ms"]
+    piece = parquet.read_table(clipped(tmp_path, spec + "speed < 1\n", path, *words))
     assert piece.schema.types == table.schema.types
     assert piece.column("other").to_pylist() == [None, 4, 5]
     assert piece.column("speed").to_pylist() == [1.5, None, None]

@@ -13,7 +13,6 @@ from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 @pytest.mark.law
 def test_rows_hit_what_their_samples_hit(tmp_path):
-    """A file that is read as columns, and the same sample by sample; requirements, too."""
     for seed in range(15):
         rng = random.Random(seed)
         profile = Profile(requirements=1, captures=False, for_each=False)

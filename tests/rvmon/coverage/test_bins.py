@@ -3,7 +3,6 @@
 import pytest
 
 from rvmon import loads
-from rvmon.coverage import illegal
 from rvmon.errors import UnknownNameError
 
 SIGNALS = """signal p, q : bool
@@ -22,7 +21,6 @@ def counts(goals, samples, group="c", time="held", end=None):
 
 
 def states(*names):
-    """A sample a second."""
     return [(t, {"state": name}) for t, name in enumerate(names)]
 
 
@@ -46,7 +44,6 @@ def states(*names):
     ],
 )
 def test_forms_of_bins(bins, samples, expected):
-    """A truth value, a range, a value, a label, a formula, an event, a payload, time alone."""
     if "{" in bins and not bins.startswith("{"):
         bins = f"= {bins}"
     assert counts(f"coverpoint c {bins}", samples) == expected
@@ -71,15 +68,7 @@ STEPS = (
     ],
 )
 def test_steps(time, names, expected):
-    """The values that a signal takes in turn, without another in between."""
     assert counts(STEPS, states(*names), time=time) == expected
-
-
-def test_steps_of_truth_values():
-    """The first value of a run is no step."""
-    samples = [(t, {"p": value}) for t, value in enumerate([True, False, True, True, False])]
-    bins = "coverpoint c = p {down: true => false, pulse: false => true => false}"
-    assert counts(bins, samples) == {"down": 2, "pulse": 1}
 
 
 def test_unknown_hits_nothing_and_ends_nothing():
@@ -114,27 +103,13 @@ def test_cross():
 
 
 def test_cross_is_where_its_points_are():
-    """Unless it says so itself."""
     goals = CROSS.replace("{yes: true, no: false}", "{yes: true, no: false}\n  upon e")
     samples = [(0, {"p": True, "state": "idle"}), (1, {"e": True}), (2, {"e": True})]
     assert counts(goals, samples) == {"yes × idle": 2}
     assert counts(f"{goals}  upon pick\n", samples) == {}
 
 
-def test_illegal_is_told():
-    """With its first instant; a combination that is none of its model's goals has no goal."""
-    spec = loads(
-        f"{SIGNALS}{CROSS}  illegal a == no and b == moving\n  ignore a == no and b == idle\n"
-    )
-    hits = spec.coverage([(0, {"p": False, "state": "idle"}), (7, {"state": "moving"})])
-    ((group, item, hit),) = illegal(hits, spec.coverage_model.model)
-    assert (group.name, item.name, hit.first) == ("c", "no × moving", 7 * 10**9)
-    kinds = {name: one.kind.value for name, one in group.items.items()}
-    assert kinds["no × idle"] == kinds["yes × done"] == "ignore"
-
-
 def test_online_is_offline():
-    """Sample by sample, with time told in between, and once more."""
     spec = loads(f"{SIGNALS}{STEPS}\n")
     monitor = spec.coverage_model.monitor()
     for _ in range(2):
@@ -147,7 +122,6 @@ def test_online_is_offline():
 
 
 def test_combinations_have_names_of_their_own():
-    """Whatever bins are called."""
     bins = "= p {x: true, `y × z`: false}", "= q {`x × y`: true, z: false}"
     points = "".join(f"coverpoint {n} {own}\n" for n, own in zip("ab", bins, strict=True))
     spec = loads(f"{SIGNALS}{points}cross c = a, b\n")

@@ -41,7 +41,6 @@ def rewritten(path, *words):
 
 
 def test_what_is_no_database_is_named(path):
-    """A text, a cut-off file, one of something else, a newer one, an older one."""
     text = path.with_name("t.csv")
     text.write_text("t,a\n0,1\n" * 1000)
     assert "this is no database: give one that" in refused(text)
@@ -86,7 +85,6 @@ def test_what_is_no_database_is_named(path):
     ],
 )
 def test_what_was_never_written_is_damage(path, words):
-    """Tables of others, and contents that make no sense."""
     rewritten(path, words)
     told = refused(path)
     assert "is damaged" in told
@@ -94,7 +92,6 @@ def test_what_was_never_written_is_damage(path, words):
 
 
 def test_a_bomb_is_not_unpacked(path):
-    """Hits that are a thousandth of what they unpack to."""
     import zlib
 
     bomb = zlib.compress(b"\0" * 20_000_000)
@@ -107,7 +104,6 @@ def test_a_bomb_is_not_unpacked(path):
 
 @pytest.mark.slow
 def test_damage_of_any_byte_is_survived(path):
-    """Random bytes, cut-off files: an error of ours, or an answer."""
     whole = path.read_bytes()
     rng = random.Random(3)
     victim = path.with_name("victim.cov")
@@ -129,7 +125,6 @@ def test_damage_of_any_byte_is_survived(path):
 
 
 def test_what_is_no_file_is_said_so(tmp_path):
-    """Folders, pipes, files and folders that are not there."""
     with pytest.raises(CoverageError, match=r"there is no file .*makes it"):
         read([tmp_path / "none.cov"])
     with pytest.raises(CoverageError, match=r"there is no folder .*make it first"):
@@ -146,7 +141,6 @@ def test_what_is_no_file_is_said_so(tmp_path):
 
 
 def test_an_empty_file_is_begun_and_not_read(tmp_path):
-    """As a temporary file that was made to be written to."""
     path = tmp_path / "empty.cov"
     path.touch()
     with pytest.raises(CoverageError, match="it is empty: give one that"):

@@ -20,7 +20,6 @@ def path(tmp_path):
 
 
 def test_what_is_written_is_read_back(path):
-    """The model in its order, the tests in theirs, their hits and the reasons."""
     with Database.open(path) as database:
         fill(database)
         before = dump(database)
@@ -40,7 +39,6 @@ def test_what_is_written_is_read_back(path):
 
 
 def test_what_cannot_be_hit_is_no_goal(path):
-    """In both databases of a merge, whichever said so; what is not there cannot be excluded."""
     other = path.with_name("other.cov")
     for one, said in ((path, False), (other, True)):
         with Database.open(one) as database:
@@ -54,14 +52,6 @@ def test_what_cannot_be_hit_is_no_goal(path):
     assert read([other, path]).unreachable == {("near", "reach"): ["the arm is short"]}
     with Database.open(path) as database, pytest.raises(CoverageError, match="there is no item"):
         database.exclude("near", "nowhere", "why")
-
-
-def test_one_file_is_left(path):
-    """What SQLite keeps beside the file is gone when it is closed."""
-    with Database.open(path) as database:
-        fill(database)
-    read([path])
-    assert [one.name for one in path.parent.iterdir()] == [path.name]
 
 
 def test_a_test_is_written_once(path):
@@ -97,7 +87,6 @@ def test_tests_are_in_the_order_of_their_campaigns():
 
 
 def test_a_model_may_grow(path):
-    """What is declared later is added, in its place; what was hit stays."""
     small = group_of("g", Subject.COVERPOINT, [Item("b")])
     large = group_of("g", Subject.COVERPOINT, [Item("a"), Item("b"), Item("c")])
     with Database.open(path) as database, Database.open(path) as other:
@@ -125,7 +114,6 @@ def test_a_model_may_grow(path):
     ],
 )
 def test_a_contradiction_is_refused_by_name(tmp_path, other, told):
-    """Between what is declared and what is there, and between two files; nothing is written."""
     own = group_of("g", Subject.COVERPOINT, [Item("a")])
     for name, group in (("own.cov", own), ("other.cov", other)):
         with Database.open(tmp_path / name) as database:
@@ -140,7 +128,6 @@ def test_a_contradiction_is_refused_by_name(tmp_path, other, told):
 
 
 def test_what_makes_no_sense_is_refused():
-    """Hits of what is in no model, of none, numbers too large, and seconds that are none."""
     with Database.in_memory() as database:
         with pytest.raises(CoverageError, match="hit `yes` of `gaze`, which is in no model"):
             database.record(TestRecord("t"), hits_of(("gaze", "yes")))
@@ -165,7 +152,6 @@ def test_what_makes_no_sense_is_refused():
 
 
 def test_names_are_data(path):
-    """Names that would be something else in SQL, JSON or a path come back as they were."""
     names = [*hostile_names(60), "'; DROP TABLE tests; --", '"', "%s", "NULL", ""]
     group = group_of(names[-5], Subject.COVERPOINT, [Item(name) for name in names])
     with Database.open(path) as database:
@@ -184,7 +170,6 @@ def test_names_are_data(path):
 
 
 def test_a_name_of_a_file_that_is_no_text_is_kept_readable():
-    """Bytes that are no UTF-8 stand written out."""
     with Database.in_memory() as database:
         database.record(TestRecord("t", recording="a\udcff.csv"), {})
         [entry] = database.coverage().entries
@@ -192,7 +177,6 @@ def test_a_name_of_a_file_that_is_no_text_is_kept_readable():
 
 
 def test_a_name_that_is_no_text_is_refused():
-    """Of what is declared, and of a reason."""
     group = group_of("g", Subject.COVERPOINT, [Item("a"), Item("\udc00")])
     with Database.in_memory() as database:
         with pytest.raises(CoverageError, match=r"'\\udc00' has signs that stand for no character"):
@@ -213,7 +197,6 @@ def test_a_place_where_nothing_can_be_written_is_read(path, monkeypatch):
 
 
 def test_a_closed_database_says_so(path):
-    """A mistake in a program, not in the file."""
     with Database.open(path) as database:
         pass
     with pytest.raises(CoverageError, match="until it is closed"):

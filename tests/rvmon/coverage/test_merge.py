@@ -3,16 +3,13 @@
 import random
 
 import pytest
-from tests.tools.covered import dump, fill, merged, random_database
-
-from rvmon.coverage.database import Database
+from tests.tools.covered import dump, merged, random_database
 
 ORDERS = 80
 
 
 @pytest.mark.slow
 def test_merging_is_commutative_associative_and_idempotent():
-    """Random orders, random brackets, repetitions: equal dumps."""
     rng = random.Random(5)
     pools = []
     for pool in range(15):
@@ -26,11 +23,3 @@ def test_merging_is_commutative_associative_and_idempotent():
         together = merged([*chosen[:at], merged(chosen[at:])] if at else chosen)
         assert dump(together) == expected
         together.close()
-
-
-def test_a_database_merged_with_itself_stays():
-    """No hit counts twice."""
-    with Database.in_memory() as database:
-        fill(database)
-        assert dump(merged([database, database])) == dump(database)
-        assert dump(merged([Database.in_memory(), database])) == dump(database)

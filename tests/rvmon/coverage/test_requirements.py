@@ -24,7 +24,6 @@ def answered(after):
 
 
 def test_deadlines():
-    """The last tenth, the last instant, and a tick too late."""
     assert seen(ANSWER, answered(1)) == {"triggered": 1, "passed": 1}
     assert "just before the deadline" in seen(ANSWER, answered(1.8))
     assert "just before the deadline" not in seen(ANSWER, answered(2))
@@ -46,7 +45,6 @@ def test_what_only_a_failure_shows_has_no_goal():
 
 
 def test_parts_that_decide():
-    """A part of a trigger, and of what is required, in instants as in verdicts."""
     text = """signal a, b, c : bool
 requirement R upon a and c then within 2 s (b and c)
 """
@@ -99,17 +97,12 @@ def test_parts_that_only_a_failure_tells_are_no_goals():
     assert missing == {("A1", "`not (a and c)` decides"), ("A2", "`a -> c` decides")}  # others do
 
 
-def test_the_end_of_what_is_owed_for_ever_is_no_location():
-    """No edge leads to `P`, as only the end of the run meets it."""
+def test_automata():
+    """No edge leads to `P` where only the end of the run meets what is owed."""
+    assert seen(ANSWER, answered(1), "`R` edges") == {"start → A": 1, "A → P": 1}
+    assert seen(ANSWER, answered(1), "`R` locations").keys() == {"start", "A", "P"}
     spec = loads("signal a, b : bool\nrequirement R\n  upon a\n  then always not b\n")
     assert [*spec.coverage_model.model.groups["`R` locations"].items] == ["start", "A", "F"]
-
-
-def test_automata():
-    """Where attempts were, and how they went on."""
-    found = seen(ANSWER, answered(1), "`R` edges")
-    assert found == {"start → A": 1, "A → P": 1}
-    assert seen(ANSWER, answered(1), "`R` locations").keys() == {"start", "A", "P"}
 
 
 def test_attempts_in_doubt_show_nothing():
@@ -136,15 +129,7 @@ requirement Each upon pick.id == i then within 2 s put.id == i for each i in pic
     assert hits["Each"]["passed"].count == hits["`Each` edges"]["A → P"].count == 2
 
 
-def test_goals():
-    """A cover goal is shown once in a run."""
-    text = "signal a, b : bool\ncover met = a and b\n"
-    assert seen(text, [(0, {"a": True, "b": True})], "met") == {"shown": 1}
-    assert seen(text, [(0, {"a": True, "b": False})], "met") == {}
-
-
 def test_names_of_groups_are_not_names_of_requirements():
-    """A requirement may be called as the edges of another are not."""
     text = ANSWER + "requirement `R edges`\n  always a\n"
     groups = loads(text).coverage_model.model.groups
     assert {"R", "`R` edges", "R edges", "`R edges` edges"} <= groups.keys()

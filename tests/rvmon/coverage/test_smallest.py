@@ -21,7 +21,6 @@ def reaches(rows, places, wanted):
 
 
 def test_no_choice_has_fewer():
-    """As all choices say, tried in order of their size; goals may ask for several hits."""
     for seed in range(100):
         rng = random.Random(seed)
         items = range(rng.randint(1, 8))
@@ -42,7 +41,6 @@ def test_no_choice_has_fewer():
 
 
 def test_a_search_that_is_cut_short_says_so():
-    """The choice covers all, and what is said of the least number is true."""
     rng = random.Random(1)
     rows = [{item: 1 for item in range(60) if rng.random() < 0.1} for _ in range(60)]
     goals = dict.fromkeys(range(60), 1)

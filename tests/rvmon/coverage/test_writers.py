@@ -37,7 +37,6 @@ def writer(path, name, count=0):
 
 @pytest.mark.process
 def test_processes_write_at_once(tmp_path):
-    """All that three wrote is there; the file did not exist when they began."""
     path = tmp_path / "a.cov"
     writers = [writer(path, name, 50) for name in "abc"]
     for one in writers:
@@ -53,7 +52,6 @@ def test_processes_write_at_once(tmp_path):
 @pytest.mark.process
 @pytest.mark.parametrize("seen", [0, 1, 20, 100])
 def test_a_killed_process_leaves_a_whole_database(tmp_path, seen):
-    """What it had said it wrote is there, and the next one goes on."""
     path = tmp_path / "a.cov"
     victim = writer(path, "victim")
     last = -1
@@ -72,7 +70,6 @@ def test_a_killed_process_leaves_a_whole_database(tmp_path, seen):
 
 
 def test_who_waits_too_long_is_told(tmp_path, monkeypatch):
-    """Another process holds the file: what to do; nothing is lost."""
     path = tmp_path / "a.cov"
     monkeypatch.setattr(schema, "PATIENCE_S", 0.01)
     with Database.open(path) as database:

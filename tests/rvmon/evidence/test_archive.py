@@ -47,7 +47,6 @@ def test_it_comes_back_as_it_was(file):
 
 @pytest.mark.slow
 def test_every_byte_counts(file):
-    """Each byte that is changed is told, wherever in the file it stands."""
     data = pack({"é": b"1"})
     draw = random.Random(1)
     for place in range(len(data)):
@@ -66,7 +65,6 @@ def test_every_byte_counts(file):
     ],
 )
 def test_what_was_changed_is_named(file, entries):
-    """An entry that is another, one more, or one less, with the sums that were written."""
     sums = zipfile.ZipFile(io.BytesIO(pack(ENTRIES))).read("SHA256SUMS")
     with pytest.raises(
         TamperedError,
@@ -76,7 +74,6 @@ def test_what_was_changed_is_named(file, entries):
 
 
 def test_nothing_hides_beside_the_entries(file):
-    """Bytes before them, a comment, or stamps of time."""
     data = pack(ENTRIES)
     sums = zipfile.ZipFile(io.BytesIO(data)).read("SHA256SUMS")
     same = zipped([*sorted({**ENTRIES, "SHA256SUMS": sums}.items())])
@@ -113,13 +110,11 @@ def overlapping():
     ],
 )
 def test_a_hostile_one_is_refused(file, data, told):
-    """Bombs, doubled names, entries that overlap, an index without end, nothing at all."""
     with pytest.raises(RvmonError, match=told):
         unpack(file(data))
 
 
 def test_one_that_is_too_large_is_not_read(file, monkeypatch):
-    """Neither written."""
     data = pack(ENTRIES)
     monkeypatch.setattr(keep, "MOST_BYTES", 100)
     with pytest.raises(RvmonError, match="larger than"):

@@ -22,19 +22,16 @@ with interrupted_by_sigterm():
 
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_nothing_outlives_a_parent_that_is_killed(ends_with_its_parent, kind):
-    """However it ends; also what was begun by those that it began."""
     ends_with_its_parent(COMMAND, [], kind)
 
 
 def test_a_command_says_how_it_ended():
-    """Its exit code and what it said; it has no standard input."""
     done = run(["sh", "-c", "cat; echo said; echo more >&2; exit 7"])
     assert (done.returncode, done.stdout, done.stderr) == (7, "said\n", "more\n")
 
 
 @pytest.mark.slow
 def test_a_command_that_takes_too_long_is_ended(tmp_path, all_have_ended):
-    """With all that it began."""
     told = tmp_path / "told"
     with pytest.raises(subprocess.TimeoutExpired):
         run(["sh", "-c", f"sleep 600 & echo $! > {told}; wait"], timeout=1)

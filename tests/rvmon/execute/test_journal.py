@@ -9,7 +9,6 @@ ENTRIES = [b"first", b"", b'{"second": "\xc3\xa9"}', b"third"]
 
 @pytest.fixture
 def path(tmp_path):
-    """A journal of all entries."""
     path = tmp_path / "a.journal"
     begin(path, ENTRIES[:2])
     for entry in ENTRIES[2:]:
@@ -18,22 +17,14 @@ def path(tmp_path):
 
 
 def test_what_was_added_is_read(path):
-    """In order; where there is no file, there is no journal either."""
     assert entries(path) == ENTRIES
     assert entries(path.with_name("gone")) is None
 
 
-def test_it_ends_where_it_is_torn(path):
-    """Wherever the file is cut, the lines before are read."""
-    whole = path.read_bytes()
-    for size in range(len(whole)):
-        path.write_bytes(whole[:size])
-        assert entries(path) == ENTRIES[: whole[:size].count(b"\n")]
-
-
-def test_it_ends_where_it_is_damaged(path):
-    """Whichever byte is another, no entry is."""
+def test_it_ends_where_it_is_torn_or_damaged(path):
+    """Wherever the file is cut, or whichever byte is another, the lines before are read."""
     whole = path.read_bytes()
     for place in range(len(whole)):
-        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
-        assert entries(path) == ENTRIES[: whole[:place].count(b"\n")]
+        for body in (whole[:place], whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :]):
+            path.write_bytes(body)
+            assert entries(path) == ENTRIES[: whole[:place].count(b"\n")]

@@ -70,13 +70,10 @@ def address(tmp_path_factory):
 
 
 def done(begin, tasks, address, **options):
-    """All results."""
     return list(execute(tasks, begin, jobs=address, **options))
 
 
 def test_results_come_in_order_from_other_processes(address):
-    """Whatever the tasks take; what does them is made once in each worker."""
-
     def begin():
         import os
 
@@ -118,7 +115,6 @@ def test_an_error_is_raised_in_its_turn(address):
 
 
 def test_recordings_are_judged_as_here(address, tmp_path, monkeypatch, capsys):
-    """The same verdicts, byte for byte, though paths are relative."""
     monkeypatch.chdir(tmp_path)
     Path("s.rv").write_text("signal p : bool\nrequirement R1\n  always p\n")
     for number in range(6):
@@ -130,8 +126,6 @@ def test_recordings_are_judged_as_here(address, tmp_path, monkeypatch, capsys):
 
 
 def test_a_lost_worker_loses_no_task(address):
-    """What it had waits or was done is done by another."""
-
     def begin():
         import os
         import time
@@ -154,8 +148,6 @@ def test_a_lost_worker_loses_no_task(address):
 
 @pytest.mark.parametrize("bad", ["kill", "hang"])
 def test_a_task_that_ends_its_worker_is_a_result(address, bad):
-    """Or takes too long; the others are done all the same."""
-
     def begin():
         import os
         import time
@@ -177,8 +169,6 @@ def test_a_task_that_ends_its_worker_is_a_result(address, bad):
 
 
 def test_without_a_result_in_its_place_it_is_an_error(address):
-    """It names the task."""
-
     def begin():
         import os
 
@@ -189,6 +179,5 @@ def test_without_a_result_in_its_place_it_is_an_error(address):
 
 
 def test_no_scheduler_is_an_error():
-    """It says what to begin."""
     with pytest.raises(RvmonError, match="dask scheduler"):
         done(lambda: abs, [1], "nonsense")

@@ -69,7 +69,6 @@ def given(results):
 @JOBS
 @pytest.mark.parametrize("size", [0, 1, 2, 1000])
 def test_results_come_in_the_order_of_the_tasks(jobs, size):
-    """Whoever does them, and however many there are."""
     assert list(execute(range(size), doing(str), jobs=jobs)) == [*map(str, range(size))]
 
 
@@ -89,8 +88,6 @@ def test_slow_and_quick_tasks_keep_their_order(jobs):
 
 @JOBS
 def test_work_begins_once_in_each_process(tmp_path, jobs):
-    """However many tasks there are."""
-
     def begin():
         with (tmp_path / str(os.getpid())).open("a") as file:
             file.write("begun\n")
@@ -117,7 +114,6 @@ def test_each_task_can_have_a_process_of_its_own(jobs):
 
 @JOBS
 def test_an_error_comes_in_its_turn(jobs):
-    """The results before it are given out, and it is what the task raised."""
     found, error = given(execute([*range(0, 200, 2), 7, 8, 9], doing(halved), jobs=jobs))
     assert found == [*range(100)]
     assert type(error) is TraceError
@@ -139,8 +135,6 @@ def test_an_error_of_the_tasks_themselves_comes_in_its_turn(jobs):
 
 @JOBS
 def test_an_error_at_the_beginning_is_that_of_the_first_task(jobs):
-    """It keeps its kind, also one that is made of more than a text."""
-
     def begin():
         rvmon.loads("spec s\nrequirement R\n  always p\n")
 
@@ -158,7 +152,6 @@ def test_an_error_that_nobody_expected_says_where_it_happened():
 
 
 def test_a_task_that_cannot_be_sent_is_named():
-    """The ones before it are done."""
     tasks = [2, 4, threading.Lock(), 6]
     found, error = given(execute(tasks, doing(halved), jobs=2, what="trace"))
     assert found == [1, 2]
@@ -169,7 +162,6 @@ def test_a_task_that_cannot_be_sent_is_named():
 
 @pytest.mark.parametrize("jobs", [2, 5])
 def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
-    """All results before are given out; the error names the task and a fix."""
     found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
     assert found == [*range(100)]
     assert isinstance(error, WorkerLostError)
@@ -178,7 +170,6 @@ def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
 
 
 def test_tasks_without_end_are_taken_as_they_are_needed():
-    """Who has enough leaves, and nobody works on."""
     done = execute(count(), doing(str), jobs=2)
     assert [*islice(done, 100)] == [*map(str, range(100))]
     done.close()
@@ -186,7 +177,6 @@ def test_tasks_without_end_are_taken_as_they_are_needed():
 
 
 def test_two_executions_at_a_time_do_not_disturb_each_other():
-    """Also where one is left before its end."""
     one, other = (execute(range(50), doing(str), jobs=2) for _ in range(2))
     pairs = [*islice(zip(one, other, strict=True), 20)]
     one.close()
@@ -198,13 +188,11 @@ def test_two_executions_at_a_time_do_not_disturb_each_other():
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_no_worker_outlives_a_parent_that_is_killed(ends_with_its_parent, method, kind):
-    """However it ends, however workers were begun, and however long their tasks take."""
     ends_with_its_parent(PARENT, [method], kind)
 
 
 @pytest.mark.process
 def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
-    """The reports of `evaluate_many` in order; the error of a trace comes behind those before."""
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
     paths = []
     for number in range(60):
@@ -228,8 +216,6 @@ def told(task, ended):
 @pytest.mark.process
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_task_whose_process_ends_can_have_a_result(jobs):
-    """Also one that takes too long, and those that come behind are done by others."""
-
     def work(number):
         if number == 20:
             time.sleep(600)
@@ -260,8 +246,6 @@ def test_an_error_is_no_result(tmp_path):
 
 @pytest.mark.process
 def test_to_begin_takes_no_time_of_a_task(tmp_path):
-    """What is slow to begin does its tasks all the same."""
-
     def begin():
         time.sleep(0.6)
         return str

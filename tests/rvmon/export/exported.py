@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.export.c_files import core_files, plan_files, prefix_of
-from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
+from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.records import NUMBER, RECORD
@@ -44,7 +44,7 @@ class Exported:
             compile_spec(replace(case.spec, name=f"case {number}"))
             for number, case in enumerate(cases)
         ]
-        self.planned = [_planned(one) for one in self._compiled]
+        self.planned = [planned_core(one) for one in self._compiled]
         self._program = folder / "judge"
         names, texts = [], core_files()
         for one in self._compiled:
@@ -134,10 +134,6 @@ def _core(command: tuple[str, ...]) -> TemporaryDirectory[str]:
     line = [*command, "-c", "rvmon_core.c", "-o", "rvmon_core.o"]
     subprocess.run(line, cwd=folder.name, check=True)  # noqa: S603
     return folder
-
-
-def _planned(compiled: CompiledSpec) -> PlannedCore:
-    return planned_core(compiled)
 
 
 def _plans(names: Sequence[str]) -> str:

@@ -43,7 +43,6 @@ def judged(seed, many, **profile):
 
 
 def test_exported_c_judges_as_the_extension(tmp_path):
-    """The same records of the same samples, in the same order, and no step astray; twice."""
     exported = Exported(tmp_path, list(judged("export", 60)), ["gcc", *STRICT, *SANITIZED])
     wanted = [2 * exported.records_of_extension(number) for number in range(60)]
     told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
@@ -164,7 +163,6 @@ def written(folder, text):
 
 
 def compiled(folder, *line):
-    """Run a compiler."""
     subprocess.run(line, cwd=folder, check=True)  # noqa: S603
 
 
@@ -194,7 +192,6 @@ HOSTILE = [name for name in (*FORGERIES, "??/", "a_n1", "A_N1", "a n1") if name.
 
 
 def test_hostile_names_are_but_names(tmp_path, gcc):
-    """They end no comment and no string, and each comes out of its table as it was."""
     names = [*HOSTILE, *islice((one for one in hostile_names(1) if one.strip() == one), 300)]
     names = list(dict.fromkeys(name for name in names if not set(name) & set("\0\r\n`")))
     (plan,) = written(tmp_path, text_of("`*/ int x; /*`", *names))
@@ -210,7 +207,6 @@ def test_hostile_names_are_but_names(tmp_path, gcc):
 
 
 def test_identifiers_differ():
-    """Whatever the names; those of plain names are what one expects."""
     names = [*HOSTILE, *islice(hostile_names(2), 2000)]
     made = identifiers(names)
     assert len(set(made)) == len(names)
@@ -264,7 +260,6 @@ requirement R2
 
 @pytest.mark.parametrize("text", [text_of("door", "A"), KEYED])
 def test_the_stated_memory_is_enough(tmp_path, gcc, text):
-    """For as many attempts as it is said of, wherever a block begins; a run begins in no less."""
     (plan,) = written(tmp_path, text)
     (tmp_path / "main.c").write_text(SIZES)
     begins = []
@@ -314,7 +309,6 @@ int main()
 
 
 def test_the_face_for_cpp(tmp_path, gcc):
-    """A monitor is moved, gives its memory back, and says that a block is too small."""
     (plan,) = written(tmp_path, text_of("door", "A"))
     (tmp_path / "main.cpp").write_text(FACE)
     compiled(tmp_path, gcc, *SANITIZED, "-c", plan)

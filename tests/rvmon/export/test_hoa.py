@@ -139,8 +139,6 @@ def written(spec, name="R"):
 @settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_random_formulas(data):
-    """Every word leads where the tableau says; no two states are alike; letters lead one way."""
-
     class Drawn:
         def randint(self, a, b, /):
             return data.draw(st.integers(a, b))
@@ -164,7 +162,6 @@ def test_random_formulas(data):
 
 
 def test_text_of_propositions_is_quoted():
-    """Labels are numbers, propositions strings with their quotes escaped."""
     spec = loads(
         'spec s\nsignal mode : {idle, busy}\nrequirement R1 "a \\"b\\""\n'
         "  upon start\n  then eventually mode == busy\n"
@@ -175,7 +172,6 @@ def test_text_of_propositions_is_quoted():
 
 
 def test_windows_of_time_are_refused():
-    """HOA has no clocks; the message says what to do."""
     spec = loads('spec s\nevent e\nrequirement R1 "x"\n  upon start\n  then within 3 s e\n')
     with pytest.raises(RvmonError, match="windows of time, which HOA cannot express"):
         written(spec.checked, "R1")
@@ -197,8 +193,6 @@ REQUIRED = dict(zip("pqr", LIMITS, strict=True))
 @settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_letters_that_cannot_be(data):
-    """Of values that exclude each other the monitor is least, and says what the monitor says."""
-
     class Drawn:
         def randint(self, a, b, /):
             return data.draw(st.integers(a, b))

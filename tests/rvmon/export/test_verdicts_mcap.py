@@ -69,7 +69,6 @@ def read_back(path):
 
 
 def test_states_attempts_and_values_come_back(base):
-    """At the instants of the recording."""
     assert main(["run", "base.rv", "a.csv", "--mcap", "v.mcap", "--quiet"]) == 1
     found, kinds = read_back(base / "v.mcap")
     states = [(t, one["state"]) for t, one in found["/rvmon/requirements/R1"]]
@@ -107,7 +106,6 @@ def test_states_attempts_and_values_come_back(base):
 
 
 def test_the_layout_shows_what_is_there(base):
-    """Each path leads to a field of a topic, or is a number; each panel has its place."""
     main(["run", "base.rv", "a.csv", "--mcap", "v.mcap", "--quiet"])
     _, kinds = read_back(base / "v.mcap")
     layout = json.loads((base / "v.mcap.layout.json").read_text())
@@ -153,7 +151,6 @@ def test_a_scene_is_drawn_where_its_bodies_are():
 
 
 def test_a_bag_keeps_its_clock(base):
-    """Instants since 1970, to the nanosecond; `--only` leaves the other requirements out."""
     pytest.importorskip("rosbags")
     write_ros1(base / "a.bag", [("/speed", START + t, {"data": 1.0 + t}) for t in range(3)])
     words = ["run", "base.rv", "a.bag", "--only", "R2", "--mcap", "v.mcap", "--quiet"]
@@ -171,7 +168,6 @@ def test_a_bag_keeps_its_clock(base):
 
 
 def test_late_rows_stand_in_their_place(base):
-    """Under `max delay` they come behind later ones."""
     (base / "base.rv").write_text(SPEC.replace('"A base"\n', '"A base"\nmax delay 2 s\n'))
     (base / "a.csv").write_text("t,speed,arm.ready,pick.id\n0,1,0,\n3,3,,\n2,1.5,,\n9,1,,\n")
     assert main(["run", "base.rv", "a.csv", "--mcap", "v.mcap", "--quiet"]) == 1
@@ -189,11 +185,9 @@ def test_late_rows_stand_in_their_place(base):
         (["early.csv", "--mcap", "v.mcap"], "MCAP has no instants before 0 s"),
     ],
 )
-def test_mistakes_are_told(base, capsys, words, told):
-    """Before anything is judged, where that can be known."""
+def test_mistakes_are_told(base, says, words, told):
     (base / "c.mcap").write_bytes(b"")
     (base / "b.csv").write_text(ROWS)
     (base / "early.csv").write_text("t,speed,arm.ready,pick.id\n-1,1,1,\n")
-    assert main(["run", "base.rv", *words]) == 2
-    assert told in capsys.readouterr().err
+    assert told in says(2, "run", "base.rv", *words).err
     assert not (base / "v.mcap").exists()

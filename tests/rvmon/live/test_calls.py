@@ -1,7 +1,6 @@
 """Calls of functions as events."""
 
 import asyncio
-import threading
 
 import pytest
 
@@ -20,7 +19,6 @@ requirement R
 
 @pytest.fixture
 def driver():
-    """On a clock that stands."""
     return Driver(loads(SPEC), clock=SimulatedClock())
 
 
@@ -29,8 +27,6 @@ def _verdict(driver):
 
 
 def test_a_call_is_an_event_with_its_arguments(driver):
-    """The function does what it did, and keeps its name."""
-
     @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": width})
     def close_gripper(width):
         return width * 2
@@ -41,8 +37,6 @@ def test_a_call_is_an_event_with_its_arguments(driver):
 
 
 def test_a_call_that_raises_has_not_ended(driver):
-    """What it raises comes out."""
-
     @as_event(driver, "grip", ended="gripped", payload=lambda: {"width": 1.0})
     def close_gripper():
         raise KeyError("jammed")
@@ -53,8 +47,6 @@ def test_a_call_that_raises_has_not_ended(driver):
 
 
 def test_a_coroutine_ends_when_it_was_awaited(driver):
-    """Not when it is made."""
-
     @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": width})
     async def close_gripper(width):
         await asyncio.sleep(0)
@@ -100,22 +92,9 @@ def test_a_monitor_stops_no_call(driver, caplog):
 
 
 def test_what_is_no_function_is_refused(driver):
-    """When it is decorated, with what to do."""
-
     async def asynchronous():
         yield 1
 
     for what in (Verdict, asynchronous, 3):
         with pytest.raises(RvmonError, match="decorate"):
             as_event(driver, "grip")(what)
-
-
-def test_calls_of_many_threads_are_all_events(driver):
-    """Whoever calls."""
-    call = as_event(driver, "grip", payload=lambda: {"width": 1.0})(lambda: None)
-    threads = [threading.Thread(target=lambda: [call() for _ in range(100)]) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert driver.waiting == 400

@@ -45,7 +45,6 @@ class Door:
 
 
 def test_a_deadline_that_is_missed_is_told_by_time_alone():
-    """No sample comes after the trigger: the tick after the deadline decides, not one before."""
     door = Door()
     door.driver.offer({"knock": True})
     door.at(2)
@@ -55,16 +54,7 @@ def test_a_deadline_that_is_missed_is_told_by_time_alone():
     assert door.judged == ["D1#1"]
 
 
-def test_the_seconds_to_the_next_call_are_those_to_the_deadline():
-    """Who drives it by another clock that stands has nothing to wait for but that it is set."""
-    door = Door()
-    door.driver.offer({"knock": True})
-    assert door.driver.work() is None
-    assert door.clock.seconds_until(0) == 0
-
-
 def test_failures_are_told_apart_from_passes():
-    """`on_failure` hears of failures only, `on_judged` of both, with robot and run."""
     failed = []
     door = Door(on_failure=failed.append)
     door.driver.offer({"knock": True, "speed": 2.0}, robot="left")
@@ -77,7 +67,6 @@ def test_failures_are_told_apart_from_passes():
 
 
 def test_robots_are_judged_apart():
-    """What one does is nothing to the other; each has a report."""
     door = Door()
     door.driver.offer({"knock": True}, robot="left")
     door.driver.offer({"knock": True}, robot="right")
@@ -88,8 +77,26 @@ def test_robots_are_judged_apart():
     assert found == {"left": "F", "right": "P"}
 
 
+@pytest.mark.parametrize(("kind", "verdicts"), [("real", "F P"), ("real stale after 1 s", "I I")])
+def test_a_publisher_that_dies_in_mid_attempt(kind, verdicts):
+    """Its last value is held and the deadline missed; or, by `stale after`, nothing is known."""
+    door = Door(DOOR.replace("real", kind).replace("2 s opened", "2 s speed == 0"))
+    door.driver.offer({"speed": 0.5, "knock": True})
+    door.at(5)
+    assert door.ended() == verdicts
+
+
+def test_a_subscriber_that_comes_late_judges_what_it_sees():
+    door = Door()
+    door.clock.set_ns(100 * S)
+    door.driver.offer({"speed": 0.5})
+    door.at(101)
+    (report,) = door.driver.close()[""]
+    assert report.verdicts == {"D1": Verdict.NOT_TRIGGERED, "D2": Verdict.PASS}
+    assert [one.triggered for one in report.attempts] == [100 * S]
+
+
 def test_a_robot_too_many_is_turned_away(caplog):
-    """It is said once; the others are judged as before."""
     door = Door(most_robots=1)
     assert door.driver.offer({"speed": 0.0}, robot="left")
     with caplog.at_level(logging.WARNING, "rvmon.live.input"):
@@ -130,7 +137,6 @@ def test_a_first_value_that_is_lost_is_not_excused(kind):
 
 
 def test_much_that_is_lost_is_one_stretch():
-    """A hundred thousand samples take no more room than one."""
     door = Door(room=1)
     door.driver.offer({"knock": True})
     for _ in range(100_001):
@@ -143,7 +149,6 @@ def test_much_that_is_lost_is_one_stretch():
 
 @pytest.mark.parametrize(("knocks_at", "expected"), [(3, "F"), (1.5, "I")])
 def test_what_a_connection_lost_is_unknown_until_it_is_back(knocks_at, expected):
-    """From then on all counts again: a deadline behind it is missed."""
     door = Door()
     door.driver.offer({"speed": 0.5, "opened": False})
     door.at(1)
@@ -245,7 +250,6 @@ def test_each_lost_sample_is_a_position_of_sampled_time():
     ("values", "why"), [({"sped": 1.0}, "no signal or event"), ({"speed": "fast"}, "a number")]
 )
 def test_a_sample_that_is_refused_stops_nothing(values, why, caplog):
-    """It is said, counted, and what it spoke of is unknown."""
     door = Door()
     door.driver.offer({"speed": 0.5})
     door.at(1)
@@ -271,7 +275,6 @@ def test_a_sample_that_comes_late_is_unknown_from_then_on():
 
 
 def test_with_a_lag_samples_may_come_late():
-    """Deadlines pass so much later."""
     door = Door(lag_ns=2 * S)
     door.driver.offer({"knock": True}, t_ns=0)
     door.at(3)
@@ -309,7 +312,6 @@ def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
 
 
 def test_another_specification_is_taken_up_at_once():
-    """The former run ends; what it showed does not count for the new one."""
     door = Door()
     door.driver.offer({"speed": 1.5})
     door.at(1)
@@ -322,7 +324,6 @@ def test_another_specification_is_taken_up_at_once():
 
 
 def test_a_specification_that_lacks_what_was_asked_for_is_refused():
-    """The former one goes on."""
     door = Door(only=["D2"])
     door.driver.offer({"speed": 5.0})
     with pytest.raises(UnknownNameError):
@@ -332,7 +333,6 @@ def test_a_specification_that_lacks_what_was_asked_for_is_refused():
 
 
 def test_what_a_callback_raises_stops_nothing(caplog):
-    """It is logged and counted; the next failure is told all the same."""
     door = Door(on_failure=lambda _: 1 // 0)
     with caplog.at_level(logging.ERROR, "rvmon.live"):
         for t, speed in enumerate((2.0, 0.0, 2.0)):
@@ -344,7 +344,6 @@ def test_what_a_callback_raises_stops_nothing(caplog):
 
 
 def test_a_callback_may_look_but_not_drive():
-    """It is called in the middle of a step."""
     seen = []
 
     def look(_):
@@ -360,7 +359,6 @@ def test_a_callback_may_look_but_not_drive():
 
 
 def test_what_is_open_is_in_the_status_with_its_deadline():
-    """For a view that counts down."""
     door = Door()
     door.driver.offer({"knock": True})
     door.at(1)
@@ -369,7 +367,6 @@ def test_what_is_open_is_in_the_status_with_its_deadline():
 
 
 def test_closing_judges_what_waits_and_is_the_end():
-    """It may be closed twice; what is offered then is refused."""
     door = Door()
     door.driver.offer({"speed": 2.0})
     reports = door.driver.close()
@@ -380,7 +377,6 @@ def test_closing_judges_what_waits_and_is_the_end():
 
 
 def test_wrong_arguments_are_told_when_it_is_made():
-    """And not when the first robot comes."""
     with pytest.raises(RvmonError, match="room"):
         Door(room=0)
     with pytest.raises(UnknownNameError):

@@ -46,7 +46,6 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
 
 
 def test_a_torn_entry_is_as_one_that_never_came(tmp_path):
-    """And what comes after it is kept."""
     told = []
     path = tmp_path / "run"
     DurableMonitor(SPEC, path, told.append).step_ns(0, {"speed": 0.5})
@@ -70,7 +69,6 @@ def test_what_was_saved_is_not_told_again(tmp_path):
 
 
 def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
-    """What is not known passes nothing."""
     told = []
     monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     monitor.step_ns(0, {"speed": 0.5, "p": True})
@@ -81,7 +79,6 @@ def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
 
 
 def test_files_and_values_that_are_none_are_told(tmp_path):
-    """The file is named; what cannot be kept is not judged."""
     (tmp_path / "text").write_text("a run\n")
     with pytest.raises(SnapshotError, match="text: no run of a monitor"):
         DurableMonitor(SPEC, tmp_path / "text", print)
@@ -115,8 +112,7 @@ def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("line", "told"), [('{"t": 9, "x": ', "dropped once"), ('{"t": 1, "x": 9}', "late once")]
 )
-def test_a_watch_that_lost_a_line_is_no_success(tmp_path, capsys, line, told):
-    """Also where the process that lost it has ended, and another one goes on."""
+def test_a_watch_that_lost_a_line_is_no_success(tmp_path, says, line, told):
     spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
     spec.write_text("signal x : real\nrequirement R\n  always x < 3")
     command = ["watch", str(spec), str(lines), "--state", str(tmp_path / "run")]
@@ -124,12 +120,11 @@ def test_a_watch_that_lost_a_line_is_no_success(tmp_path, capsys, line, told):
     for more, code in (("", 0), (line + "\n", 1), ('{"t": 12, "x": 1}\n', 1)):
         text += more
         lines.write_text(text)
-        assert main(command) == code
-        assert (told in capsys.readouterr().err) is (code == 1)
+        assert (told in says(code, *command).err) is (code == 1)
 
 
 @pytest.mark.parametrize(("rows", "is_same"), [(7, False), (20, False), (0, True)])
-def test_a_watch_goes_on_in_no_other_file(tmp_path, capsys, rows, is_same):
+def test_a_watch_goes_on_in_no_other_file(tmp_path, says, rows, is_same):
     """As of a log that was put away: lines of the new one would pass for those that were taken."""
     spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
     spec.write_text("signal x : real\nrequirement R\n  always x < 3")
@@ -139,15 +134,12 @@ def test_a_watch_goes_on_in_no_other_file(tmp_path, capsys, rows, is_same):
     assert main(command) == 1
     other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
     lines.write_text(other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n')
-    capsys.readouterr()
-    assert main(command) == (1 if is_same else 2)
-    told = capsys.readouterr().err
+    told = says(1 if is_same else 2, *command).err
     assert ("is another file than that of which 11 lines were taken" in told) is not is_same
 
 
 @pytest.mark.process
 def test_a_watch_that_is_killed_goes_on(tmp_path):
-    """Real processes, killed where they happen to be."""
     killed_watch.written(tmp_path, seed=1, count=150)
     expected = killed_watch.whole(tmp_path)
     watch = partial(main, killed_watch.WATCH.split(" "))
@@ -166,10 +158,9 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
         (["mqtt://localhost/#"], "a pipe or a file"),
     ],
 )
-def test_what_does_not_go_with_a_state_is_refused(tmp_path, capsys, words, message):
+def test_what_does_not_go_with_a_state_is_refused(tmp_path, says, words, message):
     """Instead of being judged otherwise than it was asked."""
     (tmp_path / "s.rv").write_text(killed_watch.SPEC)
     told = ["watch", "--state", str(tmp_path / "run"), str(tmp_path / "s.rv"), *words]
-    assert main(told) == 2
-    assert message in capsys.readouterr().err
+    assert message in says(2, *told).err
     assert not (tmp_path / "run").exists()

@@ -50,7 +50,6 @@ def page_of(database, earlier=None):
 
 
 def test_what_is_wrong_stands_first(door):
-    """Illegal hits, failures, then what is covered, then holes with reasons."""
     read = Reader(page_of(door))
     parts = [
         "46 % covered, 1 illegal item hit, 2 of 4 tests not fine, 6 holes",
@@ -68,7 +67,6 @@ def test_what_is_wrong_stands_first(door):
 
 
 def test_every_link_leads_somewhere(door):
-    """Cells to the tests that hit them, counts of verdicts to an example, groups to items."""
     page = page_of(door)
     read = Reader(page)
     assert read.dangling() == set()
@@ -80,7 +78,6 @@ def test_every_link_leads_somewhere(door):
 
 
 def test_a_cross_is_a_heat_map(door):
-    """Its cells say by look and sign what they are."""
     looks = [
         attributes.get("class")
         for tag, attributes in Reader(page_of(door)).tags
@@ -90,7 +87,6 @@ def test_a_cross_is_a_heat_map(door):
 
 
 def test_the_growth_of_all_and_of_each_strategy(door):
-    """A line each, and a dot at every test that added something."""
     read = Reader(page_of(door))
     lines = [attributes for tag, attributes in read.tags if tag == "polyline"]
     assert [line["class"] for line in lines] == ["all", "s0", "s1"]
@@ -105,7 +101,6 @@ def test_the_growth_of_all_and_of_each_strategy(door):
 
 
 def test_campaigns_are_compared(door):
-    """What is new, lost, and judged otherwise."""
     with Database.in_memory() as later:
         later.declare(door_model())
         later.record(
@@ -134,7 +129,6 @@ def test_what_failed_as_expected_is_not_wrong(door):
 
 
 def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
-    """And every link still leads somewhere."""
     monkeypatch.setattr(pages, "MOST", 10)
     for number in range(50):
         record = TestRecord(f"dull-{number}", "week 2", number=number, when=90 * SECOND)
@@ -145,8 +139,6 @@ def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
 
 
 def test_names_are_no_markup():
-    """Whatever groups, items and tests are called, the page has the same elements."""
-
     def elements(names):
         axes = {names[0]: names[:9], names[1]: names[9:12], names[2]: names[:2]}
         crossed = [
@@ -176,7 +168,6 @@ def test_names_are_no_markup():
 
 
 def test_nothing_is_a_page_too():
-    """An empty database, and a model without tests."""
     with Database.in_memory() as database:
         assert "nothing to cover" in Reader(page_of(database)).text
         database.declare(door_model())

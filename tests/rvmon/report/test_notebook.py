@@ -28,7 +28,6 @@ def shown(book):
 
 
 def test_the_notebook_runs(monkeypatch):
-    """Every cell shows a specification, a report or an attempt, in less than 20 kB."""
     monkeypatch.chdir(FOLDER)
     spec, report, failed, decided = shown(json.loads((FOLDER / "verdicts.ipynb").read_text()))
     assert "then within 500 ms for 1 s speed &lt;= 1 mm/s" in spec
@@ -37,14 +36,6 @@ def test_the_notebook_runs(monkeypatch):
     assert "deadline" in failed
     assert "B1#1" in decided
     assert max(map(len, (spec, report, failed, decided))) < 20_000
-
-
-def test_the_notebook_of_many_recordings_runs(monkeypatch):
-    """Without a folder of logs it reads the recording of the example."""
-    pytest.importorskip("pandas")
-    monkeypatch.chdir(FOLDER.parent / "nightly")
-    _, failed = shown(json.loads(Path("failures.ipynb").read_text()))
-    assert "B2#2" in failed
 
 
 def test_nothing_of_a_piece_reaches_the_notebook():
@@ -71,7 +62,6 @@ def test_themes_of_notebooks_come_before_the_systems():
 
 @pytest.mark.parametrize("failures", [1, DRAWN + 7])
 def test_many_attempts_are_counted(failures):
-    """So many bars at most, a few of them in full, and how many more there are."""
     spec = rvmon.loads("event go\nrequirement R\n  upon go\n  then false\n")
     report = spec.evaluate([(t, {"go": True}) for t in range(failures)])
     piece = report._repr_html_()

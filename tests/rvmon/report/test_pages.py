@@ -16,7 +16,6 @@ from rvmon.verdict.known_failures import NONE_KNOWN
 
 
 def test_pages_are_fit_for_everybody(chromium, tmp_path):
-    """Contrast, names, keys, nothing cut or colliding; wide and narrow, light and dark."""
     spec, run = door(answer=2.02, gap=0.01)
     long = f"{'a-long-name-of-a-robot-' * 3}monday.csv"
     listed = [

@@ -90,18 +90,21 @@ def opened(page):
     return next(a["data-open"] for tag, a in Reader(page).tags if tag == "main")
 
 
-def test_it_opens_on_the_first_failure_with_one_sentence():
-    """Requirement, run, instant and cause, in the window's title too."""
+def test_it_opens_on_the_first_failure_with_one_sentence_and_its_part_underlined():
+    """Requirement, run, instant and cause, in the window's title too; the line with its number."""
     page = run_page(content())
     assert opened(page) == "D1-1"
-    title = "".join(Reader(page).texts["title"])
+    read = Reader(page)
+    title = "".join(read.texts["title"])
     assert title.startswith("D1 failed, monday, 7 s: ")
     assert "closed" in title
+    assert "within 2 s not closed" in read.texts["mark"]
+    assert "".join(read.texts["pre"]).count("upon knock") == 1
+    assert "  9  " in page
 
 
 @pytest.mark.slow
 def test_hostile_names_steer_nothing_and_scripts_find_them():
-    """Neither text, attributes nor data hold what steers; the data of each panel has its id."""
     for number, hostile in enumerate(FORGERIES):
         spec, run = door(name=hostile)
         names = {name: f"{hostile}{number}" if name == "D1" else name for name in spec.requirements}
@@ -120,25 +123,41 @@ def test_hostile_names_steer_nothing_and_scripts_find_them():
                 for n, r in spec.checked.requirements.items()
             },
         )
-        page = run_page(RunPage(replace(run, report=report), checked, hostile, back=hostile))
+        page = run_page(
+            RunPage(
+                replace(run, report=report),
+                checked,
+                hostile,
+                back=hostile,
+                facts=((hostile, hostile),),
+            )
+        )
         assert not STEERING.search(page)
+        tags = Reader(page).tags
+        assert "img" not in {tag for tag, _ in tags}
+        assert sum(tag == "script" for tag, _ in tags) == 2
+        assert not any(name.startswith("on") for _, attributes in tags for name in attributes)
         data = json.loads(re.search(r'id="run">(.*?)</script>', page).group(1))
-        sections = [a["id"] for tag, a in Reader(page).tags if tag == "section"]
+        sections = [a["id"] for tag, a in tags if tag == "section"]
         assert set(sections) <= data["panels"].keys()
-        tracks = {a["data-track"] for tag, a in Reader(page).tags if "data-track" in a}
+        tracks = {a["data-track"] for tag, a in tags if "data-track" in a}
         assert tracks <= {name for one in data["panels"].values() for name in one["tracks"]}
 
 
 def test_without_failure_it_opens_on_what_is_open():
-    """On the first attempt that is undecided, else on the first that passed."""
+    """Requirements that were never triggered say so; what passed is folded."""
     samples = [(0.0, {"closed": True, "gap": 1.0})]
     assert opened(run_page(content(judged("t", samples)))) == "D2-1"
     samples.append((19.0, {"knock": True}))
     assert opened(run_page(content(judged("t", samples)))) == "D1-1"
+    spec, run = judged("quiet", [(0.0, {"gap": 1.0})], end=3.0)
+    page = run_page(RunPage(run, spec.checked, "x"))
+    assert "D1 was not triggered, quiet" in page
+    assert "D1" in Reader(page).ids
+    assert '<details class="parts">' in run_page(content(door(answer=1.0)))
 
 
 def test_page_and_text_say_the_same_of_the_input(capsys):
-    """What was unknown, ignored or doubtful; of which names, how often, since when."""
     spec, run = door()
     found = (
         Health(HealthKind.NAN, "gap", 3, 2 * TICKS_PER_SECOND, ("D2",)),
@@ -154,14 +173,6 @@ def test_page_and_text_say_the_same_of_the_input(capsys):
     assert "".join(text.split()) == "".join(re.sub("<.*?>", "", listed).split())
     assert "  gap  nan 3 times, first at 2 s  (D2)\n" in text
     assert "x11, … and 2 more  ignored: not" in text
-
-
-def test_a_run_in_which_nothing_happened_has_a_page():
-    """Requirements that were never triggered say so."""
-    spec, run = judged("quiet", [(0.0, {"gap": 1.0})], end=3.0)
-    page = run_page(RunPage(run, spec.checked, "x"))
-    assert "D1 was not triggered, quiet" in page
-    assert "D1" in Reader(page).ids
 
 
 def test_each_part_of_an_attempt_has_a_row():
@@ -182,22 +193,7 @@ def test_each_part_of_an_attempt_has_a_row():
     assert 'class="unknown"' in parts.split("within 2 s not closed</code>")[1].split("</div>")[1]
 
 
-def test_passing_attempts_keep_their_parts_folded():
-    """What passed needs no explanation at first sight."""
-    page = run_page(content(door(answer=1.0)))
-    assert '<details class="parts">' in page
-
-
-def test_the_failed_part_is_underlined_in_the_spec():
-    """The subformula, in its line, with the line's number."""
-    page = run_page(content())
-    assert "within 2 s not closed" in Reader(page).texts["mark"]
-    assert "".join(Reader(page).texts["pre"]).count("upon knock") == 1
-    assert "  9  " in page
-
-
 def test_the_offending_sample_and_the_threshold_are_marked():
-    """A comparison shows its constant and the value that broke it."""
     page = run_page(content(door(gap=0.01)))
     section = page[page.index('<section id="D2-1"') :]
     section = section[: section.index("</section>")]
@@ -206,7 +202,6 @@ def test_the_offending_sample_and_the_threshold_are_marked():
 
 
 def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
-    """Only what is still required fades out to the right."""
     page = run_page(content(judged("t", [(0.0, {"closed": True, "gap": 1.0})])))
     for number, classes in (("D2-1", ["window"]), ("D3-1", ["window"])):
         section = page[page.index(f'<section id="{number}"') :].split("</section>")[0]
@@ -217,27 +212,13 @@ def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
 
 
 def test_the_nearest_passing_attempt_is_the_reference():
-    """Of all that pass, the one that differs least."""
     far, near = door("far", answer=0.1), door("near", answer=1.9)
     page = run_page(content(others=[far[1], near[1]]))
     assert "nearest passing attempt: near, attempt 1" in page
     assert "reference" in page
 
 
-def test_names_and_texts_cannot_become_markup():
-    """Whatever a spec, a trace or a command says is text, also for the script."""
-    evil = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
-    spec = rvmon.loads(SPEC.replace("Knocking opens the door", evil.replace('"', "")), name=evil)
-    _, run = judged(evil, [(0.0, {"closed": True, "gap": 1.0}), (5.0, {"knock": True})], spec)
-    page = run_page(RunPage(run, spec.checked, evil, facts=((evil, evil),)))
-    reader = Reader(page)
-    assert "img" not in {tag for tag, _ in reader.tags}
-    assert sum(tag == "script" for tag, _ in reader.tags) == 2
-    assert not any(name.startswith("on") for _, attributes in reader.tags for name in attributes)
-
-
 def test_a_page_needs_nothing_but_itself():
-    """No address leads out of the page's folder."""
     page = run_page(content(back="../report.html"))
     addresses = [a[k] for _, a in Reader(page).tags for k in ("href", "src") if k in a]
     assert all(one.startswith("#") or one == "../report.html" for one in addresses)
@@ -246,7 +227,6 @@ def test_a_page_needs_nothing_but_itself():
 
 @pytest.mark.slow
 def test_a_long_run_makes_a_small_page():
-    """Fifty thousand samples and hundreds of attempts stay below 200 KB."""
     samples = [
         (i / 100, {"gap": (i * 7919 % 1000) / 1000, "closed": i % 200 < 100}) for i in range(50_000)
     ]
@@ -264,7 +244,6 @@ def scene():
 
 
 def test_the_scene_stands_where_the_cursor_is():
-    """Without a script the drawing shows the instant of the decision."""
     page = run_page(content(scene=scene()))
     group = next(a for tag, a in Reader(page).tags if tag == "g")
     assert group["transform"].startswith("translate(1000 -500)")
@@ -274,7 +253,6 @@ def test_the_scene_stands_where_the_cursor_is():
 
 
 def test_several_recordings_get_a_list(tmp_path):
-    """A page each, under names that do not clash, and an index of them."""
     spec = rvmon.loads(SPEC)
     runs = {
         f"{folder}/{name}.csv": door(answer=answer)[1]
@@ -328,7 +306,6 @@ def dom(chromium, path, address=""):
 
 
 def test_the_script_runs_in_a_browser(chromium, tmp_path):
-    """One attempt is open, an address opens another, the cursor reads values, nothing is logged."""
     path = tmp_path / "run.html"
     path.write_text(run_page(content(scene=scene())), encoding="utf-8")
     first = dom(chromium, path)
@@ -349,7 +326,6 @@ def shown_sections(html):
 
 
 def test_what_came_late_is_marked():
-    """The page says how long after the deadline it came, and marks where."""
     page = run_page(content(door(answer=2.02)))
     assert "it came at 7.02 s, 20 ms after the deadline" in page.replace("\xa0", " ")
     assert re.search(r'class="label late[^>]*>(?:◆ )?came 20 ms late', page)
@@ -359,7 +335,6 @@ def test_what_came_late_is_marked():
 
 
 def test_all_requirements_stand_over_the_whole_recording():
-    """The worst first; a bar from each trigger to its decision, in the colour of its verdict."""
     samples = [
         (0.0, {"closed": False, "gap": 1.0}),
         (5.0, {"knock": True}),
@@ -376,7 +351,6 @@ def test_all_requirements_stand_over_the_whole_recording():
 
 
 def test_a_list_has_totals_and_severities_and_the_most_failures_first(tmp_path):
-    """Per requirement, how many recordings have which verdict; names without the folder of all."""
     spec = rvmon.loads(SPEC + "  severity high\n")
     runs = {"week/fine.csv": door(answer=1.0)[1], "week/bad.csv": door()[1]}
     runs["week/worse.csv"] = door(gap=0.01)[1]

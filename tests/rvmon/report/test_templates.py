@@ -15,7 +15,6 @@ TEMPLATES = {
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_what_a_template_writes_is_escaped(name):
-    """No `safe`, no block without escaping; every attribute that is filled in is quoted."""
     text = TEMPLATES[name]
     assert not re.search(r"\|\s*safe\b|autoescape", text)
     assert not re.search(r"\w=\{\{", text)

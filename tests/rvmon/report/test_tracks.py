@@ -56,20 +56,17 @@ def track(name, samples, requirement=R1, absent=()):
     return next(one for one in tracks if one.name == name)
 
 
-def test_only_names_concerned_have_tracks():
-    """A requirement's own signals and events, those of the trigger first."""
+def test_names_concerned_have_tracks_with_the_thresholds_of_either_side():
+    """Those of the trigger first; an event without source is not drawn as if it never happened."""
     assert concerned_names(R1) == ("go", "mode", "gap", "pick")
     assert concerned_names(R2) == ("ok", "other")
-
-
-def test_thresholds_are_read_from_either_side():
-    """A constant left of the comparison turns it around; units are the signal's."""
     assert thresholds(R1, "gap") == (Threshold(">=", 0.05), Threshold("<", 1.0))
     assert thresholds(R1, "mode") == ()
+    assert track("go", [], absent={"go"}).absent
+    assert not track("pick", [], absent={"go"}).absent
 
 
 def test_unknown_is_shown_as_unknown():
-    """None, NaN and staleness are gaps; a value that comes in time is none."""
     samples = [
         Sample(0, {"gap": 1.0}),
         Sample(100_000_000, {"gap": 1.0}),
@@ -86,7 +83,6 @@ def test_unknown_is_shown_as_unknown():
 
 
 def test_events_and_labels():
-    """Payloads are occurrences, False is none, None may be one; labels keep their words."""
     samples = [
         Sample(0, {"mode": "idle", "pick": {"id": 3}}),
         Sample(1, {"pick": False}),
@@ -97,14 +93,7 @@ def test_events_and_labels():
     assert track("mode", samples).value_at(1) == "idle"
 
 
-def test_an_event_without_source_is_absent():
-    """What has no source is not drawn as if it never happened."""
-    assert track("go", [], absent={"go"}).absent
-    assert not track("pick", [], absent={"go"}).absent
-
-
 def test_blame_names_only_what_failed():
-    """The samples to blame are those of the failed subformula."""
     text = R1.span.source.text
     start = text.index("gap >= 5 cm")
     blame = Blame("gap >= 5 cm", start, start + 11, (0, 1))
@@ -113,7 +102,6 @@ def test_blame_names_only_what_failed():
 
 
 def test_the_view_holds_the_whole_attempt():
-    """Trigger, window, deadline and decision are all in sight, with room around."""
     blame = Blame("x", 0, 1, (2 * SECOND, 9 * SECOND), (1 * SECOND,))
     attempt = Attempt(
         "R1", 1, 3 * SECOND, 7 * SECOND, Verdict.FAIL, deadline=12 * SECOND, blame=blame
@@ -126,7 +114,6 @@ def test_the_view_holds_the_whole_attempt():
 @settings(deadline=None)
 @given(st.integers(-(10**18), 10**18), st.integers(1, 10**15), st.integers(-(10**18), 10**18))
 def test_an_axis_has_a_few_round_instants(start, length, origin):
-    """About as many labels as asked for, evenly spaced, all in view."""
     view = View(start, start + length)
     instants = round_instants(view, origin)
     assert 1 <= len(instants) <= 8 or length < 6
@@ -139,7 +126,6 @@ def test_an_axis_has_a_few_round_instants(start, length, origin):
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 10**6), st.integers(-50, 50)), max_size=3000))
 def test_dense_numbers_keep_their_peaks(steps):
-    """However many samples there are, the drawing is bounded and shows both extremes."""
     times, t = [], 0
     for gap, _ in steps:
         t += gap
@@ -159,7 +145,6 @@ def test_dense_numbers_keep_their_peaks(steps):
 
 
 def test_a_fast_switch_is_busy_not_lost():
-    """Ten thousand toggles become one busy stretch, and what is wide stays as it is."""
     changes = Course.of([(t, bool(t % 2)) for t in range(10_000)])
     view = View(0, 20_000)
     drawn = readable(stretches(Track("x", TrackKind.SWITCH, changes), view, 20_000))
@@ -168,7 +153,6 @@ def test_a_fast_switch_is_busy_not_lost():
 
 
 def test_many_events_keep_their_places():
-    """Of a million occurrences one is left per place, over the whole width."""
     events = Track("x", TrackKind.EVENT, Course.of([(t, True) for t in range(100_000)]))
     shown = [place for place, _ in occurrences(events, View(0, 99_999))]
     assert len(shown) <= PLACES + 1
@@ -177,14 +161,12 @@ def test_many_events_keep_their_places():
 
 
 def test_nothing_is_drawn_behind_the_end_of_the_run():
-    """A value does not go on when the run is over."""
     pieces = stretches(Track("x", TrackKind.SWITCH, Course.of([(0, True)])), View(0, 100), 40)
     assert [(piece.left, piece.right) for piece in pieces] == [(0, 0.4)]
 
 
 @pytest.mark.law
 def test_held_columns_give_the_tracks_of_samples(tmp_path, monkeypatch):
-    """Values, gaps, staleness, labels and events are those of the samples, wherever blocks end."""
     for seed in range(30):
         rng, t, rows = random.Random(seed), 0, ["t,gap,mode,go,pick,pick.id"]
         for _ in range(60):
@@ -229,7 +211,6 @@ def test_while_it_is_lost_nothing_is_drawn_as_known():
 
 
 def test_many_numbers_are_drawn_by_their_extremes():
-    """A peak of one row among a hundred thousand is seen, and so is a row that is not known."""
     import numpy as np
 
     count = 100_000

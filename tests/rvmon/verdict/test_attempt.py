@@ -57,6 +57,5 @@ def test_a_copy_has_all_fields(copied):
 
 
 def test_an_unknown_field_is_an_attribute_error():
-    """Fields that come late do not hide a misspelt one."""
     with pytest.raises(AttributeError, match="reeson"):
         decided().reeson  # noqa: B018

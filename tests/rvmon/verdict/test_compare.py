@@ -41,13 +41,11 @@ def broken(recording="a.csv"):
     ],
 )
 def test_each_change_has_its_name(before, after, change):
-    """By the verdicts on the requirement."""
     [found] = compare(rows(before), rows(after)).differences
     assert (found.change, found.before, found.after) == (change, before, after)
 
 
 def test_a_requirement_has_the_verdict_of_its_worst_attempt():
-    """Failures are counted, and the first that there is now tells why."""
     [found] = compare(rows("P", "F", "I"), rows("P", "P", "P")).differences
     assert (found.change, found.failures) == (Change.FIXED, (1, 0))
     [found] = compare(rows("P", "P"), rows("P", "F", "F")).differences
@@ -55,7 +53,6 @@ def test_a_requirement_has_the_verdict_of_its_worst_attempt():
 
 
 def test_what_still_fails_is_no_difference():
-    """It is listed by recording."""
     found = compare(rows("F"), rows("F", "F"))
     assert (found.differences, found.failing, found.same) == ([], {"a.csv": ["R1"]}, 1)
 
@@ -70,7 +67,6 @@ def test_a_recording_that_breaks_off_now_is_a_loss():
 
 
 def test_what_only_one_has_is_told():
-    """Recordings, and requirements in recordings that both have."""
     old = rows("P") + rows("P", requirement="R2") + rows("P", recording="gone.csv")
     new = rows("P") + rows("F", requirement="R3") + rows("F", recording="new.csv")
     found = compare(old, new)
@@ -91,7 +87,6 @@ def test_recordings_that_were_moved_are_the_same():
 
 
 def test_losses_come_first():
-    """Then gains, each by recording."""
     old = rows("F") + rows("P", recording="b") + rows("P", recording="c")
     new = rows("P") + rows("F", recording="c") + rows("F", recording="b")
     assert [one.recording for one in compare(old, new).differences] == ["b", "c", "a.csv"]

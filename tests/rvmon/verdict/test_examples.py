@@ -30,7 +30,6 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("path", sorted(NIGHTLY.iterdir()), ids=lambda path: path.name)
 def test_each_is_short(path):
-    """At most 60 lines of what a person reads."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".ipynb":
         text = "\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"])
@@ -39,7 +38,6 @@ def test_each_is_short(path):
 
 @pytest.mark.process
 def test_logs_become_a_table_that_is_asked(folder):
-    """A folder to a Parquet of verdicts, and that to what fails most."""
     pytest.importorskip("duckdb")
     words = [sys.executable, str(NIGHTLY / "nightly.py"), "logs", "v.parquet"]
     done = subprocess.run(words, capture_output=True, text=True, check=True, timeout=120)  # noqa: S603
@@ -52,7 +50,6 @@ def test_logs_become_a_table_that_is_asked(folder):
 
 
 def test_the_notebook_runs(folder, monkeypatch):
-    """Its cells, one after the other, where it lies: beside the logs, below the specification."""
     pytest.importorskip("pandas")
     (folder / "nightly").mkdir()
     (folder / "logs").rename(folder / "nightly" / "logs")
@@ -66,7 +63,6 @@ def test_the_notebook_runs(folder, monkeypatch):
 
 
 def test_the_job_runs(folder, capsys):
-    """The commands of the job for CI; what is known to fail does not fail it."""
     job = (NIGHTLY / "ci.yml").read_text(encoding="utf-8")
     commands = re.findall(r"- run: rvmon (.*)", job)
     assert len(commands) == 2

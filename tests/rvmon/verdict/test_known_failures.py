@@ -55,7 +55,6 @@ def test_a_known_failure_is_accepted_where_it_is_known(known):
 
 
 def test_after_its_last_day_it_is_a_failure_again(known):
-    """And that is said."""
     over = known("2030-02-01")
     failing = report("monday/3.csv", "R1", "R2")
     assert over.failures(failing) == ["R1"]
@@ -85,15 +84,8 @@ def test_what_fails_no_more_is_to_be_taken_out(known):
     ],
 )
 def test_a_file_that_is_wrong_is_refused(tmp_path, text, told):
-    """With the place and what a right one looks like."""
     path = tmp_path / "known.toml"
     path.write_text(text)
     with pytest.raises(RvmonError, match=r"known\.toml") as caught:
         read_known(path, ["R1", "R2"])
     assert told in str(caught.value)
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    """Is named."""
-    with pytest.raises(RvmonError, match="cannot read"):
-        read_known(tmp_path / "none.toml", ["R1"])

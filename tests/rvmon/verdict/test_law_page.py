@@ -20,13 +20,11 @@ EXAMPLES = re.findall(
 
 
 def test_every_specification_of_the_page_is_an_example():
-    """None of them stands there without a recording and verdicts."""
     assert len(EXAMPLES) == PAGE.count("```rv\n") > 0
 
 
 @pytest.mark.parametrize(("text", "form", "data", "table"), EXAMPLES)
 def test_what_is_judged_now(text, form, data, table, tmp_path):
-    """The last column holds verdicts, attempts and exit code as they are."""
     spec, trace = tmp_path / "base.rv", tmp_path / f"base.{form}"
     spec.write_text(text, encoding="utf-8")
     trace.write_text(data, encoding="utf-8")
@@ -51,7 +49,6 @@ def listed(names):
 
 
 def test_the_programs_of_the_page_print_what_their_comments_say(capsys):
-    """Each `print` is followed by what it prints, before what the first law said."""
     names: dict[str, object] = {}
     program = "".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
     exec(program, names)  # noqa: S102 - our own page

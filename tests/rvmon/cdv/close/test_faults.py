@@ -83,7 +83,6 @@ def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
 
 
 def test_no_code_no_mutants(limited):
-    """A campaign that measures no code is told so."""
     from dataclasses import replace
 
     plain = replace(limited, code=None)

@@ -91,7 +91,6 @@ def rides(count, seed):
 
 @pytest.fixture
 def campaign(tmp_path):
-    """A campaign of rides."""
     path = tmp_path / "lift.py"
     path.write_text(CODE)
     (tmp_path / "lift.rv").write_text(SPEC)

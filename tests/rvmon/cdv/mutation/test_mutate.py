@@ -34,7 +34,6 @@ def equivalent(campaign, folder, part):
 
 
 def test_a_suite_is_scored(campaign, tmp_path, capsys):
-    """Text, data and page have one score; survivors are questions."""
     out = tmp_path / "out"
     command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--held-out", "--out", str(out)]
     assert main(campaign, command) == 0
@@ -49,7 +48,6 @@ def test_a_suite_is_scored(campaign, tmp_path, capsys):
 
 
 def test_pages_are_fit_for_everybody(campaign, chromium, tmp_path, monkeypatch):
-    """Those of mutants, of the campaign, and of its coverage."""
     monkeypatch.chdir(tmp_path)
     command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--held-out", "--out", "out"]
     assert main(campaign, command) == 0
@@ -60,7 +58,6 @@ def test_pages_are_fit_for_everybody(campaign, chromium, tmp_path, monkeypatch):
 
 
 def test_a_folder_of_tests_is_a_suite(campaign, tmp_path, capsys):
-    """It is called as the folder is."""
     folder = tmp_path / "closed"
     folder.mkdir()
     for test in campaign.strategies["rides"](2, 1):
@@ -73,7 +70,6 @@ def test_a_folder_of_tests_is_a_suite(campaign, tmp_path, capsys):
 
 
 def test_mutants_are_listed_without_those_held_out(campaign, capsys):
-    """Nothing is played."""
     assert main(campaign, ["mutate", "--list"]) == 0
     told = capsys.readouterr().out
     assert "Lift.ride:dropped-statement:1" in told
@@ -82,16 +78,14 @@ def test_mutants_are_listed_without_those_held_out(campaign, capsys):
     assert not re.search("^held out", told, re.MULTILINE)
 
 
-def test_what_is_said_to_be_equivalent_leaves_the_score(campaign, tmp_path):
+def test_what_is_said_to_be_equivalent_leaves_the_score_and_fails_if_it_is_killed(
+    campaign, tmp_path, capsys
+):
     """With --strict, all else has to be killed."""
     known = equivalent(campaign, tmp_path, "Lift.note")
     command = ["mutate", "--of", "code", "--only", "note", "--jobs", "1", "--strict"]
     assert main(campaign, command) == 1
     assert main(known, command) == 0
-
-
-def test_an_equivalent_mutant_that_is_killed_fails(campaign, tmp_path, capsys):
-    """Its argument is wrong."""
     name = "Lift.ride:dropped-statement"
     known = equivalent(campaign, tmp_path, name)
     assert main(known, ["mutate", "--of", "code", "--only", name, "--jobs", "1"]) == 1
@@ -110,13 +104,11 @@ def test_an_equivalent_mutant_that_is_killed_fails(campaign, tmp_path, capsys):
     ],
 )
 def test_what_is_wrong_is_told(campaign, capsys, arguments, message):
-    """With what is expected instead."""
     assert main(campaign, ["mutate", *arguments]) == 2
     assert message in capsys.readouterr().err
 
 
 def test_a_campaign_without_code_or_requirements_is_refused(campaign, capsys):
-    """It says what is missing."""
     assert main(replace(campaign, code=None), ["mutate"]) == 2
     assert "names no code" in capsys.readouterr().err
     robots = {"lift": replace(campaign.robots["lift"], spec=None)}

@@ -33,24 +33,22 @@ REFUSED = 'told.append(("refused", True))'
 TOLD = 'told.append(("floor", floor))'
 
 
-def test_a_requirement_that_fails_kills(tried, changed):
-    """The test and the requirement are named, and no further test is played."""
-    (one,) = tried([changed("Lift.ride", DOOR, "pass")], tests=3)
+def test_a_requirement_that_fails_kills_and_ends_the_play_unless_all_tests_are_asked_for(
+    tried, changed
+):
+    """One whose requirement fails anyway does not kill."""
+    mutant = changed("Lift.ride", DOOR, "pass")
+    (one,) = tried([mutant], tests=3)
     assert one.killed_by_requirement
     assert (one.reaching, one.played) == (3, 1)
     assert [(found.test, found.how, found.what) for found in one.findings] == [
         ("second", How.REQUIREMENT, ("L1",))
     ]
-
-
-def test_all_tests_are_played_if_that_is_asked_for(tried, changed):
-    """Then each test that kills is told; one whose requirement fails anyway does not."""
-    (one,) = tried([changed("Lift.ride", DOOR, "pass")], tests=3, every=True)
+    (one,) = tried([mutant], tests=3, every=True)
     assert [found.test for found in one.findings] == ["second", "third"]
 
 
 def test_a_known_answer_kills_where_no_requirement_fails(tried, changed):
-    """It is told apart from those."""
     (one,) = tried([changed("Lift.ride", "return told", "return told[:-1] and told[:0]")])
     assert [found.how for found in one.findings] == [How.ANSWER]
     assert one.killed
@@ -93,7 +91,6 @@ def test_what_waits_long_does_not_hang(campaign, changed, monkeypatch):
 
 
 def test_a_mutant_that_no_test_runs_is_not_played(tried, changed):
-    """It asks for a stimulus; once there is one, for the requirement that is missing."""
     mutant = changed("Lift.ride", REFUSED, "pass")
     (unreached,) = tried([mutant])
     assert missing(unreached) is Missing.STIMULUS
@@ -104,14 +101,17 @@ def test_a_mutant_that_no_test_runs_is_not_played(tried, changed):
     assert (found.test, found.t_ns, found.name) == ("beyond", 3 * 10**9, "refused")
 
 
-def test_what_is_not_recorded_asks_for_an_observation(tried, changed):
-    """It runs, and nothing differs."""
-    (one,) = tried([changed("Lift.note", "self.noted = to", "self.noted = 0")])
+def test_what_is_not_recorded_asks_for_an_observation_and_the_code_as_it_is_differs_nowhere(
+    tried, changed
+):
+    unseen = changed("Lift.note", "self.noted = to", "self.noted = 0")
+    one, same = tried([unseen, changed("Lift.ride", DOOR, f"{DOOR}  # as it is")])
     assert missing(one) is Missing.OBSERVATION
+    assert not same.killed
+    assert same.difference is None
 
 
 def test_a_constant_is_changed_with_what_is_made_of_it(tried, changed):
-    """Whatever uses it, wherever it was worked out."""
     top, floors = tried(
         [changed("TOP", "TOP = 3", "TOP = 1"), changed("FLOORS", "range(TOP)", "range(1)")]
     )
@@ -146,13 +146,6 @@ def test_a_file_that_is_loaded_later_is_loaded_with_the_change(changed):
     assert told == [("floor", 1)]
 
 
-def test_the_code_as_it_is_differs_nowhere(tried, changed):
-    """A mutant that changes nothing is played as the code is."""
-    (one,) = tried([changed("Lift.ride", DOOR, f"{DOOR}  # as it is")])
-    assert not one.killed
-    assert one.difference is None
-
-
 def test_runs_of_faulty_code_judge_requirements(campaign, tried, changed):
     """They tell bounds apart that the code as it is never comes near; none is held out."""
     mutants = [
@@ -170,7 +163,6 @@ def test_runs_of_faulty_code_judge_requirements(campaign, tried, changed):
 
 
 def test_results_do_not_depend_on_processes(campaign, tried):
-    """Nor does one mutant on another, and scores add up."""
     mutants = code_mutants(campaign.code)[::8]
     found = tried(mutants, jobs=2, tests=2)
     assert found == tried(mutants, jobs=1, tests=2)
@@ -182,6 +174,5 @@ def test_results_do_not_depend_on_processes(campaign, tried):
 
 
 def test_a_suite_that_says_nothing_is_refused(campaign):
-    """There has to be a test, and it has to end without the mutant."""
     with pytest.raises(RvmonError, match="no test for this robot"):
         record_suite(campaign, "lift", [], jobs=1)

@@ -52,7 +52,6 @@ def report(*tried, equivalent=(), shows=False):
     ],
 )
 def test_questions(tried, asked):
-    """A survivor is shown with its place, the change and the question."""
     text = report_text(report(tried))
     assert f"m.py:{tried.mutant.line}" in text
     assert "- a < b" in text
@@ -62,7 +61,6 @@ def test_questions(tried, asked):
 
 
 def test_what_is_held_out_is_counted_and_not_shown():
-    """Neither as text, nor as data, nor on the page, unless that is asked for."""
     alive = [Tried(one, 2, 2) for one in MUTANTS]
     hidden = report(*alive)
     shown = report(*alive, shows=True)
@@ -74,18 +72,7 @@ def test_what_is_held_out_is_counted_and_not_shown():
             assert one.identity in form(shown)
 
 
-def test_what_is_killed_by_a_requirement_counts_apart():
-    """A known answer, a crash or a hang kills as well."""
-    killed = [
-        Tried(SHOWN[0], 1, 1, (KILLED,)),
-        Tried(SHOWN[1], 1, 1, (Finding("t", How.HUNG, ()),)),
-    ]
-    score = report(*killed, Tried(SHOWN[2], 1, 1)).scores("s")["all"]
-    assert (score.mutants, score.killed, score.by_requirement) == (3, 2, 1)
-
-
 def test_what_kills_stands_beside_each_mutant():
-    """The requirement and the test, in text and page; none that is held out."""
     found = report(Tried(SHOWN[0], 1, 1, (KILLED,)), Tried(HIDDEN[0], 1, 1, (KILLED,)))
     line = f"{SHOWN[0].identity}  a < b => a <= b  requirement (R1) in t"
     text = report_text(found)
@@ -95,7 +82,7 @@ def test_what_kills_stands_beside_each_mutant():
     assert "requirement (R1) in t" in mutation_page(found)
 
 
-def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
+def test_an_equivalent_mutant_that_is_killed_or_makes_a_run_differ_is_a_contradiction():
     """And counts in the score; one that survives is no survivor, and leaves the score."""
     found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])
     assert found.survivors("s") == {}
@@ -103,10 +90,6 @@ def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
         f"{SHOWN[1].identity} is declared equivalent, and requirement (R1) in t kills it"
     ]
     assert found.scores("s")["all"].rest == 1
-
-
-def test_an_equivalent_mutant_that_makes_a_run_differ_is_a_contradiction():
-    """Whether or not a requirement speaks of it."""
     differs = Difference("t", 10**9, "stop", "True", "")
     (told,) = report(Tried(SHOWN[0], 1, 1, (), differs), equivalent=SHOWN[:1]).contradictions()
     assert told.endswith("in `t` the run differs at 1 s in `stop` (True → none), which R1 reads")
@@ -119,9 +102,12 @@ mutants."m:f:comparison:1" = "a < b => a <= b"
 """
 
 
-def test_equivalents_are_read(tmp_path):
-    """Each with the argument."""
-    path = tmp_path / "equivalent.toml"
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "equivalent.toml"
+
+
+def test_equivalents_are_read(path):
     path.write_text(ENTRY)
     assert equivalents(path, MUTANTS) == {"m:f:comparison:1": "they differ"}
 
@@ -138,9 +124,7 @@ def test_equivalents_are_read(tmp_path):
         ("boundary = 3", "is to have an argument"),
     ],
 )
-def test_equivalents_that_are_wrong_are_refused(tmp_path, text, message):
-    """With the file, and what is to be fixed."""
-    path = tmp_path / "equivalent.toml"
+def test_equivalents_that_are_wrong_are_refused(path, text, message):
     path.write_text(text)
     with pytest.raises(RvmonError, match=message):
         equivalents(path, MUTANTS)

@@ -41,7 +41,6 @@ OTHER = "\ndef other(): return {'d'}\n"
 
 @pytest.mark.parametrize(("kind", "body", "after"), CHANGES)
 def test_operators(tmp_path, kind, body, after):
-    """Each makes the change that its name says, and nothing else."""
     path = tmp_path / "m.py"
     path.write_text(f"def f(a, b):\n    {body}\n{OTHER}")
     found = list(mutants(path, range(2, 3 + body.count("\n")), [kind]))
@@ -53,7 +52,6 @@ def test_operators(tmp_path, kind, body, after):
 
 
 def test_every_operator_is_tried():
-    """None is without a case above."""
     assert {kind for kind, _, _ in CHANGES} == set(OPERATORS)
 
 
@@ -75,7 +73,6 @@ def test_what_could_only_crash_is_not_dropped(tmp_path, body, kept):
 
 
 def test_thirds_follow_from_names(tmp_path):
-    """They are alike in size, and the same wherever, and however often, mutants are made."""
     sizes = Counter(third_of(f"m:f:wait:{number}") for number in range(3000))
     assert set(sizes) == set(THIRDS)
     assert min(sizes.values()) > 900
@@ -83,7 +80,6 @@ def test_thirds_follow_from_names(tmp_path):
 
 
 def test_lines_before_change_no_name(tmp_path):
-    """What is changed keeps its name, and its third, when the file grows above."""
     path = tmp_path / "m.py"
     text = "def f(a, b):\n    return a < b or b\n"
     path.write_text(text)
@@ -93,7 +89,6 @@ def test_lines_before_change_no_name(tmp_path):
 
 
 def test_what_compiles_to_the_same_is_one_mutant(tmp_path):
-    """And none is the code as it is."""
     path = tmp_path / "m.py"
     path.write_text("def f(a, b):\n    if not a is b:\n        return 1\n")
     found = code_mutants(cdv.Code(cdv.blocks_of(path)))
@@ -103,7 +98,6 @@ def test_what_compiles_to_the_same_is_one_mutant(tmp_path):
 
 
 def test_constants_are_changed_where_they_are_named(tmp_path):
-    """Other lines at the top of the file stay."""
     path = tmp_path / "m.py"
     path.write_text("LIMIT = 3\nOTHER = 4\ndef f(): return LIMIT\n")
     found = mutants(path, (), constants=["LIMIT"])
@@ -112,7 +106,6 @@ def test_constants_are_changed_where_they_are_named(tmp_path):
 
 @pytest.mark.parametrize(("text", "message"), [(None, "No such file"), ("def", "not Python")])
 def test_what_cannot_be_read_is_told(tmp_path, text, message):
-    """With the file's name."""
     path = Path(tmp_path, "m.py")
     if text is not None:
         path.write_text(text)

@@ -95,7 +95,6 @@ def test_names_are_found_where_they_mean_the_same(place):
 
 
 def test_names_of_other_files():
-    """Definitions lead into files that are imported, as they are in the editor, and libraries."""
     text = 'import "signals.rv"\nimport patterns\nrequirement R\n  bounded_response(a, b, 2 s)\n'
     of = document(text, {"signals.rv": "# unsaved\nevent a, b\n"})
     assert [str(place) for place in of.definitions(after(text, "a, b"))] == [
@@ -112,29 +111,27 @@ def test_names_of_other_files():
 
 
 def test_names_in_what_cannot_be_read():
-    """While an item is half written, its names lead to their declarations all the same."""
     text = f"{SPEC}requirement R2 upon pick then (within\n"
     of = document(text)
     (place,) = of.definitions(after(text, "pick then"))
     assert place.range == Text(text).range(SPEC.index("pick("), SPEC.index("pick(") + 4)
 
 
-def test_a_requirement_in_words():
-    """Over its name stands what it means, as `rvmon explain` says it, and where it comes from."""
-    word, text = about(document(SPEC), after(SPEC, "R1"))
+def test_what_is_shown_over_a_name():
+    """What a requirement means, as `rvmon explain` says it; type, unit, role of a signal."""
+    of = document(SPEC)
+    word, text = about(of, after(SPEC, "R1"))
     assert word == "R1"
     assert "What is picked moves" in text
     assert "within 3 s, moving occurs" in text
     assert "ISO 0000" in text
-
-
-def test_declarations():
-    """Over a signal stand its type, unit, role and staleness; over a captured value its clause."""
-    of = document(SPEC)
     signal = "signal s : real [m]  input  stale after 200 ms"
     assert about(of, after(SPEC, "s) < 5")) == ("s", f"```rv\n{signal}\n```")
     assert about(of, after(SPEC, "v\n")) == ("v", "```rv\nlet v = pick.id + 1\n```")
     assert about(of, after(SPEC, "s\n  then")) is None, "a unit"
+    text = 'event a # upon a\nrequirement R "upon a" always a\n'
+    of = document(text)
+    assert [about(of, after(text, "upon a", number)) for number in (0, 1)] == [None, None]
 
 
 def test_words_of_the_language():
@@ -148,13 +145,6 @@ def test_words_of_the_language():
     word, text = about(document(SPEC), after(SPEC, "after 200"))
     assert word == "stale after"
     assert text == meanings()["stale after"]
-
-
-def test_nothing_is_said_about_texts_and_comments():
-    """Words of the language in a text or comment are none."""
-    text = 'event a # upon a\nrequirement R "upon a" always a\n'
-    of = document(text)
-    assert [about(of, after(text, "upon a", number)) for number in (0, 1)] == [None, None]
 
 
 def test_half_written_texts():
@@ -172,7 +162,6 @@ def test_half_written_texts():
 
 
 def test_findings():
-    """A finding has its code with a page, its places, and what fixes it."""
     text = "event a\nevent a\nconst T = 3 s\nrequirement R upon a then within 2 s a\n"
     of = document(text)
     (double,) = of.diagnostics[of.uri]
@@ -187,7 +176,6 @@ def test_findings():
 
 
 def test_findings_of_other_files():
-    """What is wrong in an imported file is reported of that file."""
     of = document('import "a.rv"\nrequirement R always p\n', {"a.rv": "signal p : boo\n"})
     assert [(uri, len(found)) for uri, found in of.diagnostics.items()] == [
         (of.uri, 0),
@@ -221,7 +209,6 @@ def test_fixes_mend():
 
 
 def test_no_fix_that_makes_things_worse():
-    """What a help proposes is not offered if the compiler is no happier with it."""
     text = "signal d : real [kgg]\nrequirement R always d < 5,3 kg\n"
     everywhere = Range(Position(0, 0), Position(9, 0))
     assert "did you mean `kg`" in document(text).compiled.findings[0].help
@@ -229,7 +216,6 @@ def test_no_fix_that_makes_things_worse():
 
 
 def test_outline():
-    """The outline lists declarations and requirements with their texts, half-written ones too."""
     text = f'{SPEC}requirement R2 "later" upon\n'
     names = {symbol.name: symbol.detail for symbol in document(text).symbols()}
     assert list(names) == ["state", "s", "moving", "pick", "soon", "T", "R1", "phase", "both", "R2"]
@@ -261,7 +247,6 @@ OFFERED = {
 
 @pytest.mark.parametrize("text", OFFERED)
 def test_what_is_offered(text):
-    """Names, labels, units and words are offered where they may stand."""
     word, expected = OFFERED[text]
     begun, kinds = offered(text)
     assert begun == word

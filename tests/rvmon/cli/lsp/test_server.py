@@ -11,8 +11,6 @@ import pytest_lsp
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
-from rvmon.cli import main
-
 pytestmark = pytest.mark.process
 
 COMMAND = (sys.executable, "-m", "rvmon", "lsp", "--stdio")
@@ -83,8 +81,6 @@ async def editor(folder, encodings=None):
 
 
 def test_a_session(tmp_path):
-    """Findings follow edits in this and in imported files; questions have their answers."""
-
     async def session():
         async with editor(tmp_path) as of:
             assert await of.open("signals.rv", "event ask\n") == []
@@ -170,7 +166,6 @@ def test_layout_and_another_encoding(tmp_path):
 
 @pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGINT, None])
 def test_the_end_of_the_editor(ending):
-    """It ends at once when the editor does, or when it is stopped."""
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen(COMMAND, **pipes) as server:  # noqa: S603 - ours
         body = b'{"jsonrpc":"2.0","id":1,"method":"shutdown"}'
@@ -184,9 +179,7 @@ def test_the_end_of_the_editor(ending):
         assert server.wait(30) == (0 if ending is None else 130)
 
 
-def test_without_pygls(monkeypatch, capsys):
-    """Where the extra is missing its line of installation is named."""
+def test_without_pygls(monkeypatch, says):
     monkeypatch.setitem(sys.modules, "pygls.lsp.server", None)
     monkeypatch.delitem(sys.modules, "rvmon.cli.lsp.server", raising=False)
-    assert main(["lsp"]) == 2
-    assert "pip install 'rvmon[lsp]'" in capsys.readouterr().err
+    assert "pip install 'rvmon[lsp]'" in says(2, "lsp").err

@@ -30,7 +30,6 @@ def position(text, offset, encoding):
 
 @given(LINES, TEXTS, TEXTS, st.sampled_from(sorted(UNITS)), st.data())
 def test_edits_fall_where_the_editor_means(lines, last, new, encoding, data):
-    """An edit at positions of the protocol is the edit at the characters that they stand for."""
     raw = "".join(map("".join, lines)) + last
     places = [n for n in range(len(raw) + 1) if raw[max(n - 1, 0) : n + 1] != "\r\n"]
     start, end = sorted(data.draw(st.tuples(st.sampled_from(places), st.sampled_from(places))))
