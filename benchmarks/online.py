@@ -13,9 +13,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from benchmarks.results import parser_of, show
+from benchmarks.results import ONLINE, parser_of, show
 from benchmarks.timing import kinds
-from benchmarks.timing.race import ONLINE
 
 
 def main(argv: Sequence[str]) -> int:

@@ -8,58 +8,313 @@ Runs `online`, `recordings`, the cliffs of `growth`, and the table of where peer
 from __future__ import annotations
 
 import argparse
+import csv
+import platform
+import statistics
+import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
+import msgspec
 from benchmarks.growth import cliffs
-from benchmarks.page import TITLES, Findings, render
+from benchmarks.output import table
 from benchmarks.peers import differences
-from benchmarks.peers.environment import prepare
-from benchmarks.timing import files, race
-from benchmarks.timing.measure import QUICK, Size
+from benchmarks.peers.client import Peer
+from benchmarks.peers.environment import Environment, prepare
+from benchmarks.timing import files
+from benchmarks.timing.agreement import Agreement, compare, margins_alike, peers_in
+from benchmarks.timing.r2u2 import R2u2
+from benchmarks.timing.race import Figure, Result, contenders, measure, say
+from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size, processed
 
-OUT = Path(__file__).with_name("RESULTS.md")
+HERE = Path(__file__).parent
+OUT = HERE / "RESULTS.md"
+ONLINE = tuple(one for one in SECTIONS if one != "batch")
 RECORDINGS = ("batch", "process", "files")
-SECTIONS = (*race.ONLINE, *RECORDINGS, "cliffs", "differences")
+EVERY = (*ONLINE, *RECORDINGS, "cliffs", "differences")
+BUILT_FOR = ("many", "bound")
+"""Sections that R2U2 takes part in: it is built anew for each workload."""
+
+TITLES = {
+    "online": "Online, one step per row: Timescales families",
+    "many": "Many monitors on one stream of 20 signals",
+    "bound": "A deadline from 10 to 100,000 rows",
+    "unsteady": "Values that change and cross at every row",
+    "failing": "Values that change at every row, formulas that fail at 1 % and at 30 % of them",
+    "margins": "Robustness, of values that change and cross at every row",
+    "batch": "Columns in memory",
+    "process": "Whole processes, from the file to the verdict",
+    "files": "Whole files, on all cores",
+    "cliffs": "Hard streams beside their quiet neighbours",
+    "differences": "Where the peers read otherwise",
+}
 
 
-def run(size: Size, sections: Sequence[str], command: str, r2u2: Path | None) -> Findings:
-    began = time.monotonic()
-    environment = prepare()
-    results, agreements = race.run(size, sections, environment, r2u2)
-    if "process" in sections:
-        more, agreed = files.processes(size, environment)
-        results, agreements = [*results, *more], [*agreements, *agreed]
-    tables = []
-    if "files" in sections:
-        race.say("whole files")
-        tables.append(("Whole files, on all cores", files.table(size, environment)))
-    if "cliffs" in sections:
-        race.say("cliffs")
-        table = tuple(cliffs.table(2 * size.rows // 5, size.repeats))
-        tables.append(("Hard streams beside their quiet neighbours", table))
-    other: Sequence[str] = ()
-    if "differences" in sections:
-        race.say("where the peers read otherwise")
-        other = differences.table(environment)
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What is to be reached in one mode.
+
+    Attributes:
+        mode: what is measured.
+        section: whose results count.
+        ours: label of our form.
+        peer: label of the peer.
+        form: of the formulas.
+        times: the peer is to need so many times our CPU time, in the median of the workloads,
+        least: and at least so many times on each of them.
+        changing: only results where at most this share of the rows changes.
+    """
+
+    mode: str
+    section: str
+    ours: str
+    peer: str
+    form: str
+    times: float
+    least: float
+    changing: float
+
+
+def _read_goals() -> Iterator[Goal]:
+    with (HERE / "goals.csv").open(newline="") as file:
+        for one in csv.DictReader(file):
+            yield msgspec.convert(one, Goal, strict=False)
+
+
+GOALS = tuple(_read_goals())
+"""Of `goals.csv`."""
+
+FLATNESS = 1.2
+"""The most by which bound 100,000 may cost more than bound 10."""
+
+
+def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> Iterator[str]:
+    """Measure the chosen sections; the page, line by line, reporting what is under way."""
+    began, environment = time.monotonic(), prepare()
+    results, agreements = list[Result](), list[Agreement]()
+    peers = peers_in(environment)
+    for section in sections:
+        for result, found in _measured(section, size, environment, peers, r2u2):
+            results.append(result)
+            agreements += found
+    for peer in peers.values():
+        peer.close()
+    tables = {one: [*_told(one, size, environment)] for one in sections if one in EVERY[-3:]}
     absent = dict(environment.missing)
     if r2u2 is None:
         absent["R2U2"] = "the package index has none; `--r2u2` with a clone of its repository"
-    left = [TITLES.get(one, one) for one in SECTIONS if one not in sections]
-    if left:
+    if left := [TITLES[one] for one in EVERY if one not in sections]:
         absent["sections"] = "; ".join(left)
-    return Findings(
-        command,
-        environment.versions,
-        tuple(results),
-        tuple(agreements),
-        tuple(other),
-        tuple(tables),
-        absent,
-        round((time.monotonic() - began) / 60),
+    minutes = round((time.monotonic() - began) / 60)
+    versions = {"rvmon": f"{version('rvmon')} ({_commit()})", **environment.versions}
+    yield "CPU time per row of the trace, median of the passes with the least and the most in"
+    yield f"brackets; contenders take turns; {minutes} minutes. Times move with the machine, ratios"
+    yield "in one run hold. A ratio is only given where both sides judged alike."
+    yield from ("", f"* Machine: {machine()}")
+    yield "* Versions: " + ", ".join(f"{name} {one}" for name, one in versions.items())
+    yield from (f"* Not measured: {name}: {why}" for name, why in absent.items())
+    yield from page(results, agreements)
+    for section, lines in tables.items():
+        yield from ("", f"## {TITLES[section]}", "", *lines)
+
+
+def _told(section: str, size: Size, environment: Environment) -> Iterator[str]:
+    """The table of a section in which nobody races."""
+    say(section)
+    if section == "files":
+        with tempfile.TemporaryDirectory() as folder:
+            yield from files.table_of_files(size, environment, Path(folder))
+    elif section == "cliffs":
+        yield from cliffs.lines(2 * size.rows // 5, size.repeats)
+    else:
+        yield from differences.lines(environment)
+
+
+def _measured(
+    section: str, size: Size, environment: Environment, peers: dict[str, Peer], r2u2: Path | None
+) -> Iterator[tuple[Result, list[Agreement]]]:
+    """The results of a section, each with whether both sides judge alike."""
+    if section == "process":
+        for workload in processed(size):
+            say(f"process: {workload.name}")
+            result = files.judged_by_programs(workload, size, environment)
+            yield result, [*compare(workload, result.figures, peers, size)]
+        return
+    taking_part = [*contenders(environment, section)] if section in SECTIONS else []
+    built = R2u2(r2u2) if r2u2 is not None and section in BUILT_FOR else None
+    for workload in SECTIONS[section](size) if section in SECTIONS else ():
+        say(f"{section}: {workload.name}, {workload.form}")
+        everyone = [*taking_part, built] if built is not None else taking_part
+        result = measure(workload, everyone, size.repeats, size.pass_seconds)
+        if section == "margins":
+            found = [*margins_alike(workload, environment)]
+        else:
+            found = [*compare(workload, result.figures, peers, size)]
+        if built is not None and built.built_for == workload.name and workload.form == "future":
+            found.append(built.agreement(workload))
+        yield result, found
+    for contender in taking_part:
+        contender.close()
+
+
+def machine() -> str:
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text().splitlines() if info.exists() else []
+    names = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
+    python = f"{platform.python_implementation()} {platform.python_version()}"
+    cores = sum(line.startswith("processor") for line in lines)
+    name = names[0] if names else platform.machine()
+    return f"{name}, {cores} cores, {platform.system()} {platform.release()}, {python}"
+
+
+def _commit() -> str:
+    """The commit that is measured, as far as git knows it."""
+    words = ["git", "-C", str(HERE), "describe", "--always", "--dirty", "--abbrev=8"]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    except OSError:
+        return "unknown"
+    return done.stdout.strip() or "unknown"
+
+
+def page(results: Sequence[Result], agreements: Sequence[Agreement]) -> Iterator[str]:
+    """Goals, a table of each section, and who agrees on how much; as Markdown."""
+    compared = [entry for entry in agreements if entry.compared]
+    yield from ("", "## Goals", "", "Times are medians over the workloads that count; the ratio is")
+    yield from ("the peer's time over ours: its median, and the least, which counts as much.", "")
+    head = ("mode", "we", "", "peer", "", "workloads", "ratio (least to most)", "goal", "met")
+    yield from table(head, _goals(results, compared))
+    for section, title in TITLES.items():
+        own = [result for result in results if result.section == section]
+        if own:
+            yield from ("", f"## {title}", "", *_section(own))
+    if not compared:
+        return
+    yield from ("", "## Agreement", "")
+    yield "Verdicts compared row by row, at the end of each trace and on damaged traces, and the"
+    yield "instant of the first failure. rtamt judges the past by the stepping that is timed."
+    about = ("peer", "form", "workloads", "with our FALSE", "equal", "of", "our FALSE among them")
+    yield from ("", *table(about, _agreed(compared)))
+    for entry in compared:
+        if entry.equal < entry.compared:
+            where = f"{entry.label} disagrees on {entry.name}, {entry.form}"
+            yield from ("", f"{where}: {entry.equal} of {entry.compared}.")
+    if calm := sorted({f"{e.label} on {e.name}, {e.form}" for e in compared if not e.false}):
+        text = "; ".join(calm)
+        yield from ("", f"Ours was never FALSE, so that agreement says little: {text}.")
+    if remarks := sorted({f"{e.label}: {e.remark}" for e in agreements if e.remark}):
+        yield from ("", f"Not compared, and so without a ratio: {'; '.join(remarks)}.")
+
+
+def time_text(nanoseconds: float) -> str:
+    """Nanoseconds in a unit that people read.
+
+    >>> time_text(1.25), time_text(430.4), time_text(25_000), time_text(3.2e6)
+    ('1.2 ns', '430 ns', '25.0 µs', '3.2 ms')
+    """
+    for limit, unit, shown in ((10, 1, ".1f"), (1e4, 1, ".0f"), (1e6, 1e3, ".1f")):
+        if nanoseconds < limit:
+            return f"{nanoseconds / unit:{shown}} {'µs' if unit > 1 else 'ns'}"
+    return f"{nanoseconds / 1e6:.1f} ms"
+
+
+def ratio_text(ratio: float) -> str:
+    """A ratio with two digits that count.
+
+    >>> ratio_text(0.0712), ratio_text(4.96), ratio_text(231.4)
+    ('0.071×', '5.0×', '231×')
+    """
+    if ratio < 0.995:
+        return f"{ratio:.2g}×"
+    return f"{ratio:.1f}×" if ratio < 99.5 else f"{ratio:.0f}×"
+
+
+def _figure(result: Result, label: str) -> Figure | None:
+    return next((figure for figure in result.figures if figure.label == label), None)
+
+
+def _alike(compared: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
+    """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
+    name = peer.label.split()[0].rstrip(",")
+    about = (name, result.name, result.form)
+    checked = [one for one in compared if (one.label, one.name, one.form) == about]
+    whole = ours.rows == peer.rows == result.rows
+    if whole and result.form == "past" and ours.violated != peer.violated:
+        return False
+    return bool(checked) and all(one.equal == one.compared for one in checked)
+
+
+def _goals(results: Sequence[Result], compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
+    for goal in GOALS:
+        pairs = [
+            (ours.median, peer.median)
+            for result in results
+            if (result.section, result.form) == (goal.section, goal.form)
+            if (ours := _figure(result, goal.ours)) and (peer := _figure(result, goal.peer))
+            if result.changing <= goal.changing
+            if _alike(compared, result, ours, peer)
+        ]
+        own, other, text, mark = "–", "–", "not measured", "–"
+        if pairs:
+            ratios = [peer / ours for ours, peer in pairs]
+            median, least = statistics.median(ratios), min(ratios)
+            own, other = (time_text(statistics.median(side)) for side in zip(*pairs, strict=True))
+            text = f"{ratio_text(median)} ({ratio_text(least)} to {ratio_text(max(ratios))})"
+            mark = "yes" if median >= goal.times and least >= goal.least else "no"
+        wanted = f"≥ {ratio_text(goal.times)}, least ≥ {ratio_text(goal.least)}"
+        yield goal.mode, goal.ours, own, goal.peer, other, str(len(pairs)), text, wanted, mark
+    growths = []
+    for form in FORMS:
+        bounds = [one for one in results if (one.section, one.form) == ("bound", form)]
+        times = [f.median for one in bounds if (f := _figure(one, "rvmon step"))]
+        growths += [times[-1] / times[0]] if len(times) > 1 else []
+    if growths:  # the most that the longest deadline costs over the shortest
+        flat, wanted = max(growths), f"≤ {ratio_text(FLATNESS)}"
+        about = ("bound 10 to 100,000", "rvmon step", "–", "–", "–", "–")
+        yield *about, ratio_text(flat), wanted, "yes" if flat <= FLATNESS else "no"
+
+
+def _section(own: Sequence[Result]) -> Iterator[str]:
+    """A row for each workload; and who did not take part in how many, and why."""
+    labels = list(dict.fromkeys(figure.label for one in own for figure in one.figures))
+    rows = (
+        [one.name, one.form, f"{one.rows:,}", f"{100 * one.changing:.0f} %"]
+        + [_cell(_figure(one, label), one) for label in labels]
+        for one in own
     )
+    yield from table(["workload", "form", "rows", "changing", *labels], rows)
+    refused = Counter(
+        f"{label}: {why}"
+        for one in own
+        for label, why in one.refusals
+        if not why.startswith("only ")  # the other form of the same property is measured
+    )
+    if refused:
+        told = "; ".join(f"{text} ({n})" for text, n in refused.items())
+        yield from ("", f"Not measured: {told}.")
+
+
+def _cell(figure: Figure | None, result: Result) -> str:
+    if figure is None:
+        return "–"
+    text = f"{time_text(figure.median)} ({time_text(figure.least)}–{time_text(figure.most)})"
+    return text if figure.rows == result.rows else f"{text}, {figure.rows:,} rows"
+
+
+def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
+    for label, form in sorted({(entry.label, entry.form) for entry in compared}):
+        own = [entry for entry in compared if (entry.label, entry.form) == (label, form)]
+        names = {entry.name for entry in own}
+        failing = {entry.name for entry in own if entry.false}
+        figures = ((entry.equal, entry.compared, entry.false) for entry in own)
+        sums = [f"{sum(one):,}" for one in zip(*figures, strict=True)]
+        yield label, form, str(len(names)), str(len(failing)), *sums
 
 
 def parser_of(about: str | None, sections: Sequence[str]) -> argparse.ArgumentParser:
@@ -76,17 +331,18 @@ def show(program: str, argv: Sequence[str], options: argparse.Namespace) -> int:
     """Measure, and write the page, or print it."""
     shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
     command = " ".join([f"python -m benchmarks.{program}", *shown])
-    page = render(run(QUICK if options.quick else Size(), options.only, command, options.r2u2))
+    lines = run(QUICK if options.quick else Size(), options.only, options.r2u2)
+    text = "\n".join(["# Results", "", f"Written by `{command}`.", *lines, ""])
     if options.out is None:
-        print(page)
+        print(text)
         return 0
-    options.out.write_text(page, encoding="utf-8")
-    race.say(f"wrote {options.out}")
+    options.out.write_text(text, encoding="utf-8")
+    say(f"wrote {options.out}")
     return 0
 
 
 def main(argv: Sequence[str]) -> int:
-    parser = parser_of(__doc__, SECTIONS)
+    parser = parser_of(__doc__, EVERY)
     parser.set_defaults(out=OUT)
     return show("results", argv, parser.parse_args(argv))
 

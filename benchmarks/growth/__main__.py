@@ -48,7 +48,7 @@ def main(argv: Sequence[str]) -> int:
     if options.what == "automata":
         return automata.measure(options)
     if options.what == "cliffs":
-        for line in cliffs.table(options.rows, options.repeats):
+        for line in cliffs.lines(options.rows, options.repeats):
             print(line, flush=True)
         return 0
     print(f"{'':44}{'s':>8}{'CPU s':>8}{'MiB':>8}{'exit':>6}")

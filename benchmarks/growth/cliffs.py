@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from benchmarks.output import table
+
 from rvmon import loads
 from rvmon.trace.sample import Value
 
@@ -127,15 +129,17 @@ def cost(stream: Stream) -> float:
     return spent / len(measured)
 
 
-def table(count: int, repeats: int) -> Iterator[str]:
-    """The lines: medians of passes in turn."""
-    yield "| stream | CPU per sample | neighbour | CPU per sample | ratio | wanted | met |"
-    yield "|---|---|---|---|---|---|---|"
+def lines(count: int, repeats: int) -> Iterator[str]:
+    """The table: medians of passes in turn."""
+    head = ("stream", "CPU per sample", "neighbour", "CPU per sample", "ratio", "wanted", "met")
+    return table(head, _rows(count, repeats))
+
+
+def _rows(count: int, repeats: int) -> Iterator[Sequence[str]]:
     for name, hard, near, quiet, most in cells(count):
         both = [(cost(hard), cost(quiet)) for _ in range(repeats)]
         own, its = (statistics.median(column) for column in zip(*both, strict=True))
         ratio = statistics.median(one / other for one, other in both)
-        yield (
-            f"| {name} | {own:,.0f} ns | {near} | {its:,.0f} ns | {ratio:.1f}× | ≤ {most:g}× | "
-            f"{'yes' if ratio <= most else 'no'} |"
-        )
+        met = "yes" if ratio <= most else "no"
+        figures = f"{ratio:.1f}×", f"≤ {most:g}×", met
+        yield name, f"{own:,.0f} ns", near, f"{its:,.0f} ns", *figures

@@ -24,7 +24,7 @@ def main(argv: Sequence[str]) -> int:
     if parser.parse_args(argv).what == "faults":
         faults.tables(prepare())
     else:
-        print("\n".join(differences.table(prepare())))
+        print("\n".join(differences.lines(prepare())))
     return 0
 
 

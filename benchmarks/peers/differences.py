@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks.output import table
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import spelling
 from benchmarks.peers.environment import Environment
@@ -18,8 +19,6 @@ from benchmarks.peers.ways import Cell, Question, answers, ask_oracle
 from rvmon import loads
 
 TABLE = Path(__file__).with_name("differences.toml")
-BAR = "\\|"
-"""As a cell of a table has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,28 +73,26 @@ def answer(difference: Difference, environment: Environment) -> list[Cell] | str
     return [None if value is None else bool(value) for value in values]
 
 
-def table(environment: Environment) -> list[str]:
-    """The differences as lines of a Markdown table; peers that are missing are left out."""
-    lines = [
-        "| peer | reading | its formula | trace | it says | the law |",
-        "|---|---|---|---|---|---|",
-    ]
+def lines(environment: Environment) -> Iterator[str]:
+    """The differences as a table; peers that are missing are left out."""
+    head = ("peer", "reading", "its formula", "trace", "it says", "the law")
+    return table(head, _rows(environment))
+
+
+def _rows(environment: Environment) -> Iterator[Sequence[str]]:
     for one in DIFFERENCES:
         package, _, kind = one.peer
         if package not in environment.versions:
             continue
-        found = answer(one, environment)
-        wanted = one.theirs
+        found, wanted = answer(one, environment), one.theirs
         if found != wanted and not (
             isinstance(found, str) and isinstance(wanted, str) and found.startswith(wanted)
         ):
             raise AssertionError(f"{package} has changed: {one}: {found}")
         trace = "; ".join(f"{name} {_cells(c)}" for name, c in one.same.columns.items())
         said = found if isinstance(found, str) else _cells(found)
-        cells = [f"{package}, {kind}", one.reading, f"`{one.formula}`", trace, said]
-        cells.append(_cells(answers(one.same, ask_oracle)))
-        lines.append(f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |")
-    return lines
+        law = _cells(answers(one.same, ask_oracle))
+        yield f"{package}, {kind}", one.reading, f"`{one.formula}`", trace, said, law
 
 
 def _cells(cells: Sequence[Cell]) -> str:

@@ -12,19 +12,20 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.ways import RTAMT_STEPPED, Cell, Question, Way, answers, ask_monitor
-from benchmarks.timing.contenders import PEERS
-from benchmarks.timing.measure import Figure
-from benchmarks.timing.workload import Workload, always_text, specification
+from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Cell, Question, Way, answers, ask_monitor
+from benchmarks.timing.race import PEERS, Figure, margin_text
+from benchmarks.timing.workload import Size, Workload, always_text, specification
 from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon import loads
 from rvmon.errors import RvmonError
+from rvmon.monitor.robustness import Measured
 from rvmon.testing.law.syntax import intervals
 from rvmon.verdict import Verdict
 
@@ -35,9 +36,11 @@ RTAMT_BOUND = 300
 """The longest deadline of the future that its offline evaluation judges in reasonable time."""
 
 MOST_ROWS = 4000
-
 MOST_DAMAGED = 40
 """So many damaged traces are tried until ours is FALSE on one."""
+
+MEASURED_ROWS = 2_000
+"""Of which all figures of robustness are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,86 +84,6 @@ class _Case:
         failed = (one.decided for one in decided if one.verdict is Verdict.FAIL)
         self.failure = next(failed, None)
 
-    def shortened(self, rows: int) -> _Case:
-        """So many rows of a trace: the first or the last, where ours is FALSE more often."""
-        if rows >= self.question.ticks:
-            return self
-        ends = (_part(self.question, slice(rows)), _part(self.question, slice(-rows, None)))
-        return max(map(_Case, ends), key=lambda part: part.falses)
-
-
-class Referee:
-    """Asks the peers for verdicts; a context manager, as it keeps their processes.
-
-    Args:
-        peers: who is asked, by label; closed at the end.
-        traces: so many damaged traces are judged per workload, and more until ours is FALSE.
-        seconds: that a peer may step on one workload.
-        say: told what takes long.
-    """
-
-    def __init__(
-        self, peers: Mapping[str, Peer], traces: int, seconds: float, say: Callable[[str], None]
-    ) -> None:
-        self._peers = peers
-        self._traces = traces
-        self._seconds = seconds
-        self._say = say
-
-    def __enter__(self) -> Referee:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for peer in self._peers.values():
-            peer.close()
-
-    def check(self, workload: Workload, timed: Sequence[Figure]) -> list[Agreement]:
-        """Compare ours on the workload's first formula with each peer that can be asked.
-
-        Args:
-            workload: that was measured.
-            timed: what was found: who is asked by stepping gets as many rows as fit into the time.
-        """
-        try:
-            cases = list(_cases(workload, self._traces))
-        except RvmonError as error:
-            remark = str(error).splitlines()[0]
-            return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
-        costs = {figure.label: figure.median for figure in timed}
-        found: list[Agreement] = []
-        form, bound = workload.form, _bound(workload)
-        for label, peer in self._peers.items():
-            about, way, asked, remark = (label, workload.name, form), WAYS_OF[label], cases, ""
-            if label == "rtamt" and form == "future" and bound > RTAMT_BOUND:
-                remark = f"future: its offline evaluation takes too long above {RTAMT_BOUND} rows"
-            elif label == "rtamt" and form == "past":
-                if label not in costs:
-                    continue
-                way, asked = RTAMT_STEPPED, self._fitting(bound, cases, costs[label])
-                if not asked:
-                    seconds = f"{self._seconds:g} s"
-                    remark = f"past: no bound fails on the rows that it steps in {seconds}"
-            if remark:
-                found.append(Agreement(*about, remark=remark))
-            else:
-                found.append(_compared(about, way, peer, asked))
-        return found
-
-    def _fitting(self, bound: int, cases: Sequence[_Case], cost: float) -> list[_Case]:
-        """As many rows as fit into the time at a cost, those first where ours is FALSE most often.
-
-        A trace has to be longer than the formula's bound.
-        """
-        rows, asked = int(self._seconds * 1e9 / cost), list[_Case]()
-        for case in sorted(cases, key=lambda case: case.falses, reverse=True):
-            if min(rows, case.question.ticks) > bound:
-                asked.append(case.shortened(rows))
-                rows -= asked[-1].question.ticks
-        ticks = sum(case.question.ticks for case in asked)
-        if ticks * cost > 1e9:
-            self._say(f"  rtamt steps {ticks:,} rows, {ticks * cost / 1e9:.0f} s")
-        return asked
-
 
 def peers_in(environment: Environment) -> dict[str, Peer]:
     """Who can be asked, by the label under which it is timed."""
@@ -171,30 +94,78 @@ def peers_in(environment: Environment) -> dict[str, Peer]:
     }
 
 
-def _compared(
-    about: tuple[str, str, str], way: Way, peer: Peer, cases: Sequence[_Case]
-) -> Agreement:
+def compare(
+    workload: Workload, timed: Sequence[Figure], peers: Mapping[str, Peer], size: Size
+) -> Iterator[Agreement]:
+    """Compare ours on the workload's first formula with each peer that can be asked.
+
+    Args:
+        workload: that was measured.
+        timed: what was found: who is asked by stepping gets as many rows as fit into the time.
+        peers: who is asked, by label.
+        size: how many traces, and how long a peer may step.
+    """
+    name, form = workload.name, workload.form
+    try:
+        cases = list(_cases(workload, size.traces))
+    except RvmonError as error:
+        yield Agreement("rvmon", name, form, remark=str(error).splitlines()[0])
+        return
+    costs, bound = {figure.label: figure.median for figure in timed}, _bound(workload)
+    for label, peer in peers.items():
+        way, asked, remark = WAYS_OF[label], cases, ""
+        if label == "rtamt" and form == "future" and bound > RTAMT_BOUND:
+            remark = f"future: its offline evaluation takes too long above {RTAMT_BOUND} rows"
+        elif label == "rtamt" and form == "past":
+            if label not in costs:
+                continue
+            fitting = int(size.step_seconds * 1e9 / costs[label])
+            way, asked = RTAMT_STEPPED, [*_fitting(cases, bound, fitting)]
+            if not asked:
+                remark = (
+                    f"past: no bound fails on the rows that it steps in {size.step_seconds:g} s"
+                )
+        if remark:
+            yield Agreement(label, name, form, remark=remark)
+        else:
+            yield _compared(Agreement(label, name, form), way, peer, asked)
+
+
+def _fitting(cases: Sequence[_Case], bound: int, rows: int) -> Iterator[_Case]:
+    """Cases of so many rows in all, those first where ours is FALSE most often; the ends of them.
+
+    A trace has to be longer than the formula's bound.
+    """
+    for case in sorted(cases, key=lambda case: case.falses, reverse=True):
+        taken = min(rows, case.question.ticks)
+        if taken > bound:
+            rows -= taken
+            parts = slice(taken), slice(-taken, None)
+            yield max((_Case(_part(case.question, one)) for one in parts), key=lambda c: c.falses)
+
+
+def _compared(about: Agreement, way: Way, peer: Peer, cases: Sequence[_Case]) -> Agreement:
     count: Counter[str] = Counter()
     for case in cases:
         try:
             theirs = way.truths(peer, case.question)
         except (PeerError, UntranslatableError) as error:
-            return Agreement(*about, remark=str(error))
+            return replace(about, remark=str(error))
         for own, other in zip(case.answers, theirs, strict=True):
             if own is not None and other is not None:
                 count.update(compared=1, equal=own is other, false=not own)
-        if about[-1] == "past":
+        if about.form == "past":
             first = theirs.index(False) if False in theirs else None
             count.update(compared=1, equal=first == case.failure)
-    return Agreement(*about, count["equal"], count["compared"], count["false"])
+    told = count["equal"], count["compared"], count["false"]
+    return Agreement(about.label, about.name, about.form, *told)
 
 
 def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
     """So many damaged traces, the first further one on which ours is FALSE, and the last rows."""
     formula = workload.formulas[0]
-    columns = {
-        name: workload.columns[name] for name in workload.columns if name in names_in(formula)
-    }
+    read = names_in(formula)
+    columns = {name: one for name, one in workload.columns.items() if name in read}
     whole = Question(formula, columns)
     rows = min(max(300, 3 * _bound(workload)), MOST_ROWS, workload.rows)
     seen = False
@@ -234,3 +205,30 @@ def _damaged(question: Question, seed: str) -> Question:
             length = min(rng.randint(1, rows // 2), rows - start)
             column[start : start + length] = [column[start]] * length
     return replace(question, columns=columns)
+
+
+def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:
+    """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is required.
+
+    It counts a window that the trace cuts short as it is; ours is then no single number.
+    """
+    way = WAYS["sentil"]
+    if way.package not in environment.versions:
+        return
+    columns = {name: list(column[:MEASURED_ROWS]) for name, column in workload.columns.items()}
+    with Peer(environment.python, way.adapter) as peer:
+        theirs = way.says(peer, Question(workload.formulas[0], columns))
+    spec = loads(margin_text(workload))
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    offline = spec.robustness({"t_ns": np.arange(MEASURED_ROWS), **arrays}, time="t_ns")
+    told = [[(t, one.low, one.high) for t, one in offline.streams["R1"]]]
+    for streams in (True, False):
+        monitor = spec.robustness_monitor(streams=streams)
+        found: list[Measured] = []
+        for t, row in enumerate(zip(*columns.values(), strict=True)):
+            found += monitor.step_ns(t, dict(zip(columns, row, strict=True)))
+        told.append([(one.t, one.robustness.low, one.robustness.high) for one in found])
+    sure = {t for t, low, high in told[0] if low == high}
+    pairs = [(low, theirs[t]) for own in told for t, low, _ in own if t in sure]
+    equal, false = (sum(own == its for own, its in pairs), sum(own < 0 for own, _ in pairs))
+    yield Agreement("sentil", workload.name, workload.form, equal, len(pairs), false)

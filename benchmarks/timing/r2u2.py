@@ -18,7 +18,7 @@ from benchmarks.peers.client import PeerError
 from benchmarks.peers.dialects import C2PO, spelling, translate
 from benchmarks.peers.ways import Question, answers, ask_monitor
 from benchmarks.timing.agreement import Agreement
-from benchmarks.timing.contenders import Pass
+from benchmarks.timing.race import Pass
 from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 

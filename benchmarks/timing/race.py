@@ -1,107 +1,307 @@
-"""Workloads, given to all who take part in a section, and whether they judge alike."""
+"""Contenders pass over workloads in turn, so that what the machine does meets all alike."""
 
 from __future__ import annotations
 
+import statistics
+import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
+from typing import Any, Protocol
 
-import numpy as np
-from benchmarks.peers.client import Peer
-from benchmarks.peers.environment import Environment
-from benchmarks.peers.ways import WAYS, Question
-from benchmarks.timing import robot, suite
-from benchmarks.timing.agreement import Agreement, Referee, peers_in
-from benchmarks.timing.contenders import contenders, margin_text
-from benchmarks.timing.measure import Result, Size, measure
-from benchmarks.timing.r2u2 import R2u2
-from benchmarks.timing.workload import Workload
+from benchmarks.peers import dialects
+from benchmarks.peers.client import ADAPTERS, Peer, PeerError
+from benchmarks.peers.dialects import spelling, translate
+from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
+from benchmarks.peers.ways import WAYS, Way
+from benchmarks.timing.workload import Workload, always_text, specification
+from tests.tools.build import scaled
+from tests.tools.common_fragment import UntranslatableError
 
-from rvmon import loads
-from rvmon.monitor.robustness import Measured
+from rvmon.spec.print import format_formula
 
-ONLINE = ("online", "robot", "many", "bound", "unsteady", "failing", "margins")
-BUILT_FOR = ("many", "bound")
-"""Sections that R2U2 takes part in: it is built anew for each workload."""
+FEWEST_ROWS = 50
+"""Of a pass, however slow the contender; as many tell how slow it is."""
 
-COMPARED_ROWS = 2_000
-"""Of which all figures of robustness are compared."""
+SLOW = 10
+"""Who needs so many times the time of a pass passes twice only."""
 
-
-def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
-    """What is measured in the chosen sections."""
-    made = {
-        "online": lambda: suite.families(size.rows, size.bounds),
-        "robot": lambda: robot.workloads(size.seconds),
-        "many": lambda: suite.many(size.rows // 2, size.counts),
-        "bound": lambda: suite.bounds(size.longest),
-        "unsteady": lambda: suite.unsteady("unsteady", size.rows),
-        "failing": lambda: suite.failing(size.rows),
-        "margins": lambda: suite.unsteady("margins", size.rows),
-        "batch": lambda: suite.batches(size.columns),
-    }
-    for section in sections:
-        if section in made:
-            yield from made[section]()
+LONGER = {"batch": 10, "many": 5}
+"""So many times as long is a pass, of what is judged as a whole or takes long to begin."""
 
 
-def run(
-    size: Size, sections: Sequence[str], environment: Environment, r2u2: Path | None
-) -> tuple[list[Result], list[Agreement]]:
-    """Measure the chosen sections, reporting what is under way."""
-    results: list[Result] = []
-    agreements: list[Agreement] = []
-    with Referee(peers_in(environment), size.traces, size.step_seconds, say) as referee:
-        for section, group in groupby(workloads(size, sections), lambda one: one.section):
-            taking_part = list(contenders(environment, section))
-            if r2u2 is not None and section in BUILT_FOR:
-                taking_part.append(R2u2(r2u2))
-            for workload in group:
-                say(f"{section}: {workload.name}, {workload.form}")
-                seconds = size.seconds_of(section)
-                results.append(measure(workload, taking_part, size.repeats, seconds))
-                if section == "margins":
-                    agreements += margins_alike(workload, environment)
-                    continue
-                agreements += referee.check(workload, results[-1].figures)
-                agreements += [
-                    one.agreement(workload)
-                    for one in taking_part
-                    if isinstance(one, R2u2) and one.built_for == workload.name
-                    if workload.form == "future"
-                ]
-            for contender in taking_part:
-                contender.close()
-    return results, agreements
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One pass over a workload: CPU ns, and per formula the first row at which it was violated."""
+
+    cpu_ns: int
+    violated: tuple[int | None, ...]
 
 
-def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:
-    """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is required.
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """What one contender needed for one workload.
 
-    It counts a window that the trace cuts short as it is; ours is then no single number.
+    Attributes:
+        label: the contender.
+        rows: of each pass.
+        median: CPU ns per row.
+        least: of the passes.
+        most: of the passes.
+        violated: the first violated row of each formula.
     """
-    way = WAYS["sentil"]
-    if way.package not in environment.versions:
-        return
-    columns = {name: list(column[:COMPARED_ROWS]) for name, column in workload.columns.items()}
-    with Peer(environment.python, way.adapter) as peer:
-        theirs = way.says(peer, Question(workload.formulas[0], columns))
-    spec = loads(margin_text(workload))
-    arrays = {name: np.array(column) for name, column in columns.items()}
-    offline = spec.robustness({"t_ns": np.arange(COMPARED_ROWS), **arrays}, time="t_ns")
-    told = [[(t, one.low, one.high) for t, one in offline.streams["R1"]]]
-    for streams in (True, False):
-        monitor = spec.robustness_monitor(streams=streams)
-        found: list[Measured] = []
-        for t, row in enumerate(zip(*columns.values(), strict=True)):
-            found += monitor.step_ns(t, dict(zip(columns, row, strict=True)))
-        told.append([(one.t, one.robustness.low, one.robustness.high) for one in found])
-    sure = {t for t, low, high in told[0] if low == high}
-    pairs = [(low, theirs[t]) for own in told for t, low, _ in own if t in sure]
-    equal, false = (sum(own == its for own, its in pairs), sum(own < 0 for own, _ in pairs))
-    yield Agreement("sentil", workload.name, workload.form, equal, len(pairs), false)
+
+    label: str
+    rows: int
+    median: float
+    least: float
+    most: float
+    violated: tuple[int | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """All figures of one workload.
+
+    Attributes:
+        section: the table.
+        name: the line.
+        form: `past` or `future`.
+        rows: of the whole trace.
+        changing: the share of rows at which something changes.
+        figures: of the contenders that took part.
+        refusals: of the others, the reason by label.
+    """
+
+    section: str
+    name: str
+    form: str
+    rows: int
+    changing: float
+    figures: tuple[Figure, ...]
+    refusals: tuple[tuple[str, str], ...] = ()
+
+
+class Contender(Protocol):
+    """Someone who can be given a workload and passes over it again and again."""
+
+    label: str
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Take the first so many rows; raise `UntranslatableError` if that cannot be done."""
+
+    def run(self) -> Pass:
+        """One pass."""
+
+    def close(self) -> None:
+        """Free what was taken."""
+
+
+@dataclass(slots=True)
+class Worker:
+    """A contender in a process of its own, which holds the rows and measures itself."""
+
+    label: str
+    peer: Peer
+    request: Callable[[Workload, int], dict[str, Any]]
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        self.peer.ask("load", **self.request(workload, rows))
+
+    def run(self) -> Pass:
+        answer = self.peer.ask("run")
+        return Pass(answer["cpu_ns"], tuple(answer["violated"]))
+
+    def close(self) -> None:
+        self.peer.close()
+
+
+@dataclass(slots=True)
+class NativeReelay:
+    """reelay's C++ monitor over bytes in memory."""
+
+    binary: Path
+    label: str = "reelay C++"
+    command: list[str] = field(default_factory=list)
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Write the rows to a file, from which each pass reads them first."""
+        if not set(workload.columns) <= set(LETTERS):
+            raise UntranslatableError("its harness knows the columns p, q, r, s")
+        path = HOME / "rows.bin"
+        path.write_bytes(packed({name: one[:rows] for name, one in workload.columns.items()}))
+        patterns = [
+            f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
+            for formula in workload.formulas
+        ]
+        self.command = [str(self.binary), "memory", str(path), *patterns, "1"]
+
+    def run(self) -> Pass:
+        """One pass in a process of its own; it measures the loop alone."""
+        done = subprocess.run(self.command, capture_output=True, text=True, check=True)
+        spent, *violated = (int(word) for word in done.stdout.split())
+        return Pass(spent, tuple(None if row < 0 else row for row in violated))
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A peer that takes part.
+
+    Attributes:
+        label: as it stands in the tables.
+        way: how it is asked.
+        form: the only form of formulas that is measured; empty: both.
+        required: how a formula is demanded at every row.
+        most: with more formulas, passing over a few rows, or making the monitors, takes too long.
+    """
+
+    label: str
+    way: Way
+    form: str = ""
+    required: str = "{}"
+    most: int = 1_000
+
+    def request(self, workload: Workload, rows: int) -> dict[str, Any]:
+        """What its process is asked to load."""
+        if self.form not in ("", workload.form):
+            raise UntranslatableError(f"only {self.form} forms are measured")
+        formulas = [translate(formula, self.way.dialect) for formula in workload.formulas]
+        if len(formulas) > self.most:
+            text = f"too slow to be measured with more than {self.most} formulas"
+            raise UntranslatableError(text)
+        columns = {spelling(name): list(one[:rows]) for name, one in workload.columns.items()}
+        required = [self.required.format(one) for one in formulas]
+        return {"formulas": required, "kind": self.way.kind, "columns": columns, "rows": rows}
+
+
+PEERS = (
+    Entry("reelay", WAYS["reelay-discrete"], "past", "historically({})", 100),
+    Entry("rtamt", WAYS["rtamt-discrete"], "past", "historically({})", 10),
+    Entry("mstlo", WAYS["mstlo-delayed"], "future", most=100),
+    Entry("sentil", WAYS["sentil"], required="always[0, inf]({})"),
+)
+MEASURED = (
+    Entry("sentil", WAYS["sentil"]),
+    Entry("sentil offline", replace(WAYS["sentil"], kind="discrete offline")),
+)
+"""Of robustness."""
+
+OURS = {
+    "batch": {"rvmon evaluate": "evaluate"},
+    "margins": {
+        "rvmon, each sample": "stream",
+        "rvmon, one attempt": "attempt",
+        "rvmon offline": "offline",
+    },
+}
+"""By section; robustness of each sample, of what is required from the first on, of columns."""
+
+STEPPED = {"rvmon step": "step", "rvmon step, changes": "changes"}
+
+
+def contenders(environment: Environment, section: str) -> Iterator[Contender]:
+    """All that take part in a section, ours first: with columns in memory, or row by row."""
+    own = ADAPTERS.with_name("ours.py")
+    for label, kind in OURS.get(section, STEPPED).items():
+        yield Worker(label, Peer(Path(sys.executable), "Rvmon", own), partial(_ours, kind))
+    for entry in MEASURED if section == "margins" else PEERS:
+        if entry.way.package in environment.versions:
+            yield Worker(entry.label, Peer(environment.python, entry.way.adapter), entry.request)
+    if environment.reelay is not None and section == "batch":
+        yield NativeReelay(environment.reelay)
+
+
+def _ours(kind: str, workload: Workload, rows: int) -> dict[str, Any]:
+    columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
+    if workload.section == "margins":
+        return {"spec": margin_text(workload), "kind": kind, "columns": columns, "rows": rows}
+    texts = [always_text(scaled(formula, workload.period)) for formula in workload.formulas]
+    spec, period = specification(texts, columns), workload.period
+    return {"spec": spec, "kind": kind, "columns": columns, "rows": rows, "period": period}
+
+
+def margin_text(workload: Workload) -> str:
+    """A formula as it is required from the first sample on, a tick between two samples."""
+    required = f"upon start\n  then {format_formula(workload.formulas[0])}"
+    return specification([required], workload.columns).replace("time held", "time sampled")
+
+
+def measure(
+    workload: Workload, contenders: Sequence[Contender], repeats: int, seconds: float
+) -> Result:
+    """Give the workload to all contenders and let them pass over it in turn; they stay open.
+
+    Args:
+        workload: given to all.
+        contenders: who passes.
+        repeats: passes of each.
+        seconds: what one may take; slow ones get fewer rows.
+    """
+    seconds *= LONGER.get(workload.section, 1)
+    refusals: dict[str, str] = {}
+    rows: dict[str, int] = {}
+    for one in contenders:
+        try:
+            rows[one.label] = _prepare(one, workload, seconds)
+        except (UntranslatableError, PeerError) as error:
+            refusals[one.label] = str(error).splitlines()[0]
+    ready = [one for one in contenders if one.label in rows]
+    passes: dict[str, list[Pass]] = {one.label: [] for one in ready}
+    for number in range(repeats):
+        turn = number % max(len(ready), 1)
+        for one in [*ready[turn:], *ready[:turn]]:
+            own = passes[one.label]
+            if one.label in refusals or (number > 1 and own[0].cpu_ns > SLOW * seconds * 1e9):
+                continue
+            try:
+                own.append(one.run())
+            except PeerError as error:
+                refusals[one.label] = str(error).splitlines()[0]
+    figures = [
+        figure_of(label, rows[label], [one.cpu_ns for one in own], own[-1].violated)
+        for label, own in passes.items()
+        if label not in refusals
+    ]
+    return result_of(workload, figures, refusals.items())
+
+
+def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
+    """Find by passes that grow how many rows fit into the time, and load them."""
+    budget = seconds * 1e9
+    rows = min(FEWEST_ROWS, workload.rows)
+    while True:
+        contender.prepare(workload, rows)
+        spent = max(contender.run().cpu_ns, 1)
+        fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
+        if fitting <= rows or spent >= budget / 2:  # what each pass costs once weighs little
+            break
+        rows = min(10 * rows, fitting)
+    if fitting != rows:
+        contender.prepare(workload, fitting)
+    return fitting
+
+
+def figure_of(
+    label: str, rows: int, cpu_ns: Sequence[float], violated: tuple[int | None, ...]
+) -> Figure:
+    """Of the CPU nanoseconds of some passes."""
+    least, middle, most = min(cpu_ns), statistics.median(cpu_ns), max(cpu_ns)
+    return Figure(label, rows, middle / rows, least / rows, most / rows, violated)
+
+
+def result_of(
+    workload: Workload, figures: Sequence[Figure], refusals: Iterable[tuple[str, str]]
+) -> Result:
+    """The figures with what tells the workload, but not its rows."""
+    one = workload
+    about = one.section, one.name, one.form, one.rows, one.changing
+    return Result(*about, tuple(figures), tuple(refusals))
 
 
 _BEGAN = time.monotonic()

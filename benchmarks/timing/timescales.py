@@ -12,7 +12,8 @@ trace with a `p` fulfils; here it is `since[b:]`, as the future form demands.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 BOUNDS = (10, 100, 1000)
@@ -50,14 +51,13 @@ class Family:
     def text(self, form: str, high: int) -> str:
         """The form that is named, for an upper bound."""
         found: str = getattr(self, form)
-        bounds = {"LOW": f"{low_bound(high)} ns", "HIGH": f"{high} ns"}
+        bounds = {"LOW": f"{_low_bound(high)} ns", "HIGH": f"{high} ns"}
         for word, meaning in {**_WORDS, **bounds}.items():
             found = found.replace(word, meaning)
         return found
 
 
-def low_bound(high: int) -> int:
-    """The lower bound that goes with an upper one."""
+def _low_bound(high: int) -> int:
     return 3 * high // 10
 
 
@@ -82,42 +82,31 @@ def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list
                     column.extend([name in true] * count)
 
     while len(columns[family.names[0]]) < rows - 2 * high:
-        add(family.episode(rng, low_bound(high), high))
+        add(family.episode(rng, _low_bound(high), high))
     add(family.violation(high))
     return columns
 
 
-def _in_scope(true: str) -> Callable[[random.Random, int, int], Sequence[Part]]:
-    """A scope between q and r within which a name is always true, or none is."""
-    noise = "?p" if not true else ""
-    return lambda rng, low, high: [
-        (f"q{true}", 1),
-        (true, rng.randint(low, high - 1)),
-        (f"{true}r", 1),
-        (noise, 1),
-    ]
-
-
-def _recurring(rng: random.Random, high: int) -> Part:
+def _quiet(rng: random.Random, high: int) -> Part:
     return "", rng.randint(1, high) - 1
 
 
-def _recurring_between(rng: random.Random, _: int, high: int) -> Sequence[Part]:
-    again = [part for _ in range(rng.randint(1, 7)) for part in (_recurring(rng, high), ("p", 1))]
-    return [("q", 1), *again, _recurring(rng, high), ("r", 1), _recurring(rng, high)]
+def _recurring(rng: random.Random, _: int, high: int) -> Sequence[Part]:
+    again = [part for _ in range(rng.randint(1, 7)) for part in (_quiet(rng, high), ("p", 1))]
+    return [("q", 1), *again, _quiet(rng, high), ("r", 1), _quiet(rng, high)]
 
 
-def _responding(rng: random.Random, low: int, high: int) -> list[Part]:
+def _answered(rng: random.Random, low: int, high: int) -> list[Part]:
     return [("p", 1), ("", rng.randint(low + 1, high) - 1), ("s", 1)]
 
 
-def _responding_between(rng: random.Random, low: int, high: int) -> Sequence[Part]:
+def _responding(rng: random.Random, low: int, high: int) -> Sequence[Part]:
     several = range(rng.randint(1, 7))
-    again = [part for _ in several for part in (*_responding(rng, low, high), ("", 1))]
+    again = [part for _ in several for part in (*_answered(rng, low, high), ("", 1))]
     return [("q", 1), ("", 1), *again, ("r", 1)]
 
 
-FAMILIES = (
+_ABSENT = (
     Family(
         "AbsentAQ",
         "qp",
@@ -139,63 +128,67 @@ FAMILIES = (
         "qpr",
         "BETWEEN -> (not p) since[LOW, HIGH] q",
         "OPENS -> (not p) until[LOW, HIGH] r",
-        _in_scope(""),
+        lambda rng, low, high: [("q", 1), ("", rng.randint(low, high - 1)), ("r", 1), ("?p", 1)],
         lambda high: [("q", 1), ("", high - 2), ("p", 1), ("r", 1)],
     ),
-    Family(
-        "AlwaysAQ",
-        "qp",
-        "(once[0 ns, HIGH] q) -> p since q",
-        "q -> always[0 ns, HIGH] p",
-        lambda _rng, _, high: [("qp", 1), ("p", high), ("?p", high)],
-        lambda high: [("qp", 1), ("p", high - 1), ("", 1)],
-    ),
-    Family(
-        "AlwaysBR",
-        "pr",
-        "r -> historically[0 ns, HIGH] p",
-        "(eventually[0 ns, HIGH] r) -> p until r",
-        lambda _rng, _, high: [("?p", high), ("p", high), ("pr", 1)],
-        lambda high: [("", 1), ("p", high - 1), ("pr", 1)],
-    ),
-    Family(
-        "AlwaysBQR",
-        "qpr",
-        "BETWEEN -> p since[LOW, HIGH] q",
-        "OPENS -> p until[LOW, HIGH] r",
-        _in_scope("p"),
-        lambda high: [("qp", 1), ("p", high + 1), ("pr", 1)],
-    ),
-    Family(
+)
+
+
+def _always(family: Family) -> Family:
+    """Universality: absence of the contrary, on traces with the contrary."""
+
+    def other(parts: Sequence[Part]) -> Sequence[Part]:
+        return [
+            (true if "?" in true else true.replace("p", "") if "p" in true else f"{true}p", count)
+            for true, count in parts
+        ]
+
+    past, future = (re.sub(r"\(not p\)|not p", "p", one) for one in (family.past, family.future))
+    return Family(
+        family.name.replace("Absent", "Always"),
+        family.names,
+        past,
+        future,
+        lambda rng, low, high: other(family.episode(rng, low, high)),
+        lambda high: other(family.violation(high)),
+    )
+
+
+def _families() -> Iterator[Family]:
+    yield from _ABSENT
+    yield from map(_always, _ABSENT)
+    yield Family(
         "RecurGLB",
         "p",
         "once[0 ns, HIGH] p",
         "eventually[0 ns, HIGH] p",
-        lambda rng, _, high: [("p", 1), _recurring(rng, high)],
+        lambda rng, _, high: [("p", 1), _quiet(rng, high)],
         lambda high: [("p", 1), ("", high + 1)],
-    ),
-    Family(
+    )
+    yield Family(
         "RecurBQR",
         "qpr",
         "BETWEEN -> (once[0 ns, HIGH] (p or q)) since q",
         "OPENS -> (once[0 ns, HIGH] (p or q)) until r",
-        _recurring_between,
+        _recurring,
         lambda high: [("q", 1), ("", high + 1), ("r", 1)],
-    ),
-    Family(
+    )
+    yield Family(
         "RespondGLB",
         "ps",
         "ANSWERED",
         "p -> eventually[LOW, HIGH] s",
-        _responding,
+        _answered,
         lambda high: [("p", 1), ("", high)],
-    ),
-    Family(
+    )
+    yield Family(
         "RespondBQR",
         "qpsr",
         "BETWEEN -> ANSWERED since q",
         "OPENS -> (p -> eventually[LOW, HIGH] s)",
-        _responding_between,
+        _responding,
         lambda high: [("q", 1), ("p", 1), ("", high + 1), ("r", 1)],
-    ),
-)
+    )
+
+
+FAMILIES = tuple(_families())

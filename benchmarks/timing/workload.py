@@ -1,9 +1,13 @@
-"""What is measured: formulas over a trace of rows; and how a user would write them."""
+"""What is measured: formulas over a trace of rows, by section; and how a user would write them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import random
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+from benchmarks.timing import timescales
+from tests.tools.common_fragment import names_in
 
 from rvmon import loads
 from rvmon.spec.checked.formula import Formula
@@ -11,6 +15,8 @@ from rvmon.spec.checked.rewrite import without_spans
 from rvmon.spec.print import format_formula
 
 Column = Sequence[bool | float]
+FORMS = ("past", "future")
+SECOND = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +51,42 @@ class Workload:
             any(column[row] != column[row - 1] for column in columns) for row in range(1, self.rows)
         )
         return changed / max(self.rows - 1, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How much is measured.
+
+    Attributes:
+        rows: of the traces that are judged row by row.
+        columns: rows of what is judged in memory or by whole processes; and a tenth of them.
+        longest: rows of the traces on which deadlines grow.
+        bounds: of the Timescales families.
+        counts: of monitors on one stream.
+        traces: damaged ones per agreement.
+        step_seconds: that a peer may step on one workload to be compared.
+        repeats: passes of each contender.
+        processes: of each program, beside a first one that does not count.
+        file_rows: of one large file.
+        files: of many.
+        pass_seconds: what one pass may take; slow contenders get fewer rows.
+    """
+
+    rows: int = 50_000
+    columns: int = 1_000_000
+    longest: int = 300_000
+    bounds: tuple[int, ...] = timescales.BOUNDS
+    counts: tuple[int, ...] = (10, 100, 1000)
+    traces: int = 2
+    step_seconds: float = 30
+    repeats: int = 5
+    processes: int = 3
+    file_rows: int = 10_000_000
+    files: int = 1_000
+    pass_seconds: float = 0.1
+
+
+QUICK = Size(5_000, 100_000, 20_000, (10, 1000), (10, 100), 1, 10, 3, 2, 1_000_000, 40, 0.05)
 
 
 def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:
@@ -85,3 +127,140 @@ def always_text(formula: Formula) -> str:
     'always (p -> within 3 ns q)'
     """
     return f"always ({format_formula(formula)})"
+
+
+def _online(size: Size) -> Iterator[Workload]:
+    """The Timescales families in both forms."""
+    for family in timescales.FAMILIES:
+        for high in size.bounds:
+            columns = timescales.trace(family, high, size.rows)
+            for form in FORMS:
+                asked = formula(family.text(form, high))
+                yield Workload("online", f"{family.name} {high}", form, (asked,), columns)
+
+
+def _many(size: Size) -> Iterator[Workload]:
+    """So many responses on one stream of 20 signals, of which one changes at each row."""
+    names = [f"v{number}" for number in range(20)]
+    rng = random.Random("many")
+    columns: dict[str, list[bool | float]] = {name: [] for name in names}
+    state = dict.fromkeys(names, False)
+    for _ in range(size.rows // 2):
+        changed = rng.choice(names)
+        state[changed] = not state[changed]
+        for name in names:
+            columns[name].append(state[name])
+    for count in size.counts:
+        for form in FORMS:
+            rng = random.Random("responses")
+            drawn = [(rng.sample(names, 2), rng.randint(40, 400)) for _ in range(count)]
+            formulas = tuple(_response(form, a, b, high, strict=True) for (a, b), high in drawn)
+            yield Workload("many", f"{count} monitors", form, formulas, columns)
+
+
+def _response(form: str, asked: str, answer: str, high: int, *, strict: bool = False) -> Formula:
+    """An answer within a deadline; `strict`: not asked where it is answered at once."""
+    open_ = f"({asked} and not {answer})" if strict else asked
+    past = f"not ((not {answer}) since[{high} ns, inf) {open_})"
+    future = f"{asked} -> eventually[0 ns, {high} ns] {answer}"
+    return formula(past if form == "past" else future, f"{asked}, {answer}")
+
+
+def _bound(size: Size) -> Iterator[Workload]:
+    """One response with a growing deadline, on one trace."""
+    rng, rows = random.Random("bounds"), size.longest
+    columns: dict[str, list[bool | float]] = {"p": [False] * rows, "s": [False] * rows}
+    row = 0
+    while row < rows - 20:
+        for name in "ps":
+            columns[name][row] = True
+            row += rng.randint(1, 9)
+    for high in (10, 100, 1_000, 10_000, 100_000):
+        for form in FORMS:
+            asked = (_response(form, "p", "s", high),)
+            yield Workload("bound", f"bound {high}", form, asked, columns)
+
+
+_UNSTEADY = {
+    "respond": "x > 5 -> eventually[0 ns, 100 ns] x < 5",
+    "soon": "eventually[0 ns, 10 ns] x > 5",
+    "recur": "always[0 ns, 100 ns] eventually[0 ns, 10 ns] x > 5",
+    "settle": "x > 8 -> eventually[0 ns, 50 ns] always[0 ns, 30 ns] x < 6",
+    "stop": "s > 5 -> eventually[0 ns, 30 ns] always[0 ns, 200 ns] v <= 0.01",
+}
+"""Forms that people write."""
+
+
+def _unsteady(size: Size, section: str = "unsteady") -> Iterator[Workload]:
+    """Over values that are drawn anew and cross at every row."""
+    rng, rows = random.Random("unsteady"), size.rows
+    columns = {
+        "x": [rng.uniform(0, 10) for _ in range(rows)],
+        "s": [rng.uniform(0, 10 if row % 400 == 0 else 5) for row in range(rows)],
+        "v": [rng.uniform(0, 0.01 if row // 230 % 2 else 0.02) for row in range(rows)],
+    }
+    for name, text in _UNSTEADY.items():
+        yield _of_numbers(section, name, "future", text, columns)
+
+
+def _of_numbers(
+    section: str, name: str, form: str, text: str, columns: Mapping[str, Column]
+) -> Workload:
+    """Over those of the columns that the formula reads, a second apart."""
+    asked = formula(text, "p", ", ".join(columns))
+    used = {name: columns[name] for name in sorted(names_in(asked))}
+    return Workload(section, name, form, (asked,), used, SECOND)
+
+
+_FAILING = {
+    "limit": ("past", "x < {}", 9.9, 7.0),
+    "respond": ("future", "x > 5 -> eventually[0 ns, 3 ns] y < {}", 6.3, 1.2),
+    "soon": ("future", "eventually[0 ns, 3 ns] x < {}", 6.9, 2.6),
+    "recur": ("future", "always[0 ns, 10 ns] eventually[0 ns, 3 ns] x < {}", 8.2, 5.2),
+    "settle": ("future", "x > 5 -> eventually[0 ns, 10 ns] always[0 ns, 3 ns] y < {}", 8.6, 5.1),
+    "past": ("past", "x > 5 -> once[0 ns, 3 ns] y < {}", 6.4, 1.2),
+}
+"""With numbers by which the formula is false at 1 % and at 30 % of the rows."""
+
+
+def _failing(size: Size) -> Iterator[Workload]:
+    """Forms that are false at 1 % and at 30 % of the rows; all values are new at every row."""
+    rng = random.Random("failing")
+    columns = {name: [rng.uniform(0, 10) for _ in range(size.rows)] for name in "xy"}
+    for place, share in enumerate(("1 %", "30 %")):
+        for name, (form, text, *limits) in _FAILING.items():
+            asked = text.format(limits[place])
+            yield _of_numbers("failing", f"{name}, {share}", form, asked, columns)
+
+
+_BATCHED = (
+    *(("AbsentAQ", 10), ("RespondGLB", 10), ("AbsentBQR", 100), ("RespondGLB", 1000)),
+    *(("AbsentBQR", 1000), ("RecurGLB", 1000), ("RespondBQR", 1000)),
+)
+
+
+def _families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Iterator[Workload]:
+    """Families of past forms, with many and with few rows that change."""
+    for name, high in named:
+        family = next(family for family in timescales.FAMILIES if family.name == name)
+        asked = (formula(family.text("past", high)),)
+        for count in rows:
+            columns = timescales.trace(family, high, count)
+            yield Workload(section, f"{name} {high}, {count:,} rows", "past", asked, columns)
+
+
+def processed(size: Size) -> Iterator[Workload]:
+    """For whole processes."""
+    return _families("process", (("AbsentAQ", 10), ("RespondGLB", 1000)), size.columns)
+
+
+SECTIONS: Mapping[str, Callable[[Size], Iterator[Workload]]] = {
+    "online": _online,
+    "many": _many,
+    "bound": _bound,
+    "unsteady": _unsteady,
+    "failing": _failing,
+    "margins": lambda size: _unsteady(size, "margins"),
+    "batch": lambda size: _families("batch", _BATCHED, size.columns, size.columns // 10),
+}
+"""What all contenders pass over, by section."""

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 from benchmarks.peers.client import Peer
-from benchmarks.timing.agreement import Agreement, Referee
-from benchmarks.timing.measure import Figure
-from benchmarks.timing.workload import Workload
+from benchmarks.timing.agreement import Agreement, compare
+from benchmarks.timing.race import Figure
+from benchmarks.timing.workload import Size, Workload
 from tests.tools.build import once, p
 
 BOUND = 500
@@ -39,14 +39,12 @@ class Played(Peer):
         return {"values": values}
 
 
-def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
+def check(peer: Played, ns_per_row: float) -> Agreement:
     """What is found on `once` within a bound above what is asked offline."""
     workload = Workload("online", "Recur", "past", (once(p, 0, BOUND),), {"p": COLUMN})
     timed = Figure("rtamt", ROWS, ns_per_row, ns_per_row, ns_per_row, (None,))
-    said: list[str] = []
-    with Referee({"rtamt": peer}, 2, SECONDS, said.append) as referee:
-        (found,) = referee.check(workload, [timed])
-    return found, said
+    (found,) = compare(workload, [timed], {"rtamt": peer}, Size(traces=2, step_seconds=SECONDS))
+    return found
 
 
 @pytest.mark.slow
@@ -54,12 +52,11 @@ def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
 def test_past_is_stepped_and_disagreement_is_seen(blind: bool) -> None:
     """A long bound of the past is compared by stepping, and ours is FALSE among the rows."""
     peer = Played(blind=blind)
-    found, said = check(peer, 1000.0)
+    found = check(peer, 1000.0)
     assert set(peer.kinds) == {"discrete online"}
     assert found.compared >= 3 * ROWS
     assert (found.equal == found.compared) is not blind
     assert 0 < found.false < found.compared
-    assert said == []
 
 
 @pytest.mark.slow
@@ -67,17 +64,16 @@ def test_past_is_stepped_and_disagreement_is_seen(blind: bool) -> None:
 def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
     """A peer that is slow is asked for so many rows as it steps in the time, failures first."""
     peer = Played()
-    found, said = check(peer, SECONDS * 1e9 / rows)
+    found = check(peer, SECONDS * 1e9 / rows)
     assert BOUND < peer.rows <= rows
     assert found.false > 0
     assert found.equal == found.compared
-    assert said == [f"  rtamt steps {peer.rows:,} rows, {SECONDS * peer.rows / rows:.0f} s"]
 
 
 @pytest.mark.slow
 def test_too_slow_to_see_a_failure() -> None:
     """Where the rows are fewer than the bound nothing is compared, and the reason is told."""
     peer = Played()
-    found, _ = check(peer, SECONDS * 1e9 / BOUND)
+    found = check(peer, SECONDS * 1e9 / BOUND)
     assert (peer.rows, found.compared) == (0, 0)
     assert found.remark.startswith("past: no bound fails")

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.peers.client import PeerError
-from benchmarks.timing.contenders import Pass
-from benchmarks.timing.measure import measure
+from benchmarks.timing.race import Pass, measure
 from benchmarks.timing.workload import Workload
 from tests.tools.build import p
 from tests.tools.common_fragment import UntranslatableError

@@ -32,6 +32,6 @@ def test_each_helps(
 
 
 def test_hard_streams_have_neighbours() -> None:
-    lines = list(cliffs.table(60, 1))
+    lines = list(cliffs.lines(60, 1))
     assert len(lines) == 2 + 15
     assert all(line.count("|") == 8 for line in lines[2:])
