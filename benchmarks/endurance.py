@@ -19,6 +19,7 @@ import argparse
 import math
 import random
 import re
+import resource
 import shutil
 import sys
 import tempfile
@@ -31,7 +32,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from benchmarks.peers.adapters import resident_kib
 from tests.tools import killed_watch
 from tests.tools.forked import Forked
 
@@ -98,6 +98,12 @@ def _sample(row: int, period: int) -> dict[str, Any]:
     return found
 
 
+def _resident_kib() -> int:
+    """The memory of this process that is in use, now; Linux says so."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() // 1024
+
+
 def live(seconds: int, first: int, only: Sequence[str]) -> tuple[dict[str, Any], str]:
     """Feed a monitor that keeps 100 records of each verdict.
 
@@ -108,7 +114,7 @@ def live(seconds: int, first: int, only: Sequence[str]) -> tuple[dict[str, Any],
     monitor = rvmon.loads(SPEC).monitor(keep=100, only=only)
     rows = [_sample(row % 100, row // 100) for row in range(ROWS)]
     step, clock, t, said = monitor.step_ns, time.perf_counter_ns, first, ""
-    resident, bins, longest = [resident_kib()], np.zeros(BINS, np.int64), 0
+    resident, bins, longest = [_resident_kib()], np.zeros(BINS, np.int64), 0
     try:
         for second in range(seconds + 1):
             spent = []
@@ -120,7 +126,7 @@ def live(seconds: int, first: int, only: Sequence[str]) -> tuple[dict[str, Any],
             longest = max(longest, *spent)
             bins += np.bincount([min(one // BIN_NS, BINS - 1) for one in spent], minlength=BINS)
             if (second + 1) * 10 % seconds < 10 and second < seconds:
-                resident.append(resident_kib())
+                resident.append(_resident_kib())
     except TraceError as error:
         said = str(error)
     taken = (t - first) // STEP_NS

@@ -1,16 +1,14 @@
 """Table 1 over many seeds, and whether runs conform to the model.
 
     python -m benchmarks.table1 bands --seeds 20 [--write]
-    python -m benchmarks.table1 policies --seeds 10
     python -m benchmarks.table1 conformance --tests 20
 
 `bands` plays the legacy robot's campaign (100 tests per random strategy, four of the model) for
 each seed: of each cell that is not nought everywhere the mean and the band that holds 95 % of the
 campaigns (empirical quantiles), with and without the fitted loss of signals at start-up, and
 whether the paper's figure lies inside; `--write` keeps the least and the greatest count for the
-page of the demo. `policies` has the model-based column for each way to choose a witness: the paper
-has R1 3/4, R2 1/4 and 4/4 of all others. `conformance` holds runs against the network: every run of
-the correct robot should conform, and a mutant is rejected if some run of it does not.
+page of the demo. `conformance` holds runs against the network: every run of the correct robot
+should conform, and a mutant is rejected if some run of it does not.
 """
 
 from __future__ import annotations
@@ -24,7 +22,6 @@ from statistics import fmean, quantiles
 
 from handover.campaign.campaign import handover_campaign
 from handover.campaign.table1 import FITTED, SPREAD_FILE, Spread, paper_table, write_spread
-from handover.checker import spec_path
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest, directed
@@ -34,14 +31,10 @@ from handover.model import handover_network
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv.plan import Played, plan
 from rvmon.cdv.play import execute
-from rvmon.cdv.system import Checker
-from rvmon.cdv.template import PolicyName
-from rvmon.session import load
 from rvmon.timed.model.network import Network
 from rvmon.verdict import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained", "model-based")
-POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")
 
 Cell = tuple[str, str, Verdict]
 """Strategy, requirement, verdict."""
@@ -125,27 +118,6 @@ def _band(figures: Sequence[int]) -> tuple[float, float]:
     return cuts[0], cuts[-1]
 
 
-def policies(options: argparse.Namespace) -> int:
-    """The mean number of runs that pass each requirement, by robot, loss and policy."""
-    for robot in ("correct", "legacy"):
-        checker = Checker(load(spec_path(robot)))
-        for loss in (False, True):
-            for policy in POLICIES:
-                passed = Counter[str]()
-                for seed in range(options.seed, options.seed + options.seeds):
-                    for test in model_based(4, seed, policy):
-                        checker.begin()
-                        run = run_test(
-                            test, robot=robot, startup_loss=loss, observer=checker.observe
-                        )
-                        verdicts = checker.finish(run.end_ns).verdicts
-                        passed.update(name for name, verdict in verdicts.items() if verdict == "P")
-                cells = (f"R{n} {passed[f'R{n}'] / options.seeds:.1f}/4" for n in range(1, 6))
-                told = f"{robot:8} {'loss' if loss else 'no loss':8} {policy:9}"
-                print(told, "  ".join(cells), flush=True)
-    return 0
-
-
 def conformance(options: argparse.Namespace) -> int:
     """How many runs conform; 1 if one of the correct robot does not."""
     count, seed = options.tests, options.seed
@@ -181,14 +153,14 @@ def _conforms(network: Network, test: AbstractTest, mutation: str | None) -> boo
 
 def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("what", choices=("bands", "policies", "conformance"))
+    parser.add_argument("what", choices=("bands", "conformance"))
     parser.add_argument("--seeds", type=int, default=20, help="campaigns")
     parser.add_argument("--seed", type=int, default=1, help="the first")
     parser.add_argument("--tests", type=int, default=20, help="of each random strategy")
     parser.add_argument("--jobs", type=int, help="processes (default: all cores)")
     parser.add_argument("--write", action="store_true", help=f"write {SPREAD_FILE}")
     options = parser.parse_args(argv)
-    return {"bands": bands, "policies": policies, "conformance": conformance}[options.what](options)
+    return {"bands": bands, "conformance": conformance}[options.what](options)
 
 
 if __name__ == "__main__":

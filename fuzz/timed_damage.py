@@ -16,21 +16,22 @@ from rvmon.timed.search.verify import verify
 SMALL = Budget(states=300, seconds=5.0)
 """What each query of a damaged model may cost."""
 
-_WORDS = """
+TOKENS = b"""
 automaton query location invariant start edge when on do select system unit signal weight as
 clock chan urgent broadcast committed const int bool typedef forall exists deadlock imply and
 or not true false E<> A[] A<> E[] EF AG --> [<=3] -> == != <= >= ++ -- += := ! ? & && ||
 ( ) { } [ ] , ; : . ' " * / % + - 0 1 -1 7 99999999999999999999 0.5 x y i P0 l0
 <template> </template> <location> <nta> </nta> &lt; &gt; &amp; &x; <![CDATA[ ]]> <!-- -->
-"""
-TOKENS = tuple(_WORDS.split())
+""".split()
 """Words that both text forms give a meaning to, and some that they do not."""
 
-
-_WORD = re.compile(rb"[A-Za-z_]\w*")
-_NUMBER = re.compile(rb"\d+")
-_SIGN = re.compile(rb"[<>=!]=|<|>|\+|-|\*|&&|\|\|")
 _NUMBERS = (b"0", b"1", b"3", b"-1", b"100", b"9999", b"16777216", b"2147483648")
+_KINDS = {
+    re.compile(rb"[A-Za-z_]\w*"): None,
+    re.compile(rb"\d+"): _NUMBERS,
+    re.compile(rb"[<>=!]=|<|>|\+|-|\*|&&|\|\|"): None,
+}
+"""What is changed for another of its kind: of another model, or of these."""
 
 
 def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
@@ -50,59 +51,38 @@ def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
 
 def _change_words(text: bytes, random: Random, other: bytes) -> bytes:
     """A word for another word, a number for a number, a sign for a sign, or lines moved about."""
-    match random.randrange(5):
-        case 0:
-            return _swapped(_WORD, text, random, _WORD.findall(other))
-        case 1:
-            return _swapped(_NUMBER, text, random, _NUMBERS)
-        case 2:
-            return _swapped(_SIGN, text, random, _SIGN.findall(other))
-        case 3:
-            lines = text.splitlines(keepends=True)
-            lines.insert(random.randrange(len(lines) + 1), random.choice(lines or [b""]))
-            return b"".join(lines)
-        case _:
-            lines = text.splitlines(keepends=True)
-            if lines:
-                del lines[random.randrange(len(lines))]
-            return b"".join(lines)
-
-
-def _swapped(
-    pattern: re.Pattern[bytes], text: bytes, random: Random, fresh: Sequence[bytes]
-) -> bytes:
-    found = list(pattern.finditer(text))
+    if random.random() < 0.4:
+        lines = text.splitlines(keepends=True) or [b""]
+        place = random.randrange(len(lines))
+        lines[place : place + 1] = random.choice(([], [lines[place], random.choice(lines)]))
+        return b"".join(lines)
+    pattern, own = random.choice([*_KINDS.items()])
+    found, fresh = [*pattern.finditer(text)], own or pattern.findall(other)
     if not found or not fresh:
         return text
-    place = random.choice(found)
-    return text[: place.start()] + random.choice(fresh) + text[place.end() :]
+    start, end = random.choice(found).span()
+    return text[:start] + random.choice(fresh) + text[end:]
 
 
-def _change_bytes(data: bytes, random: Random, other: bytes) -> bytes:
+def _change_bytes(text: bytes, random: Random, other: bytes) -> bytes:
     """Whatever bytes can suffer: other ones, none, many times the same, a passage elsewhere."""
-    text = bytearray(data)
     start = random.randrange(len(text) + 1)
     end = min(len(text), start + random.choice((1, 1, 2, 5, 20, 100)))
-    match random.randrange(7):
-        case 0:
-            text[start:end] = bytes(random.randrange(256) for _ in range(random.randint(1, 3)))
-        case 1:
-            del text[start:end]
-        case 2:
-            text[start:start] = text[start:end] * random.choice((1, 2, 50))
-        case 3:
-            text[start:end] = b" " + random.choice(TOKENS).encode() + b" "
-        case 4:
-            text[start:start] = random.choice(TOKENS).encode()
-        case 5:
-            begin = random.randrange(len(other) + 1)
-            text[start:end] = other[begin : begin + random.choice((5, 30, 200))]
-        case _:
-            to = random.randrange(len(text) + 1)
-            passage = text[start:end]
-            del text[start:end]
-            text[to:to] = passage
-    return bytes(text)
+    begin, to = random.randrange(len(other) + 1), random.randrange(start + 1)
+    passage, token = text[start:end], random.choice(TOKENS)
+    if random.random() < 1 / 7:
+        return text[:to] + passage + text[to:start] + text[end:]
+    instead = random.choice(
+        (
+            random.randbytes(random.randint(1, 3)),
+            b"",
+            passage * random.choice((2, 3, 51)),
+            b" %b " % token,
+            token + passage,
+            other[begin : begin + random.choice((5, 30, 200))],
+        )
+    )
+    return text[:start] + instead + text[end:]
 
 
 def survives(path: Path) -> str:

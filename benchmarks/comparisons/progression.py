@@ -1,4 +1,4 @@
-"""Progression on the fly: a machine whose locations are made when they are needed, for tests."""
+"""Progression on the fly: what an attempt owes is made when it is needed."""
 
 from __future__ import annotations
 
@@ -11,9 +11,6 @@ from rvmon.logic.letters import Alphabet, holds
 from rvmon.logic.progress import after, step, value
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 
-_CACHE_LIMIT = 20_000
-"""Edges that are kept; with more, all are forgotten (they can be made again)."""
-
 MOST_CLOCKS = 16
 """Obligations with an age of their own that one attempt may owe at once.
 
@@ -22,9 +19,6 @@ A window above 0 that is started anew at every tick of held time would need one 
 
 MOST_CLAUSES = 32
 """Ways to fulfil what one attempt owes that may be weighed at once, before they are reduced."""
-
-Edge = tuple[int, tuple[int, ...]]
-"""Target and the sources of its clocks."""
 
 
 class TooManyObligationsError(RvmonError):
@@ -39,49 +33,41 @@ class Progression:
     Args:
         required: what an attempt requires, as `X` of it: it starts before its trigger's position.
         alphabet: of that formula.
-        name: of the requirement, for messages.
 
     Raises:
         TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once, or
             in more than `MOST_CLAUSES` ways.
     """
 
-    def __init__(self, required: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
+    def __init__(self, required: Temporal, alphabet: Alphabet) -> None:
         self.alphabet = alphabet
-        self._name = name
-        self._required = required
         self._locations: list[Location] = []
         self._index: dict[Residual, int] = {}
-        self._edges: dict[tuple[int, tuple[int, ...], int], Edge] = {}
+        self._edges: dict[tuple[int, tuple[int, ...], int], tuple[int, tuple[int, ...]]] = {}
         for residual in (FAILS, HOLDS):
             self._location(residual)
-        first = self._location(frozenset([frozenset([(required, NO_CLOCK)])]))
-        self.start: Token = (first, ())
+        self.start: Token = (self._location(frozenset([frozenset([(required, NO_CLOCK)])])), ())
 
     def _location(self, residual: Residual) -> int:
-        index = self._index.get(residual)
-        if index is None:
-            index = self._index[residual] = len(self._locations)
+        if residual not in self._index:
+            self._index[residual] = len(self._locations)
             self._locations.append(location_of(residual))
-        return index
+        return self._index[residual]
 
     def step(self, token: Token, t: int, letter: int) -> Token:
         """The token after a position at `t`."""
         index, anchors = token
         cuts = self._locations[index].cuts
-        regions = tuple(
-            bisect_right(cut, t - anchor) for cut, anchor in zip(cuts, anchors, strict=True)
-        )
-        key = (index, regions, letter)
-        edge = self._edges.get(key)
-        if edge is None:
-            if len(self._edges) >= _CACHE_LIMIT:
-                self._edges.clear()
-            edge = self._edges[key] = self._edge(index, [t - anchor for anchor in anchors], letter)
-        target, sources = edge
+        ages = [t - anchor for anchor in anchors]
+        # Within a region of ages the same is owed.
+        key = index, tuple(map(bisect_right, cuts, ages)), letter
+        if key not in self._edges:
+            self._edges[key] = self._edge(index, ages, letter)
+        target, sources = self._edges[key]
         return target, tuple([t if source == NOW else anchors[source] for source in sources])
 
-    def _edge(self, index: int, ages: list[int], letter: int) -> Edge:
+    def _edge(self, index: int, ages: list[int], letter: int) -> tuple[int, tuple[int, ...]]:
+        """The target, and the sources of its clocks."""
         valuation = self.alphabet.valuation(letter)
 
         def read(literal: Literal) -> Residual:
@@ -90,16 +76,10 @@ class Progression:
         try:
             reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)
         except TooManyClausesError:
-            raise TooManyObligationsError(
-                f"an attempt of {self._name} can be fulfilled in more than {MOST_CLAUSES} ways"
-            ) from None
+            raise TooManyObligationsError("it can be fulfilled in too many ways") from None
         residual, sources = normalise(reached, len(ages))
         if len(sources) > MOST_CLOCKS:
-            raise TooManyObligationsError(
-                f"an attempt of {self._name} has more than {MOST_CLOCKS} open obligations at "
-                "once: a window that does not begin at 0 starts again at every position. Begin the "
-                "window at 0, start it `upon` an event, or use `time sampled`"
-            )
+            raise TooManyObligationsError("it has too many open obligations at once")
         return self._location(residual), sources
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:

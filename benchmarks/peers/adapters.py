@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import logging
 import re
-import resource
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 Columns = Mapping[str, list[Any]]
@@ -74,22 +72,6 @@ class Adapter(ABC):
             except Exception as error:  # noqa: BLE001 - whatever a peer raises is its answer
                 said.append(f"{type(error).__name__}: {error}".splitlines()[0][:160])
         return {"said": said}
-
-    def many(self, formula: str, kind: str, count: int) -> dict[str, Any]:
-        """What so many monitors cost, each told of two samples."""
-        before, began, kept = resident_kib(), time.process_time(), []
-        for _ in range(count):
-            update = self.online(formula, kind, ["v_x"])
-            update(0.0, {"v_x": 1.0})
-            update(1.0, {"v_x": 0.0})
-            kept.append(update)
-        return {"seconds": time.process_time() - began, "kib": resident_kib() - before}
-
-
-def resident_kib() -> int:
-    """The memory of this process that is in use, now; Linux says so."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * resource.getpagesize() // 1024
 
 
 def rows_of(columns: Columns, number: Callable[[Any], Any] = lambda cell: cell) -> list[Any]:

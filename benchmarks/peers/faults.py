@@ -8,14 +8,14 @@ past: whether it is within the next). Prints a table for each fault: `t: 1` is t
 from __future__ import annotations
 
 import logging
-import math
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
-from benchmarks.peers.adapters import resident_kib
+import msgspec
+from benchmarks.output import show
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
 
@@ -24,10 +24,7 @@ from rvmon.adapters.json_objects import JsonObjects
 from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
 from rvmon.trace.time import TICKS_PER_SECOND
-from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
-
-Samples = Sequence[tuple[float, Mapping[str, float]]]
 
 PEERS = {
     "rtamt, discrete online": ("rtamt", "Rtamt", "discrete online", "once[0:1](NAME > 0.5)"),
@@ -38,63 +35,41 @@ PEERS = {
 }
 """Of each way to ask a peer: its package, the class that asks it, the kind, and the formula."""
 
+OURS = {
+    "rvmon": ("", "now"),
+    "rvmon, `settle=next`": ("", "next"),
+    "rvmon, `max delay 1 s`": ("max delay 1 s", "now"),
+}
+"""What the specification says of delays, and how samples settle."""
+
 SPEC = """
 spec faults
 time sampled
 DELAY
-signal v_x, v_y, v_z : real
+signal v_x, v_y : real
 event row
 requirement R
   upon row
   then once[0 s, 1 s] NAME > 0.5
 """
 
-KEYED = """
-spec keyed
-event pick(id: int), done(id: int)
-requirement R
-  upon pick
-  then within 1 s done.id == n
-  for each n in pick.id
-"""
 
-KEYS = 1_000
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """What is wrong with a stream.
-
-    Attributes:
-        title: in words.
-        samples: seconds and values, as they arrive.
-        name: of the signal that is asked for.
-    """
+class Fault(msgspec.Struct):
+    """What is wrong with a stream of x, and the signal that is asked for."""
 
     title: str
-    samples: Samples
-    name: str = "v_x"
+    samples: list[tuple[float, float]]
+    asked: str = "v_x"
+
+    def spec(self, delay: str = "") -> rvmon.Spec:
+        return rvmon.loads(SPEC.replace("DELAY", delay).replace("NAME", self.asked))
 
 
-def _of_x(*values: tuple[float, float]) -> Samples:
-    return [(float(t), {"v_x": float(x)}) for t, x in values]
-
-
-FAULTS = (
-    Fault("NaN in the window", _of_x((0, 1), (1, math.nan), (2, 0), (3, 0), (4, 0))),
-    Fault("a signal that never comes", [(float(t), {"v_z": 1.0}) for t in range(3)], "v_y"),
-    Fault("time goes back", _of_x((0, 1), (1, 0), (2, 0), (1.5, 1), (3, 0), (4, 0))),
-    Fault("two values at one instant", _of_x((0, 0), (1, 1), (1, 0), (2, 0), (3, 0))),
-    Fault("a sample comes late", _of_x((0, 0), (1, 0), (2, 0), (1.9, 1), (2.5, 0), (4, 0))),
-    Fault("the clock begins anew", _of_x((100, 0), (101, 1), (0, 0), (1, 0), (2, 0))),
-)
-
-
-def answers_of_peer(peer: Peer, kind: str, formula: str, fault: Fault) -> str:
-    """What a peer says, in one line."""
-    asked = formula.replace("NAME", fault.name)
+def _of_peer(peer: Peer, kind: str, formula: str, fault: Fault) -> str:
+    samples = [(t, {"v_x": x}) for t, x in fault.samples]
+    asked = formula.replace("NAME", fault.asked)
     try:
-        said = peer.ask("feed", formula=asked, kind=kind, samples=fault.samples)["said"]
+        said = peer.ask("feed", formula=asked, kind=kind, samples=samples)["said"]
     except PeerError as error:
         return f"({error})"
     pairs = zip(fault.samples, said, strict=True)
@@ -123,96 +98,58 @@ def _sign(value: float | bool) -> str:
     return "NaN" if value != value else str(int(value > 0))
 
 
-def _ours(fault: Fault, delay: str = "") -> rvmon.Spec:
-    return rvmon.loads(SPEC.replace("DELAY", delay).replace("NAME", fault.name))
-
-
-def stepped(fault: Fault, delay: str = "", settle: str = "now") -> str:
+def _stepped(fault: Fault, delay: str, settle: str) -> str:
     """What a monitor says that takes the samples as they come."""
-    monitor = _ours(fault, delay).monitor(settle=settle)
-    refused = []
-    for t, row in fault.samples:
+    monitor, refused = fault.spec(delay).monitor(settle=settle), []
+    for t, x in fault.samples:
         try:
-            monitor.step(t, {**row, "row": True})
-        except TraceError as error:
-            refused.append((t, f"refused ({_at_instant(t, str(error))})"))
+            monitor.step(t, {"v_x": x, "row": True})
+        except TraceError as error:  # without the instant before it, like ones are told once
+            why = str(error).removeprefix(f"sample at {t:g} s").lstrip(", ")
+            refused.append((t, f"refused ({why})"))
     return _told([monitor.finish()], refused)
 
 
-def _at_instant(t: float, text: str) -> str:
-    """A refusal without the instant that stands before it, so that like ones are told once."""
-    return text.removeprefix(f"sample at {t:g} s").lstrip(", ")
-
-
-def watched(fault: Fault) -> str:
+def _watched(fault: Fault) -> str:
     """What `rvmon.live` says, which `rvmon watch` uses."""
-    clock, spec = SimulatedClock(), _ours(fault)
-    driver = Driver(spec, clock=clock)
+    clock = SimulatedClock()
+    driver = Driver(fault.spec(), clock=clock)
     objects = JsonObjects(driver, clock=clock)
-    for t, row in fault.samples:
-        objects.take({"t": t, **row, "row": True})
+    for t, x in fault.samples:
+        objects.take({"t": t, "v_x": x, "row": True})
         driver.work()
     return _told(driver.close()[""], [])
 
 
 def _told(reports: Sequence[Report], refused: Sequence[tuple[float, str]]) -> str:
-    runs = []
+    signs, runs = {"P": "1", "F": "0"}, []
     for report in reports:
         answers = sorted(report.attempts, key=lambda one: one.triggered)
-        told = [_line(map(_our_word, answers))]
+        told = [
+            _line(
+                (one.triggered / TICKS_PER_SECOND, signs.get(one.verdict, "?")) for one in answers
+            )
+        ]
         told += [f"*{one.name} {one.kind} {one.count}x {one.remark}*" for one in report.health]
         runs.append(", ".join(part.replace(" *", "*") for part in told))
     return "; new run: ".join(runs) + (", " if refused else "") + _line(refused)
 
 
-def _our_word(attempt: Attempt) -> tuple[float, str]:
-    sign = {"P": "1", "F": "0"}.get(attempt.verdict.value, "?")
-    return attempt.triggered / TICKS_PER_SECOND, sign
-
-
-OURS: Mapping[str, Callable[[Fault], str]] = {
-    "rvmon": stepped,
-    "rvmon, `settle=next`": lambda fault: stepped(fault, settle="next"),
-    "rvmon, `max delay 1 s`": lambda fault: stepped(fault, "max delay 1 s"),
-    "rvmon watch": watched,
-}
-
-
-def keyed() -> dict[str, float]:
-    """CPU seconds and KiB of one requirement `for each` whose keys all get two samples."""
-    before, began = resident_kib(), time.process_time()
-    monitor = rvmon.loads(KEYED).monitor(keep=100)
-    for key in range(KEYS):
-        monitor.step_ns(key, {"pick": {"id": key}})
-    for key in range(KEYS):
-        monitor.step_ns(KEYS + key, {"done": {"id": key}})
-    return {"seconds": time.process_time() - began, "kib": resident_kib() - before}
+def _answers(fault: Fault, environment: Environment) -> Iterator[tuple[str, str]]:
+    for name, (delay, settle) in OURS.items():
+        yield name, _stepped(fault, delay, settle)
+    yield "rvmon watch", _watched(fault)
+    for name, (package, adapter, kind, formula) in PEERS.items():
+        if package in environment.versions:
+            with Peer(environment.python, adapter) as peer:
+                yield name, _of_peer(peer, kind, formula, fault).replace("\n", " ") or "nothing"
 
 
 def tables(environment: Environment) -> None:
     logging.disable()  # what `rvmon watch` says of each verdict
-    there = {way: one[1:] for way, one in PEERS.items() if one[0] in environment.versions}
-    for fault in FAULTS:
-        fed = ", ".join(f"{t:g}: {next(iter(row.values())):g}" for t, row in fault.samples)
-        print(f"\n**{fault.title}** (fed {fed})\n\n| monitor | says |\n|---|---|")
-        for name, ask in OURS.items():
-            _print(name, ask(fault))
-        for way, (adapter, kind, formula) in there.items():
-            with Peer(environment.python, adapter) as peer:
-                _print(way, answers_of_peer(peer, kind, formula, fault))
-    print(f"\n**{KEYS:,} keys**, two samples each\n\n| monitor | per key |\n|---|---|")
-    _print("rvmon, one requirement `for each`", _cost(keyed()))
-    for way, (adapter, kind, formula) in there.items():
-        with Peer(environment.python, adapter) as peer:
-            asked = {"formula": formula.replace("NAME", "v_x"), "kind": kind}
-            peer.ask("many", **asked, count=1)  # imports
-            _print(f"{way}, a monitor for each", _cost(peer.ask("many", **asked, count=KEYS)))
-
-
-def _cost(found: Mapping[str, float]) -> str:
-    return f"{1e3 * found['seconds'] / KEYS:.2f} ms, {found['kib'] / KEYS:.1f} KiB"
-
-
-def _print(who: str, text: str) -> None:
-    said = text.replace("|", "\\|").replace("\n", " ") or "nothing"
-    print(f"| {who} | {said} |")
+    text = Path(__file__).with_suffix(".toml").read_text("utf-8")
+    entries: Mapping[str, Any] = tomllib.loads(text)
+    for fault in msgspec.convert(entries["fault"], list[Fault]):
+        fed = ", ".join(f"{t:g}: {x:g}" for t, x in fault.samples)
+        print(f"\n**{fault.title}** (fed {fed})\n")
+        show(["monitor", "says"], _answers(fault, environment))
