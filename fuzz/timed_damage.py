@@ -61,7 +61,8 @@ def _change_words(text: bytes, random: Random, other: bytes) -> bytes:
     if not found or not fresh:
         return text
     start, end = random.choice(found).span()
-    return text[:start] + random.choice(fresh) + text[end:]
+    instead = random.choice(fresh)
+    return text[:start] + bytes(instead) + text[end:]
 
 
 def _change_bytes(text: bytes, random: Random, other: bytes) -> bytes:
