@@ -1,10 +1,13 @@
 """What the facade says when it is used in a wrong way: an error of rvmon, never a raw one."""
 
+import functools
+
 import numpy as np
 import pytest
 
 import rvmon
-from rvmon.errors import SnapshotError, TraceError, UnknownNameError
+from rvmon.errors import RvmonError, SnapshotError, TraceError, UnknownNameError
+from rvmon.live import Live, LiveTasks
 
 DOOR = """
 spec door
@@ -117,3 +120,60 @@ def test_a_recording_is_no_specification(tmp_path):
     path.write_text("t,x\n0,1\n")
     with pytest.raises(rvmon.SpecError, match=r"monday.csv: a recording by its name"):
         rvmon.load(path)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda spec: spec.monitor(sources="gap"),
+        lambda spec: spec.evaluate([], sources="gap"),
+        lambda spec: spec.evaluate([], only="D1"),
+        lambda spec: Live(spec, only="D1"),
+    ],
+)
+def test_one_text_is_no_list_of_names(spec, wrong):
+    """Its letters are not looked for one by one."""
+    with pytest.raises(RvmonError, match=r"expected names, such as \['(gap|D1)'\], found one text"):
+        wrong(spec)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((b"spec door",), "expected the text of a specification, found bytes"),
+        ((None,), "found NoneType"),
+        (("spec door", 2), "expected a text of the language, such as '2 s'"),
+    ],
+)
+def test_a_specification_is_text_and_so_are_its_constants(arguments, message):
+    """Also where nothing is kept of what was compiled."""
+    text, *value = arguments
+    with pytest.raises(RvmonError, match=message):
+        rvmon.loads(text, const={"T": value[0]} if value else None)
+
+
+def test_a_report_is_asked_of_what_it_has(spec):
+    """A misspelt requirement has no attempts either, and that would look fine."""
+    report = spec.evaluate([(0, {"gap": 5.0})])
+    assert [one.name for one in report.of("D2", rvmon.Verdict.FAIL)] == ["D2#1"]
+    with pytest.raises(UnknownNameError, match="no requirement `D3`: there are D1, D2"):
+        report.of("D3", "F")
+    with pytest.raises(UnknownNameError, match="no attempt has the verdict 'NT'"):
+        report.of("D2", "NT")
+
+
+async def _awaited(_):
+    """Of what is only awaited nothing would happen."""
+
+
+@pytest.mark.parametrize("callback", [_awaited, functools.partial(_awaited), 5])
+def test_a_callback_is_a_plain_function(spec, callback):
+    """An alarm that nobody awaits would never be heard."""
+    for registered in (
+        spec.monitor().on_failure,
+        spec.monitor().on_decided,
+        lambda one: Live(spec, on_failure=one),
+        lambda one: LiveTasks(spec, on_report=one),
+    ):
+        with pytest.raises(RvmonError, match="expected a function that takes"):
+            registered(callback)

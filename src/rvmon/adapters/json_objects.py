@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+from codecs import BOM_UTF8
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -15,7 +16,7 @@ import msgspec
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
-from rvmon.readers.jsonl_rows import decoded, read_object
+from rvmon.readers.jsonl_rows import TOO_DEEP, decoded, read_object
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import LONGEST_LINE
 from rvmon.trace.sample import Value
@@ -33,12 +34,13 @@ _JUMP_NS = 10 * TICKS_PER_SECOND
 class JsonObjects:
     """Offers objects as samples, by the same rules as for recordings in JSON lines.
 
-    Objects without a time are stamped on arrival. One that cannot be read may have updated any
-    name: all names are lost between its neighbours.
+    One that cannot be read may have updated any name: all names are lost between its neighbours.
 
     Args:
         driver: receives the samples; its specification maps names.
-        clock: set to the stamps of the objects; `None`: the driver has a wall clock.
+        clock: set to the stamps of the objects, so that one without a stamp cannot be read: nobody
+            knows when between its neighbours it came. `None`: the driver has a wall clock, by which
+            such an object is stamped on arrival.
 
     Attributes:
         driver: receives the samples.
@@ -71,6 +73,11 @@ class JsonObjects:
         """
         spec = self.driver.spec
         t_ns, values = _read(fields, spec.schema, self.ignored)
+        if self._clock is not None and t_ns is None:
+            if not values:
+                return  # it says nothing of what is judged
+            column = DEFAULT_COLUMNS[0] if spec.schema.stamps is None else spec.schema.stamps.column
+            raise TraceError(f"there is no time `{column}`: who knows when it was?")
         if is_old:
             values = {name: value for name, value in values.items() if name in spec.schema.signals}
         if len(self.ignored) > self._told:
@@ -128,18 +135,44 @@ def decoded_object(text: bytes) -> Any:
     """
     try:
         return decoded(text, msgspec.json.decode)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+    except RecursionError:
+        raise TraceError(TOO_DEEP) from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
         is_other = text.lstrip()[:1] != b"{"
         wanted = '; wanted is `{"t": 0, "speed": 0.5}`; `rvmon run` reads CSV' if is_other else ""
         raise TraceError(f"{error}{wanted}") from None
 
 
-def stamp_of(text: bytes, schema: Schema) -> int | None:
-    """The stamp of an object, ns; `None` if it has none, or cannot be read."""
-    try:
-        return _read(decoded_object(text), schema, Counter())[0]
-    except TraceError:
-        return None
+PROLOGUE = 10
+"""The most lines that are looked at for the first one that says what the stream is of."""
+
+
+def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
+    """The first lines of a stream, up to the one that says whether its lines have stamps.
+
+    Programs greet before they report: a line that cannot be read, or that has neither a stamp nor a
+    declared name, does not say it.
+
+    Args:
+        lines: an object each; as many are taken as are returned.
+        schema: the declared names.
+
+    Returns:
+        The lines, and the stamp of the last one, ns; `None`: it has none, or `PROLOGUE` lines said
+        nothing.
+    """
+    taken: list[bytes] = []
+    for line in lines:
+        taken.append(line)
+        if not line.strip():
+            continue
+        with suppress(TraceError):
+            t_ns, values = _read(decoded_object(line), schema, Counter())
+            if t_ns is not None or values:
+                return taken, t_ns
+        if len(taken) >= PROLOGUE:
+            break
+    return taken, None
 
 
 def _read(
@@ -152,7 +185,7 @@ def _read(
             return read_object(fields, schema, ignored)
         return None, read_object({**fields, stamps[0]: 0}, schema, ignored)[1]
     except RecursionError:
-        raise TraceError("it is nested too deeply") from None
+        raise TraceError(TOO_DEEP) from None
 
 
 _PIECE = 1 << 16
@@ -192,17 +225,19 @@ def _name_of_robot(fields: object, robot: str) -> str:
 
 
 def read_lines(file: int) -> Iterator[bytes]:
-    """The lines of a file, each as soon as it is complete.
+    """The lines of a file, each as soon as it is complete; a byte order mark is none of it.
 
     Args:
         file: the descriptor of a pipe, a file or a terminal.
     """
-    rest = b""
+    rest, mark = b"", BOM_UTF8
     while piece := os.read(file, _PIECE):
         *whole, rest = (rest + piece).split(b"\n")
+        if whole:
+            whole[0], mark = whole[0].removeprefix(mark), b""
         yield from whole
         if len(rest) > LONGEST_LINE:
             yield rest
             rest = b""
-    if rest:
+    if rest := rest.removeprefix(mark):
         yield rest

@@ -1,7 +1,7 @@
 """The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
-3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+3 internal error, 130 interrupted (Ctrl-C, SIGTERM), 141 nobody reads the output any more.
 """
 
 from __future__ import annotations
@@ -53,6 +53,9 @@ GROUPS = {
 COMMANDS = (*(name for group in GROUPS.values() for name in group), "lsp")
 """All of them: `lsp` is started by editors."""
 
+
+_READER_LEFT = 128 + 13
+"""As of a program that SIGPIPE ended: what was not read to its end is no success."""
 
 _MANY = 50_000
 """Objects are so many before the first search for cycles: imports make none."""
@@ -111,7 +114,7 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
     except (BrokenPipeError, SystemExit):
         # The reader of our output left, as `head` does; rich ends the program where it notices.
         _drop_output()
-        return 0
+        return _READER_LEFT
     except Exception as error:
         package = str(getattr(error, "name", "")).partition(".")[0]
         if isinstance(error, ModuleNotFoundError) and package in EXTRAS:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from io import FileIO
 from typing import TYPE_CHECKING
 
-from rvmon.adapters.json_objects import JsonObjects, feed_lines, read_lines, stamp_of
+from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_lines
 from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import warn
 from rvmon.cli.parser import positive, span
@@ -140,17 +140,18 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
-        first = next((line for line in lines if line.strip()), None)
-        if first is None:
+        first, began = begin_of(lines, spec.schema)
+        if not any(line.strip() for line in first):
             raise RvmonError(f"error: {arguments.source}: there is no line: nothing was evaluated")
-        began = stamp_of(first, spec.schema)
         followed = None
         clock = _own_clock()
-        if began is not None and arguments.realtime is None:
-            clock = followed = SimulatedClock(began)
+        is_stamped = began is not None or arguments.time is not None
+        if is_stamped and arguments.realtime is None:
+            # What cannot be read above the first stamp came before it.
+            clock = followed = SimulatedClock(0 if began is None else began - 1)
         live = _live(arguments, spec, clock, shown.judged)
         objects = JsonObjects(live, clock=followed)
-        every = itertools.chain([first], lines)
+        every = itertools.chain(first, lines)
         faults: list[str] = []
 
         def feed() -> None:

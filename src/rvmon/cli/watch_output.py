@@ -26,6 +26,7 @@ from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal
 from rvmon.report.wording import health_facts
 from rvmon.session import Spec
+from rvmon.texts import counted
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdict import Verdict, fold
@@ -245,7 +246,7 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
         table.add_row(name, verdict_text(status.verdicts[name]), *counts, waiting, left, text)
     when = format_stamped(status.now, status.since or 0)
     return Group(
-        Text(f"{heading}{run}to {when}, {status.samples:,} samples{lost}"),
+        Text(f"{heading}{run}to {when}, {counted(status.samples, 'sample')}{lost}"),
         table,
         *_rest([status.verdicts[name] for name in names[rows:]], "requirements"),
     )

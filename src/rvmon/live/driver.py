@@ -12,7 +12,8 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
 from rvmon.live.waiting import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
-from rvmon.spec.checked.names_read import sources_asked
+from rvmon.monitor.listeners import checked
+from rvmon.spec.checked.names_read import several, sources_asked
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict import Verdict
@@ -60,7 +61,7 @@ class Driver:
         most_robots, turned_away: the limit, and whether a robot was refused by it.
 
     Raises:
-        RvmonError: `room`, `most_robots` or `keep` is no count.
+        RvmonError: `room`, `most_robots` or `keep` is no count, or a callback is no function.
         UnknownNameError: `only` or `sources` has an unknown name.
 
     >>> from rvmon import loads
@@ -93,10 +94,11 @@ class Driver:
         for name, count in (("room", room), ("most_robots", most_robots)):
             if type(count) is not int or count < 1:
                 raise RvmonError(f"{name}={count!r}: expected a whole number from 1 on")
+        for callback in filter(None, (on_judged, on_failure, on_report)):
+            checked(callback, "a judgement, or a robot's name and its report")
         self._clock = WallClock() if clock is None else clock
         self._runs_by_itself = isinstance(self._clock, WallClock)
-        self._only = None if only is None else tuple(only)
-        self._sources = None if sources is None else tuple(sources)
+        self._only, self._sources = several(only), several(sources)
         self._keep, self._asked_lag, self.most_robots = keep, lag_ns, most_robots
         self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
         self.wake: Callable[[], object] = int
@@ -223,8 +225,7 @@ class Driver:
             last = now if is_over else None
             if kind is OutageReport.FOUND and not self._runs_by_itself:
                 first = now + 1  # a sample stamped `now` may have been sent before the lost ones
-            robots = [*self._waiting.robots] if robot is None else [robot]
-            for one in robots:
+            for one in [*self._waiting.robots] if robot is None else [robot]:
                 if self._is_room_for(one):
                     self._waiting.put_gap(Gap(one, kind, some, first, last, why))
         self.wake()
@@ -329,8 +330,7 @@ class Driver:
         found = self._robots.get(entry.robot)
         if found is None:
             _log.info("%sis watched", _heading(entry.robot))
-            found = Robot(entry.robot, watch, self._judged, self._ended)
-            self._robots[entry.robot] = found
+            found = self._robots[entry.robot] = Robot(entry.robot, watch, self._judged, self._ended)
         match entry:
             case Offered(t=t, values=values):
                 if why := found.take(t, values):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import ParamSpec, TypeVar
@@ -15,6 +16,25 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 Callback = Callable[[Attempt], object]
+
+
+def checked(callback: object, takes: str) -> None:
+    """Refuse what cannot be called back.
+
+    Args:
+        callback: given by the user.
+        takes: what it is called with, such as "an attempt".
+
+    Raises:
+        RvmonError: it is not callable, or a coroutine function, of which a call does nothing.
+    """
+    if not callable(callback):
+        raise RvmonError(f"expected a function that takes {takes}, found {callback!r}")
+    if inspect.iscoroutinefunction(callback):
+        raise RvmonError(
+            f"expected a function that takes {takes}, found the coroutine function {callback!r}: "
+            "nobody would await it. Give a plain function, which may start a task"
+        )
 
 
 class Listeners:
@@ -40,10 +60,9 @@ class Listeners:
             A function without arguments that unregisters it; idempotent.
 
         Raises:
-            RvmonError: `callback` is not callable.
+            RvmonError: `callback` is not callable, or a coroutine function.
         """
-        if not callable(callback):
-            raise RvmonError(f"expected a function that takes an attempt, found {callback!r}")
+        checked(callback, "an attempt")
         key = object()
         self._callbacks[key] = (failures_only, callback)
         changed()

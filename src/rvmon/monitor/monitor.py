@@ -120,7 +120,7 @@ class Monitor(FedMonitor[Attempt]):
             A function without arguments that unregisters the callback; idempotent.
 
         Raises:
-            RvmonError: `callback` is not callable.
+            RvmonError: `callback` is not callable, or a coroutine function.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")

@@ -26,6 +26,8 @@ MOST_NAMES = 1_000
 MORE = "… and more"
 """What counts for all other names."""
 
+TOO_DEEP = "it is nested too deeply"
+
 _MISSING = object()
 
 _NOT_FINITE = re.compile(r"\b(NaN|Infinity)\b")
@@ -67,14 +69,12 @@ def jsonl_samples(
         try:
             t, values = read_object(decoded(line, decode), schema, ignored)
         except msgspec.DecodeError as error:
-            if "truncated" in str(error) and _HALF_PAIR.search(line):
-                raise TraceError(
-                    f"line {number}: not a JSON object (half of a surrogate pair such as `\\ud800`)"
-                ) from None
             cut = "" if line.endswith("\n") else "; the file ends here: was it cut off?"
             raise TraceError(f"line {number}: not a JSON object ({error}){cut}") from None
-        except (TraceError, RecursionError) as error:
+        except TraceError as error:
             raise TraceError(f"line {number}: {error}") from None
+        except RecursionError:
+            raise TraceError(f"line {number}: {TOO_DEEP}") from None
         yield number, t, values
 
 
@@ -83,12 +83,18 @@ def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
 
     Raises:
         msgspec.DecodeError: it is no JSON.
-        TraceError: a number is too large, or a name stands twice in an object.
+        TraceError: a number is too large, a name stands twice in an object, or there is half of a
+            surrogate pair.
     """
     try:
         value = decode(line)
-    except msgspec.DecodeError:
-        if _NOT_FINITE.search(line if isinstance(line, str) else line.decode("utf-8", "replace")):
+    except msgspec.DecodeError as error:
+        text = line if isinstance(line, str) else line.decode("utf-8", "replace")
+        if "truncated" in str(error) and _HALF_PAIR.search(text):
+            raise TraceError(
+                "not a JSON object (half of a surrogate pair such as `\\ud800`)"
+            ) from None
+        if _NOT_FINITE.search(text):
             try:
                 return json.loads(line, parse_float=double_of, object_pairs_hook=_once_each)
             except TraceError:
@@ -173,8 +179,8 @@ def read_object(
 
 
 def _written(value: object) -> str:
-    """A decoded value as it stands in the line, shortened."""
-    return shorten(value if isinstance(value, str) else msgspec.json.encode(value).decode())
+    """A decoded value as it stands in the line, a text with its quotes, shortened."""
+    return shorten(msgspec.json.encode(value).decode())
 
 
 def _ticks(fields: dict[str, Any], schema: Schema) -> int:
@@ -193,8 +199,9 @@ def _ticks(fields: dict[str, Any], schema: Schema) -> int:
     if stamps.unit == "ns" and isinstance(stamp, float) and abs(stamp) >= TIME_LIMIT:
         # Beyond 64 bits integers are decoded as floats.
         raise TraceError(f"time `{_written(stamp)}` is out of range: at most 2**62 ns (146 years)")
-    is_number = isinstance(stamp, int | float) and not isinstance(stamp, bool)
-    return ticks_of_stamp(stamp if is_number else _written(stamp), stamps)
+    if not isinstance(stamp, int | float | str) or isinstance(stamp, bool):
+        raise TraceError(f"time `{_written(stamp)}` is neither a number nor a date")
+    return ticks_of_stamp(stamp, stamps)
 
 
 def _taken(fields: dict[str, Any], path: str) -> Any:

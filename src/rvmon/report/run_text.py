@@ -99,13 +99,15 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
     if spec.requirements:
         console.print(_verdict_table(report, spec))
-    for name, requirement in spec.requirements.items():
+    for name, found in report.verdicts.items():
         if name in report.misses:
-            why = without_attempts(report.verdicts[name], report.misses[name])
-            console.print(_silence_text(name, report.verdicts[name], why, console.width))
+            why = without_attempts(found, report.misses[name])
+            console.print(_silence_text(name, found, why, console.width))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
-                console.print(_attempt_text(attempt, requirement, report, console.width))
+                console.print(
+                    _attempt_text(attempt, spec.requirements[name], report, console.width)
+                )
             rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
             if rest > 0:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.errors import RvmonError
 from rvmon.files import cache_folder, keep, read_kept, this_rvmon
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
@@ -31,7 +32,18 @@ def compile_cached(
     What is kept is keyed by text, name, constants, folder, and rvmon's files by size and
     time. With it stand the texts of the files that were imported: it is good as long as these may
     be imported and say the same.
+
+    Raises:
+        RvmonError: the text, or a constant, is of another type.
+        SpecError: as `compile_text`.
     """
+    if not isinstance(text, str):
+        raise RvmonError(f"expected the text of a specification, found {type(text).__name__}")
+    for constant, value in (constants or {}).items():
+        if not isinstance(value, str):
+            raise RvmonError(
+                f"const={{{constant!r}: {value!r}}}: expected a text of the language, such as '2 s'"
+            )
     folder = cache_folder()
     imported: dict[str, str] = {}
 

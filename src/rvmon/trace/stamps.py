@@ -71,6 +71,8 @@ def ticks_of_cell(text: str, stamps: Stamps) -> int:
     >>> ticks_of_cell("1.5", stamps_of("t:ms"))
     1500000
     """
+    if not text.strip():
+        raise TraceError("there is no time")
     if stamps.unit == "iso":
         return ticks_of_iso(text)
     if stamps.unit != "ns":
@@ -120,9 +122,11 @@ def ticks_of_stamp(stamp: Any, stamps: Stamps) -> int:
         except TraceError as error:
             raise TraceError(f"{error}{_other_unit(plain, stamps)}") from None
     wanted = "a whole number" if stamps.unit == "ns" else "a number"
-    shown = _SHOWN.repr(str(plain))[1:-1]
+    shown = _SHOWN.repr(str(plain))
+    if not isinstance(plain, str):  # a text keeps its quotes, as it may look like a number
+        shown = shown[1:-1]
     raise TraceError(
-        f"time `{shown}` is not {wanted} of {UNIT_WORDS[stamps.unit]}{_other_unit(shown, stamps)}"
+        f"time `{shown}` is not {wanted} of {UNIT_WORDS[stamps.unit]}{_other_unit(plain, stamps)}"
     )
 
 

@@ -155,8 +155,10 @@ def ticks_of_text(text: str, unit: str = "s") -> int:
         number = Decimal(text.replace("_", "?"))
     except InvalidOperation:
         raise TraceError(f"time `{shown}` is not a number of {UNIT_WORDS[unit]}") from None
+    if not number.is_finite():
+        raise TraceError(f"time `{shown}` is not finite")
     # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
-    if number.is_finite() and number.adjusted() <= 18:
+    if number.adjusted() <= 18:
         exact = Fraction(0) if number.adjusted() < -30 else Fraction(number)
         ticks = round(exact * TICKS_PER_UNIT[unit])
         if abs(ticks) < TIME_LIMIT:

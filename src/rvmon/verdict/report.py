@@ -7,6 +7,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
+from rvmon.errors import UnknownNameError
+from rvmon.texts import did_you_mean
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdict import LAW, Verdict, fold
 from rvmon.verdict.attempt import Attempt, LazyAttempts
@@ -84,7 +86,16 @@ class Report:
         Args:
             requirement: its id.
             verdict: `P`, `F` or `I`.
+
+        Raises:
+            UnknownNameError: there is no such requirement, or no such verdict.
         """
+        if requirement not in self.verdicts:
+            there_are = f"there are {', '.join(self.verdicts) or 'none'}"
+            meant = did_you_mean(requirement, self.verdicts, there_are)
+            raise UnknownNameError(f"no requirement `{requirement}`: {meant}")
+        if verdict not in _ATTEMPT_VERDICTS:
+            raise UnknownNameError(f"no attempt has the verdict {verdict!r}: one has P, F or I")
         if isinstance(self.attempts, LazyAttempts):
             return self.attempts.of(requirement, verdict)
         if not self._kinds:

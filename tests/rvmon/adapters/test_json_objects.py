@@ -6,11 +6,12 @@ import pytest
 
 from rvmon import Verdict, loads
 from rvmon.adapters.json_objects import (
+    PROLOGUE,
     JsonObjects,
+    begin_of,
     decoded_object,
     feed_lines,
     read_lines,
-    stamp_of,
 )
 from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
@@ -150,11 +151,36 @@ def test_lines_are_read_as_they_come():
     os.close(read)
 
 
-def test_the_stamp_of_a_line():
-    schema = loads(SPEC).schema
-    assert stamp_of(b'{"t_ns": 5}', schema) == 5
-    assert stamp_of(b'{"x": 5}', schema) is None
-    assert stamp_of(b"nonsense", schema) is None
+def test_a_byte_order_mark_is_no_part_of_a_line():
+    """Programs of Windows begin files with it."""
+    read, write = os.pipe()
+    os.write(write, b'\xef\xbb\xbf{"t": 1}\n{"t": 2}')
+    os.close(write)
+    assert list(read_lines(read)) == [b'{"t": 1}', b'{"t": 2}']
+    os.close(read)
+
+
+@pytest.mark.parametrize(
+    ("lines", "taken", "stamp"),
+    [
+        ([b'{"t_ns": 5}', b"more"], 1, 5),
+        ([b'{"x": 5}', b'{"t_ns": 5}'], 1, None),
+        ([b"[INFO] hello", b"", b'{"level": 1}', b'{"t_ns": 5}', b"more"], 4, 5),
+        ([b"nonsense"] * PROLOGUE + [b'{"t_ns": 5}'], PROLOGUE, None),
+        ([], 0, None),
+    ],
+)
+def test_the_first_line_that_says_something_tells_whether_lines_have_stamps(lines, taken, stamp):
+    """What a program greets with does not; all that was read is given on."""
+    assert begin_of(iter(lines), loads(SPEC).schema) == (lines[:taken], stamp)
+
+
+def test_a_line_without_a_time_among_those_that_have_one_is_lost(live):
+    """It came somewhere between its neighbours: as an answer it may have been too late."""
+    driver, _, source = live
+    lines = [b'{"t": 0, "x": 0}', b'{"x": 0}', b'{"t": 9, "x": 0}']
+    assert _verdicts(driver, lines, source) == {"": Verdict.INCONCLUSIVE}
+    assert source.unread == 1
 
 
 def test_what_is_no_object_says_what_is_wanted():
@@ -164,3 +190,13 @@ def test_what_is_no_object_says_what_is_wanted():
     with pytest.raises(TraceError) as told:
         decoded_object(b'{"t": 0, ')
     assert "CSV" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [(b'{"x": ' + b"[" * 100_000, "too deeply"), (b'{"x": "\\ud800"}', "half of a surrogate pair")],
+)
+def test_what_json_cannot_hold_is_named(text, why):
+    """As `rvmon run` does."""
+    with pytest.raises(TraceError, match=why):
+        decoded_object(text)

@@ -42,6 +42,23 @@ def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys, says):
     assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
 
 
+@pytest.mark.parametrize("before", ["[INFO] the robot starts", "\n", '{"level": "info"}'])
+def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before):
+    """Lines with stamps are judged at them, whatever stands above; each has its number."""
+    (door / "a.jsonl").write_text(f"{before}\n{FAILS}nonsense\n")
+    told = says(1, "watch", "door.rv", "a.jsonl")
+    assert told.out.startswith("2.000000001 s  D1#1 F ✗")
+    assert f"line {4 + before.count(chr(10))} is not taken" in told.err
+
+
+@pytest.mark.usefixtures("door")
+def test_a_time_that_is_named_is_in_each_line(says):
+    """One without it is lost, not stamped by the clock of the machine."""
+    told = says(1, "watch", "door.rv", "a.jsonl", "--time", "stamp:ms")
+    assert "line 1 is not taken: there is no time `stamp`" in told.err
+    assert "0 samples, 2 lost" in told.out
+
+
 @pytest.mark.parametrize(
     ("fault", "told"), [(OSError(5, "Input/output error"), "Input/output"), (MemoryError(), "Mem")]
 )
@@ -190,5 +207,5 @@ def test_it_ends_when_nobody_reads_what_it_says(door):
         process.stdout.close()
         process.stdin.write(b'{"closed": true}\n{"knock": true, "closed": false}\n')
         process.stdin.flush()
-        assert process.wait(60) == 0
+        assert process.wait(60) == 141
         alarm.cancel()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from rvmon.errors import UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.spec.checked.classify import subformulas
 from rvmon.spec.checked.ctl import StateAtom, state_formulas
 from rvmon.spec.checked.formula import (
@@ -84,13 +84,25 @@ def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
             yield cross.name, names_read(cross.upon)
 
 
+def several(names: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Names that were asked for; `None`: all.
+
+    Raises:
+        RvmonError: it is one text, whose letters would be the names.
+    """
+    if isinstance(names, str):
+        raise RvmonError(f"expected names, such as [{names!r}], found one text: {names!r}")
+    return None if names is None else tuple(names)
+
+
 def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:
     """Ids of requirements; `None`: all.
 
     Raises:
         UnknownNameError: there is no such requirement.
+        RvmonError: one text was given for several names.
     """
-    chosen = None if only is None else tuple(only)
+    chosen = several(only)
     for name in chosen or ():
         if name not in spec.requirements:
             known = ", ".join(spec.requirements) or "none"
@@ -141,8 +153,10 @@ def sources_asked(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[s
 
     Raises:
         UnknownNameError: there is no such signal or event.
+        RvmonError: one text was given for several names.
     """
-    given = None if names is None else frozenset(names)
+    asked = several(names)
+    given = None if asked is None else frozenset(asked)
     declared = [*spec.signals, *spec.events]
     for name in sorted((given or frozenset()).difference(declared)):
         meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
