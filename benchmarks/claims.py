@@ -14,7 +14,6 @@ import argparse
 import os
 import re
 import shlex
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,13 +22,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from benchmarks.process import Cost, measured
+
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "claims.md"
 QUICK, LONG = "## In three minutes", "## In an hour"
 EXIT_CODE = "exit code"
-LONGEST_S = 3600
-"""After which a command counts as hanging."""
-
 SHOWN_LINES = 8
 """Of what a command printed last, where it does not show what is claimed."""
 
@@ -42,21 +40,13 @@ class ClaimError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One row of the page.
+    """One row of the page."""
 
-    Attributes:
-        text: what is claimed.
-        command: that shows it.
-        pattern: finds it in what the command prints; `EXIT_CODE` is the command's.
-        expected: a number, or a text to be equal.
-        tolerance: `exact`, `at least`, `at most`, or `± N %`.
-    """
-
-    text: str
-    command: str
-    pattern: str
-    expected: str
-    tolerance: str
+    text: str  # what is claimed
+    command: str  # that shows it
+    pattern: str  # finds it in what the command prints; `EXIT_CODE` is the command's
+    expected: str  # a number, or a text to be equal
+    tolerance: str  # `exact`, `at least`, `at most`, or `± N %`
 
     def holds_for(self, found: str) -> bool:
         """Whether what was found is what is claimed.
@@ -66,23 +56,19 @@ class Claim:
         """
         if self.tolerance == "exact":
             return found == self.expected
-        value, expected = _number(found), _number(self.expected)
+        value, expected = (float(one.replace(",", "")) for one in (found, self.expected))
         match self.tolerance:
             case "at least":
                 return value >= expected
             case "at most":
                 return value <= expected
             case _:
-                share = _number(self.tolerance.strip("± %")) / 100
+                share = float(self.tolerance.strip("± %")) / 100
                 return abs(value - expected) <= share * abs(expected)
 
 
 def claims_of(page: str, *, long: bool) -> list[Claim]:
-    """The rows of the page's tables.
-
-    Args:
-        page: its text.
-        long: those of the second section, too.
+    """The rows of the page's tables; with `long` those of the second section, too.
 
     Raises:
         ClaimError: a row has no five cells, no such pattern or no such tolerance.
@@ -97,18 +83,15 @@ def claims_of(page: str, *, long: bool) -> list[Claim]:
         if len(cells) != 5:
             raise ClaimError(f"line {number}: {len(cells)} cells; a claim has five")
         claim = Claim(cells[0], *(cell.strip("`") for cell in cells[1:]))
-        _check(claim, number)
+        try:
+            groups = 1 if claim.pattern == EXIT_CODE else re.compile(claim.pattern).groups
+            claim.holds_for(claim.expected)
+        except (re.error, ValueError) as error:
+            raise ClaimError(f"line {number}: {error}") from None
+        if groups != 1:
+            raise ClaimError(f"line {number}: `{claim.pattern}` has {groups} groups; it needs one")
         claims.append(claim)
     return claims
-
-
-def found_by(claim: Claim) -> tuple[list[str], str]:
-    """What the command of a claim shows, and the last lines that it printed."""
-    code, output = _printed(claim.command)
-    last = "\n".join(output.splitlines()[-SHOWN_LINES:])
-    if claim.pattern == EXIT_CODE:
-        return [str(code)], last
-    return re.findall(claim.pattern, output, re.MULTILINE), last
 
 
 def main() -> int:
@@ -135,53 +118,31 @@ def main() -> int:
     return int(failed > 0 or not chosen)
 
 
-def _check(claim: Claim, line: int) -> None:
-    try:
-        groups = 1 if claim.pattern == EXIT_CODE else re.compile(claim.pattern).groups
-        if claim.tolerance != "exact":
-            claim.holds_for(claim.expected)
-    except (re.error, ValueError) as error:
-        raise ClaimError(f"line {line}: {error}") from None
-    if groups != 1:
-        raise ClaimError(f"line {line}: `{claim.pattern}` has {groups} groups; it needs one")
-
-
 def _complaints(claim: Claim) -> Iterator[str]:
-    findings, last = found_by(claim)
+    done = _ran(claim.command)
+    findings = re.findall(claim.pattern, done.output + done.errors, re.MULTILINE)
+    if claim.pattern == EXIT_CODE:
+        findings = [str(done.code)]
     wrong = [found for found in findings if not claim.holds_for(found)]
     if findings and not wrong:
         return
     wanted = f"expected {claim.expected} ({claim.tolerance})"
     yield f"{wanted}, came {', '.join(wrong) or 'nothing that fits ' + claim.pattern}"
     yield f"$ {claim.command}"
-    yield from last.splitlines()
+    yield from (done.output + done.errors).splitlines()[-SHOWN_LINES:]
 
 
 @cache
-def _printed(command: str) -> tuple[int, str]:
-    """Exit code and output of a command, run in the project's folder and environment."""
+def _ran(command: str) -> Cost:
+    """A command, run in the project's folder and environment, an hour at most."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     with tempfile.TemporaryDirectory() as folder:
         words = [word.replace("OUT", folder, 1) for word in shlex.split(command)]
+        environment = {**os.environ, "PATH": path, "COLUMNS": "100"}
         try:
-            done = subprocess.run(
-                words,
-                cwd=ROOT,
-                env={**os.environ, "PATH": path, "COLUMNS": "100"},
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                timeout=LONGEST_S,
-                check=False,
-            )
-        except (OSError, subprocess.TimeoutExpired) as error:
-            return -1, str(error)
-    return done.returncode, done.stdout
-
-
-def _number(text: str) -> float:
-    return float(text.replace(",", ""))
+            return measured(words, environment=environment, folder=ROOT)
+        except OSError as error:
+            return Cost(0, 0, 0, -1, "", str(error))
 
 
 if __name__ == "__main__":

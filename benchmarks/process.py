@@ -18,23 +18,20 @@ POLL_S = 0.005
 
 
 class Cost(NamedTuple):
-    """What a process cost, and how it ended.
+    """What a process cost, and how it ended."""
 
-    Attributes:
-        seconds: by the clock.
-        cpu: seconds, with those of all processes that it began and waited for.
-        mebibytes: the largest resident memory of the first process, as far as it was seen.
-        code: how it ended, below 0 by which signal.
-        output: what it printed.
-        said: the last line that it said, if need be among what it printed.
-    """
-
-    seconds: float
-    cpu: float
-    mebibytes: float
-    code: int
+    seconds: float  # by the clock
+    cpu: float  # seconds, with those of all processes that it began and waited for
+    mebibytes: float  # the largest resident memory of the first process, as far as it was seen
+    code: int  # how it ended, below 0 by which signal
     output: str
-    said: str
+    errors: str
+
+    @property
+    def said(self) -> str:
+        """The last line that it said, if need be among what it printed."""
+        lines = (self.errors.strip() or self.output.strip()).splitlines()
+        return lines[-1] if lines else ""
 
 
 def measured(
@@ -43,6 +40,7 @@ def measured(
     *,
     memory: int | None = None,
     environment: Mapping[str, str] | None = None,
+    folder: Path | None = None,
 ) -> Cost:
     """Run a program, at most so many seconds, in at most so many bytes."""
 
@@ -54,9 +52,11 @@ def measured(
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(
             command,
+            stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=errors,
             env=environment,
+            cwd=folder,
             preexec_fn=bounded,
             start_new_session=True,
         )
@@ -73,9 +73,7 @@ def measured(
         for file in (output, errors):
             file.seek(0)
             texts.append(file.read().decode(errors="replace"))
-    lines = (texts[1].strip() or texts[0].strip()).splitlines()
-    cpu, said = usage.ru_utime + usage.ru_stime, lines[-1] if lines else ""
-    return Cost(seconds, cpu, peak, process.returncode, texts[0], said)
+    return Cost(seconds, usage.ru_utime + usage.ru_stime, peak, process.returncode, *texts)
 
 
 def _mebibytes(pid: int) -> float:

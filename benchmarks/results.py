@@ -58,27 +58,16 @@ TITLES = {
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is to be reached in one mode.
+    """What is to be reached in one mode."""
 
-    Attributes:
-        mode: what is measured.
-        section: whose results count.
-        ours: label of our form.
-        peer: label of the peer.
-        form: of the formulas.
-        times: the peer is to need so many times our CPU time, in the median of the workloads,
-        least: and at least so many times on each of them.
-        changing: only results where at most this share of the rows changes.
-    """
-
-    mode: str
-    section: str
-    ours: str
-    peer: str
-    form: str
-    times: float
-    least: float
-    changing: float
+    mode: str  # what is measured
+    section: str  # whose results count
+    ours: str  # label of our form
+    peer: str  # label of the peer
+    form: str  # of the formulas
+    times: float  # the peer is to need so many times our CPU time, in the median of the workloads
+    least: float  # and at least so many times on each of them
+    changing: float  # only results where at most this share of the rows changes
 
 
 def _read_goals() -> Iterator[Goal]:

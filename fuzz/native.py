@@ -63,15 +63,10 @@ PLANS = 200
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What came of a target.
+    """What came of a target."""
 
-    Attributes:
-        counted: as AFL++ says it: runs, seconds, inputs that reached something new.
-        bad: inputs at which something was wrong.
-    """
-
-    counted: dict[str, str]
-    bad: tuple[Path, ...]
+    counted: dict[str, str]  # as AFL++ says it: runs, seconds, inputs that reached something new
+    bad: tuple[Path, ...]  # inputs at which something was wrong
 
 
 def _plan(rng: random.Random, profile: Profile, which: int) -> Plan:

@@ -13,19 +13,13 @@ Found = tuple[Counter[str], list[str]]
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A way to compare.
+    """A way to compare."""
 
-    Attributes:
-        about: what is compared with what, in a line.
-        judge: given a seed, the settings and a range of numbers, what came of those cases; it may
-            run in another process.
-        unit: what is counted by these numbers.
-        settings: dataclasses whose fields may be changed; handed to `judge` in this order.
-        part: so many numbers are judged at once.
-    """
-
-    about: str
+    about: str  # what is compared with what, in a line
+    # given a seed, the settings and a range of numbers, what came of those cases; it may run in
+    # another process
     judge: Callable[..., Found]
-    unit: str
+    unit: str  # what is counted by these numbers
+    # dataclasses whose fields may be changed; handed to `judge` in this order
     settings: tuple[Any, ...] = ()
-    part: int = 25
+    part: int = 25  # so many numbers are judged at once

@@ -1,20 +1,18 @@
-"""Doors at which something of a run is lost: files, a pipe of lines, `Live`, `DurableMonitor`.
+"""Doors at which something of a run is lost: a file, a pipe of lines, `Live`, `DurableMonitor`.
 
-What brokers and middleware lose is told to the same driver; how each notices it, its tests show.
+What other readers refuse, and how brokers and middleware notice what they lose, their tests show;
+all of them tell the same driver.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from functools import partial
-from pathlib import Path
 from random import Random
 from time import sleep
 from typing import Any
 
 from benchmarks.comparisons.lost import Door, Trial, Verdicts
-from tests.tools.doors import Content, arrow_of, content_of, written_csv, written_json
+from tests.tools.doors import arrow_of, content_of
 
 from rvmon.adapters.json_objects import JsonObjects, feed_lines
 from rvmon.errors import TraceError
@@ -22,10 +20,6 @@ from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Sample
-from rvmon.trace.schema import Kind
-
-_KNOWN = TraceProfile(advances=False, unknowns=False)
-_TYPES = {Kind.BOOL: "boolean", Kind.INT: "integer", Kind.REAL: "number", Kind.LABEL: "string"}
 
 
 def _object_of(sample: Sample) -> bytes:
@@ -41,116 +35,31 @@ def _damaged(rng: Random, line: bytes) -> bytes:
     return rng.choice([half, line[:-1] + b',"q":1,"q":1}', large, b"\xff", b"[]", b'"on"'])
 
 
-def _damaged_row(rng: Random, line: bytes) -> bytes:
-    """A row of a table of which cells are missing, or hold what is none."""
-    short = b",".join(line.split(b",")[: rng.randrange(1, line.count(b",") + 1)])
-    return rng.choice([short, line + b",1", b'"' + line, b"\xff" + line, b"x" + line])
-
-
-def _through_file(write: Callable[[Trial, str], Path], lines: int | None, trial: Trial) -> Any:
-    """A file that is damaged, ends too soon, or lacks what a name feeds.
-
-    Args:
-        write: makes the file, without a name.
-        lines: so many are no rows; `None`: it is no text, and any of its bytes may be others.
-        trial: the run.
-    """
-    rng = trial.rng
-    # In sampled time messages of a topic that is not there are no positions either.
-    is_lacking = trial.case.spec.time is not TimeModel.SAMPLED and rng.random() < 0.2
-    if is_lacking:
-        trial.names = [rng.choice(trial.names)]
-    trial.is_whole = not is_lacking
-    path = write(trial, trial.names[0] if is_lacking else "")
-    if not is_lacking:
-        (_change_bytes if lines is None else partial(_change_line, lines))(trial, path)
-    how: dict[str, Any] = {}
-    if lines is not None:  # text does not say of which names it could speak
-        how["sources"] = _content(trial, trial.names[0] if is_lacking else "").sources
-    try:
-        return trial.spec.evaluate(path, allow_missing=is_lacking, **how).verdicts
-    except TraceError:
-        return None
-
-
-def _change_line(head: int, trial: Trial, path: Path) -> None:
-    rows = path.read_bytes().splitlines()
-    at = trial.case.samples[trial.lost.start].t
-    place = head + [t for t, _ in _content(trial, "").rows].index(at)
-    damage = _damaged_row if head else _damaged
-    rows[place : trial.rng.choice((place + 1, len(rows)))] = [damage(trial.rng, rows[place])]
-    path.write_bytes(b"\n".join([*rows, b""]))
-
-
-def _change_bytes(trial: Trial, path: Path) -> None:
-    """Some bytes are others, or the file ends there."""
-    rng, body = trial.rng, bytearray(path.read_bytes())
-    place = rng.randrange(4, len(body))
-    if rng.random() < 0.2:
-        del body[place:]
-    for at in range(place, min(len(body), place + rng.choice((1, 1, 2, 8)))):
-        body[at] ^= rng.randrange(1, 256)
-    path.write_bytes(body)
-
-
-def _content(trial: Trial, gone: str) -> Content:
-    """The recording in columns, without those of a name."""
-    whole = content_of(Random(trial.name), trial.case)
-
-    def kept(cells: Any) -> Any:
-        return {n: cell for n, cell in cells.items() if n.partition(".")[0] != gone}
-
-    rows = tuple((t, kept(cells)) for t, cells in whole.rows)
-    return Content(kept(whole.columns), whole.events - {gone}, rows)
-
-
-def _csv(trial: Trial, gone: str) -> Path:
-    return written_csv(_content(trial, gone), trial.folder, "")
-
-
-def _json_lines(trial: Trial, gone: str) -> Path:
-    return written_json(_content(trial, gone), trial.folder)
-
-
-def _parquet(trial: Trial, gone: str) -> Path:
+def _parquet(trial: Trial) -> Verdicts | None:
+    """A file of which bytes are others, that ends too soon, or that lacks what a name feeds."""
     from pyarrow import parquet
 
-    path, table = trial.folder / "a.parquet", arrow_of(_content(trial, gone))
-    size = trial.rng.randint(1, 9)
-    parquet.write_table(table, path, row_group_size=size, write_page_checksum=True)
-    return path
-
-
-def _mcap(trial: Trial, gone: str) -> Path:
-    """Each name is a topic of JSON; chunks hold some messages each."""
-    from mcap.writer import CompressionType, Writer
-
-    spec, channels, path = trial.case.spec, {}, trial.folder / "a.mcap"
-    packing = trial.rng.choice((CompressionType.NONE, CompressionType.ZSTD, CompressionType.LZ4))
-    with path.open("wb") as file:
-        size = trial.rng.choice((50, 200, 9_000))
-        writer: Any = Writer(file, chunk_size=size, compression=packing)
-        writer.start()
-        for name in (*spec.signals, *spec.events):
-            if name == gone or (trial.case.names is not None and name not in trial.case.names):
-                continue
-            if name in spec.signals:
-                kinds = {"data": spec.signals[name].type.kind}
-            else:
-                kinds = {field: one.kind for field, one in spec.events[name].fields.items()}
-            described = {field: {"type": _TYPES[kind]} for field, kind in kinds.items()}
-            text = json.dumps({"type": "object", "properties": described}).encode()
-            schema = writer.register_schema(name, "jsonschema", text)
-            channels[name] = writer.register_channel(f"/{name}", "json", schema)
-        for sample in trial.case.samples:
-            for name, value in sample.values.items():
-                for one in value if isinstance(value, tuple) else (value,):
-                    said = {"data": one} if name in spec.signals else one
-                    text = json.dumps({} if said is True else said).encode()
-                    if name in channels:
-                        writer.add_message(channels[name], sample.t, text, sample.t)
-        writer.finish()
-    return path
+    rng, path = trial.rng, trial.folder / "a.parquet"
+    # In sampled time messages of a topic that is not there are no positions either.
+    is_lacking = trial.case.spec.time is not TimeModel.SAMPLED and rng.random() < 0.5
+    trial.is_whole = not is_lacking
+    table = arrow_of(content_of(Random(trial.name), trial.case))
+    if is_lacking:
+        trial.names = [gone := rng.choice(trial.names)]
+        table = table.drop([n for n in table.column_names if n.partition(".")[0] == gone])
+    parquet.write_table(table, path, row_group_size=rng.randint(1, 9), write_page_checksum=True)
+    if not is_lacking:
+        body = bytearray(path.read_bytes())
+        place = rng.randrange(4, len(body))
+        if rng.random() < 0.2:
+            del body[place:]
+        for at in range(place, min(len(body), place + rng.choice((1, 1, 2, 8)))):
+            body[at] ^= rng.randrange(1, 256)
+        path.write_bytes(body)
+    try:
+        return trial.spec.evaluate(path, allow_missing=is_lacking).verdicts
+    except TraceError:
+        return None
 
 
 def _closed(driver: Driver, clock: SimulatedClock, trial: Trial) -> Verdicts:
@@ -300,10 +209,7 @@ def _refuse(monitor: DurableMonitor, t: int, values: dict[str, Any]) -> None:
 
 
 DOORS = {
-    "csv": Door(partial(_through_file, _csv, 1), _KNOWN, ends=False),
-    "json lines": Door(partial(_through_file, _json_lines, 0), _KNOWN, ends=False),
-    "parquet": Door(partial(_through_file, _parquet, None), _KNOWN, ends=False),
-    "mcap": Door(partial(_through_file, _mcap, None), _KNOWN, ends=False),
+    "parquet": Door(_parquet, TraceProfile(advances=False, unknowns=False), ends=False),
     "stdin": Door(_stdin),
     "live": Door(_live),
     "durable": Door(_durable),

@@ -38,31 +38,20 @@ Verdicts = Mapping[str, Verdict]
 
 @dataclass(slots=True)
 class Trial:
-    """A run, and its samples that are to be lost at a door.
+    """A run, and its samples that are to be lost at a door."""
 
-    Attributes:
-        name: of the run; every draw comes of it.
-        spec: what judges.
-        case: the run as it truly was.
-        lost: the places of the samples that are lost, which follow one another.
-        folder: for files.
-        rng: draws how they are lost.
-        names: what the lost samples spoke of; set by a door that loses only some of it.
-        is_late: set by a door at which they came too late: a failure may stay that was none.
-        is_named: set by a door that knows of each lost sample what it spoke of.
-        is_whole: set by a door that gives verdicts where nothing is lost, or none.
-    """
-
-    name: str
-    spec: Spec
-    case: Case
-    lost: range
-    folder: Path
-    rng: random.Random = field(init=False)
+    name: str  # of the run; every draw comes of it
+    spec: Spec  # what judges
+    case: Case  # the run as it truly was
+    lost: range  # the places of the samples that are lost, which follow one another
+    folder: Path  # for files
+    rng: random.Random = field(init=False)  # draws how they are lost
+    # what the lost samples spoke of; set by a door that loses only some of it
     names: list[str] = field(init=False)
+    # set by a door at which they came too late: a failure may stay that was none
     is_late: bool = False
-    is_whole: bool = False
-    is_named: bool = False
+    is_whole: bool = False  # set by a door that gives verdicts where nothing is lost, or none
+    is_named: bool = False  # set by a door that knows of each lost sample what it spoke of
 
     def __post_init__(self) -> None:
         self.rng = random.Random(f"{self.name} door")
@@ -76,34 +65,23 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of a trial.
+    """What came of a trial."""
 
-    Attributes:
-        name: of the trial.
-        overturned: the requirements whose verdict some filling turns that no filling may.
-        is_split: whether fillings turn a verdict.
-        is_refused: whether the door gave no verdict.
-    """
-
-    name: str
+    name: str  # of the trial
+    # the requirements whose verdict some filling turns that no filling may
     overturned: tuple[str, ...]
-    is_split: bool
-    is_refused: bool
+    is_split: bool  # whether fillings turn a verdict
+    is_refused: bool  # whether the door gave no verdict
 
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """What loses something.
+    """What loses something."""
 
-    Attributes:
-        through: gives the verdicts of a trial; `None`: it refuses the run.
-        traces: what runs may hold.
-        ends: whether time goes on behind the last sample, by a tick.
-    """
-
+    # gives the verdicts of a trial; `None`: it refuses the run
     through: Callable[[Trial], Verdicts | None]
-    traces: TraceProfile = _TRACES
-    ends: bool = True
+    traces: TraceProfile = _TRACES  # what runs may hold
+    ends: bool = True  # whether time goes on behind the last sample, by a tick
 
 
 def trials(door: str, how: Door, seed: object, folder: Path) -> Iterator[Trial]:

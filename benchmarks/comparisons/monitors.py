@@ -51,21 +51,14 @@ TABLEAU_MOST = 8
 
 @dataclass(frozen=True, slots=True)
 class Verdicts:
-    """Settings of `verdicts`.
+    """Settings of `verdicts`."""
 
-    Attributes:
-        forms: of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, `c+next+interrupt`.
-        traces: for each specification.
-        windows: per cent of the specifications that are windows in windows.
-        letters: per cent that speak of 17 propositions at once.
-        online_every: what each call says is compared in every so many-th case.
-    """
-
+    # of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, `c+next+interrupt`
     forms: str = "c"
-    traces: int = 1
-    windows: int = 0
-    letters: int = 0
-    online_every: int = 10
+    traces: int = 1  # for each specification
+    windows: int = 0  # per cent of the specifications that are windows in windows
+    letters: int = 0  # per cent that speak of 17 propositions at once
+    online_every: int = 10  # what each call says is compared in every so many-th case
 
     def __post_init__(self) -> None:
         try:
@@ -201,17 +194,12 @@ def judge_hits(seed: int, numbers: range) -> Found:
 
 @dataclass(frozen=True, slots=True)
 class Fillings:
-    """Settings of `fillings`.
+    """Settings of `fillings`."""
 
-    Attributes:
-        fillings: so many are tried for each run.
-        stretches: whether stretches of time are lost; then every other run lost nothing else.
-        about: only specifications that hold this text.
-    """
-
-    fillings: int = 8
+    fillings: int = 8  # so many are tried for each run
+    # whether stretches of time are lost; then every other run lost nothing else
     stretches: bool = False
-    about: str = ""
+    about: str = ""  # only specifications that hold this text
 
 
 def judge_fillings(seed: int, own: Fillings, profile: Profile, numbers: range) -> Found:
@@ -238,15 +226,11 @@ def judge_fillings(seed: int, own: Fillings, profile: Profile, numbers: range) -
 
 @dataclass(frozen=True, slots=True)
 class Forecasts:
-    """Settings of `forecasts`.
+    """Settings of `forecasts`."""
 
-    Attributes:
-        words: on which each formula is judged.
-        timed: whether formulas have windows of a few ticks, in held time; the tableau is given them
-            unrolled, and a forecast that the monitor does not give is counted as missed.
-    """
-
-    words: int = 20
+    words: int = 20  # on which each formula is judged
+    # whether formulas have windows of a few ticks, in held time; the tableau is given them
+    # unrolled, and a forecast that the monitor does not give is counted as missed
     timed: bool = False
 
 

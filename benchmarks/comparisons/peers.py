@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from benchmarks.comparisons.comparison import Comparison, Found
@@ -13,7 +13,6 @@ from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monitor, ask_oracle
 from tests.tools.common_fragment import UntranslatableError, names_in
-from tests.tools.shrink import smaller_formulas
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
@@ -46,15 +45,10 @@ Ask = Callable[[Question], tuple[Values, Values]]
 
 @dataclass(frozen=True, slots=True)
 class Verdicts:
-    """Settings of `peers`.
+    """Settings of `peers`."""
 
-    Attributes:
-        ways: in which they are asked, with commas.
-        against: `oracle` or `monitor`.
-    """
-
-    ways: str = ",".join(WAYS)
-    against: str = "oracle"
+    ways: str = ",".join(WAYS)  # in which they are asked, with commas
+    against: str = "oracle"  # `oracle` or `monitor`
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +103,7 @@ def _judge(
                 for pair in zip(ours, theirs, strict=True):
                     counts[f"{name}: ticks, {' / '.join(map(_word, pair))}"] += 1
                 if _disagree(ours, theirs):
-                    small = shrink(question, ask)
-                    texts.append(f"{name}, number {number}\n{_show(way, small, *ask(small))}")
+                    texts.append(f"{name}, number {number}\n{_show(way, question, ours, theirs)}")
     return counts, texts
 
 
@@ -174,37 +167,6 @@ def _show(way: Way, question: Question, ours: Values, theirs: Values) -> str:
         cells = ["." if value is None else f"{value:g}" for value in column]
         lines.append(f"  {name:6} " + " ".join(cells))
     return "\n".join(lines)
-
-
-def shrink(question: Question, ask: Ask) -> Question:
-    """A smaller question on which both still disagree; greedy."""
-    found: Question | None = question
-    while found is not None:
-        question = found
-        found = next((one for one in _smaller(question) if _differs(ask, one)), None)
-    return question
-
-
-def _differs(ask: Ask, question: Question) -> bool:
-    try:
-        return _disagree(*ask(question))
-    except (PeerError, RvmonError, ValueError):
-        return False
-
-
-def _smaller(question: Question) -> Iterator[Question]:
-    for smaller in smaller_formulas(question.formula):
-        yield replace(question, formula=smaller)
-    if question.ticks > 1:
-        for cut in (slice(0, -1), slice(1, None)):
-            columns = {name: column[cut] for name, column in question.columns.items()}
-            yield replace(question, columns=columns)
-    for name, column in question.columns.items():
-        for tick in range(question.ticks):
-            if column[tick]:
-                quiet = 0.0 if isinstance(column[tick], float) else False
-                changed = [*column[:tick], quiet, *column[tick + 1 :]]
-                yield replace(question, columns={**question.columns, name: changed})
 
 
 COMPARISONS = {

@@ -29,19 +29,12 @@ OPEN = f"{HEAD}upon e then within 3600 s x > 11\n"
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """A specification and samples.
+    """A specification and samples."""
 
-    Attributes:
-        text: the specification.
-        rows: the samples.
-        period: ticks from one to the next.
-        before: samples that are not measured.
-    """
-
-    text: str
-    rows: Rows
-    period: int = SECOND
-    before: int = 0
+    text: str  # the specification
+    rows: Rows  # the samples
+    period: int = SECOND  # ticks from one to the next
+    before: int = 0  # samples that are not measured
 
 
 def values(count: int, unknown: float = 0, events: float = 0) -> Rows:

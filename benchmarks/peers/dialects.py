@@ -35,31 +35,22 @@ ALWAYS_ONE = "one"
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How a peer writes formulas.
+    """How a peer writes formulas."""
 
-    Attributes:
-        name: of the peer and its time model.
-        operators: by operator its template, `{0}` and `{1}` for operands, `{bound}` for the window.
-        proposition: how a Boolean column is read.
-        comparison: how a numeric column is compared with a number; empty: it is not.
-        bound: how the window is written.
-        endless: how no upper bound is written; `None`: only windows from 0 on can be endless.
-        ever: whether operators without a window can be written.
-        point: whether `[0, 0]` can be written.
-        split: whether `U` and `S` from above 0 are to be expressed by those from 0 on.
-        weakened: whether `U` and `S` from 0 on are written with the right operand or-ed to the
-            left, as the peer wants the left one also at the instant of the right one.
-    """
-
-    name: str
+    name: str  # of the peer and its time model
+    # by operator its template, `{0}` and `{1}` for operands, `{bound}` for the window
     operators: Mapping[UnaryOp | BinaryOp, str]
-    proposition: str = "({} > 0.5)"
+    proposition: str = "({} > 0.5)"  # how a Boolean column is read
+    # how a numeric column is compared with a number; empty: it is not
     comparison: str = "({} {} {})"
-    bound: str = "[{}:{}]"
+    bound: str = "[{}:{}]"  # how the window is written
+    # how no upper bound is written; `None`: only windows from 0 on can be endless
     endless: str | None = None
-    ever: bool = True
-    point: bool = True
-    split: bool = False
+    ever: bool = True  # whether operators without a window can be written
+    point: bool = True  # whether `[0, 0]` can be written
+    split: bool = False  # whether `U` and `S` from above 0 are to be expressed by those from 0 on
+    # whether `U` and `S` from 0 on are written with the right operand or-ed to the left, as the
+    # peer wants the left one also at the instant of the right one
     weakened: bool = False
 
 
@@ -171,18 +162,12 @@ REELAY_DISCRETE = Dialect(
     endless="",
     point=False,
 )
-REELAY_ROBUSTNESS = replace(
-    REELAY_DISCRETE, name="reelay, discrete robustness", proposition="{{{} > 0.5}}", split=True
-)
 REELAY_DENSE = replace(
     REELAY_DISCRETE,
     name="reelay, dense",
     operators={**_WORDS, **_PAST},
     split=True,
     weakened=True,
-)
-REELAY_DENSE_ROBUSTNESS = replace(
-    REELAY_DENSE, name="reelay, dense robustness", proposition="{{{} > 0.5}}"
 )
 RTAMT_DISCRETE = Dialect(
     "rtamt, discrete",

@@ -23,20 +23,15 @@ TABLE = Path(__file__).with_name("differences.toml")
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One point in which a peer reads a formula or a trace otherwise.
+    """One point in which a peer reads a formula or a trace otherwise."""
 
-    Attributes:
-        peer: its package, the class that asks it, and what that is told of time and semantics.
-        reading: the peer's, in words.
-        formula: in the peer's language.
-        theirs: the peer's answer per tick, of a robustness the sign; or how its error begins.
-        same: what looks like the same formula here, on the same trace, in one of our time models.
-    """
-
+    # its package, the class that asks it, and what that is told of time and semantics
     peer: tuple[str, str, str]
-    reading: str
-    formula: str
+    reading: str  # the peer's, in words
+    formula: str  # in the peer's language
+    # the peer's answer per tick, of a robustness the sign; or how its error begins
     theirs: list[Cell] | str
+    # what looks like the same formula here, on the same trace, in one of our time models
     same: Question
 
 

@@ -27,19 +27,12 @@ LETTERS = "pqrs"
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """What was installed.
+    """What was installed."""
 
-    Attributes:
-        python: the interpreter that has the peers.
-        versions: of each package that installed, by name.
-        missing: for each package that did not install, the reason in one line.
-        reelay: the C++ monitor; `None`: see `missing`.
-    """
-
-    python: Path
-    versions: dict[str, str]
-    missing: dict[str, str]
-    reelay: Path | None = None
+    python: Path  # the interpreter that has the peers
+    versions: dict[str, str]  # of each package that installed, by name
+    missing: dict[str, str]  # for each package that did not install, the reason in one line
+    reelay: Path | None = None  # the C++ monitor; `None`: see `missing`
 
 
 def prepare() -> Environment:

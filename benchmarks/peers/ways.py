@@ -37,16 +37,11 @@ Columns = Mapping[str, Sequence[Cell]]
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A formula and a trace.
+    """A formula and a trace."""
 
-    Attributes:
-        formula: over the names of the columns.
-        columns: all of one length.
-        time: `held` or `sampled`; the same here, as there is a sample at every tick.
-    """
-
-    formula: Formula
-    columns: Columns
+    formula: Formula  # over the names of the columns
+    columns: Columns  # all of one length
+    # `held` or `sampled`; the same here, as there is a sample at every tick
     time: TimeModel = TimeModel.HELD
 
     @property
@@ -56,25 +51,15 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """One way to ask one peer.
+    """One way to ask one peer."""
 
-    Attributes:
-        package: its name in the package index.
-        adapter: the class that asks it.
-        kind: what the adapter is given of time and semantics.
-        dialect: the language.
-        time: the time model of ours that it stands for.
-        shape: what random formulas hold that it is asked.
-        sign: whether it answers with a robustness, whose sign counts; 0 says nothing.
-    """
-
-    package: str
-    adapter: str
-    kind: str
-    dialect: Dialect
-    time: TimeModel
-    shape: Shape
-    sign: bool = False
+    package: str  # its name in the package index
+    adapter: str  # the class that asks it
+    kind: str  # what the adapter is given of time and semantics
+    dialect: Dialect  # the language
+    time: TimeModel  # the time model of ours that it stands for
+    shape: Shape  # what random formulas hold that it is asked
+    sign: bool = False  # whether it answers with a robustness, whose sign counts; 0 says nothing
 
     def says(self, peer: Peer, question: Question) -> list[float | None]:
         """What the peer says at every tick.
@@ -111,17 +96,10 @@ _REELAY, _RTAMT, _MSTLO = ("reelay", "Reelay"), ("rtamt", "Rtamt"), ("mstlo-pyth
 
 WAYS = {
     "reelay-discrete": Way(*_REELAY, "discrete", dialects.REELAY_DISCRETE, _SAMPLED, _PAST_STEP),
-    "reelay-discrete-robustness": Way(
-        *_REELAY, "discrete robustness", dialects.REELAY_ROBUSTNESS, _SAMPLED, _PAST_STEP, True
-    ),
     "reelay-dense": Way(*_REELAY, "dense", dialects.REELAY_DENSE, _HELD, _PAST),
-    "reelay-dense-robustness": Way(
-        *_REELAY, "dense robustness", dialects.REELAY_DENSE_ROBUSTNESS, _HELD, _PAST, True
-    ),
     "rtamt-discrete": Way(*_RTAMT, "discrete", dialects.RTAMT_DISCRETE, _SAMPLED, _BOTH_STEP, True),
     "rtamt-dense": Way(*_RTAMT, "dense", dialects.RTAMT_DENSE, _HELD, _BOTH, True),
     "mstlo-delayed": Way(*_MSTLO, "DelayedQualitative", dialects.MSTLO, _HELD, _FUTURE),
-    "mstlo-robustness": Way(*_MSTLO, "DelayedQuantitative", dialects.MSTLO, _HELD, _FUTURE, True),
     "sentil": Way("sentil", "Sentil", "discrete", dialects.SENTIL, _SAMPLED, _BOTH_STEP, True),
 }
 

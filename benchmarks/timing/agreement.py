@@ -45,25 +45,15 @@ MEASURED_ROWS = 2_000
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """Rows at which both sides had a verdict.
+    """Rows at which both sides had a verdict."""
 
-    Attributes:
-        label: the contender.
-        name: of the workload.
-        form: of the workload.
-        equal: so many were the same.
-        compared: of so many.
-        false: of these, ours said FALSE at so many.
-        remark: why nothing was compared.
-    """
-
-    label: str
-    name: str
-    form: str
-    equal: int = 0
-    compared: int = 0
-    false: int = 0
-    remark: str = ""
+    label: str  # the contender
+    name: str  # of the workload
+    form: str  # of the workload
+    equal: int = 0  # so many were the same
+    compared: int = 0  # of so many
+    false: int = 0  # of these, ours said FALSE at so many
+    remark: str = ""  # why nothing was compared
 
 
 class _Case:

@@ -48,27 +48,16 @@ cross both = fast, near
 
 @dataclass(slots=True)
 class Task:
-    """A way to judge some files.
+    """A way to judge some files."""
 
-    Attributes:
-        what: is judged.
-        who: judges.
-        command: exits 0 or 1.
-        read: what was found, from what it prints.
-        rows: of all files.
-        refusal: why it was not measured.
-        costs: of the passes that count.
-        found: in the last pass.
-    """
-
-    what: str
-    who: str
-    command: Sequence[str]
-    read: Callable[[str], object]
-    rows: int = 1
-    refusal: str = ""
-    costs: list[Cost] = field(default_factory=list)
-    found: object = None
+    what: str  # is judged
+    who: str  # judges
+    command: Sequence[str]  # exits 0 or 1
+    read: Callable[[str], object]  # what was found, from what it prints
+    rows: int = 1  # of all files
+    refusal: str = ""  # why it was not measured
+    costs: list[Cost] = field(default_factory=list)  # of the passes that count
+    found: object = None  # in the last pass
 
 
 def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:

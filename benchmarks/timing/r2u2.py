@@ -28,18 +28,12 @@ COMPARED_ROWS = 2_000
 
 @dataclass(slots=True)
 class R2u2:
-    """A contender; what is built for one workload serves until there is another.
+    """A contender; what is built for one workload serves until there is another."""
 
-    Attributes:
-        source: the clone.
-        folder: for what is built.
-        built_for: the name of the workload.
-    """
-
-    source: Path
+    source: Path  # the clone
     label: str = "R2U2 C, memory"
-    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))
-    built_for: str = ""
+    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))  # for what is built
+    built_for: str = ""  # the name of the workload
     sizes: tuple[str, ...] = ()
 
     def prepare(self, workload: Workload, rows: int) -> None:

@@ -43,46 +43,27 @@ class Pass:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """What one contender needed for one workload.
+    """What one contender needed for one workload."""
 
-    Attributes:
-        label: the contender.
-        rows: of each pass.
-        median: CPU ns per row.
-        least: of the passes.
-        most: of the passes.
-        violated: the first violated row of each formula.
-    """
-
-    label: str
-    rows: int
-    median: float
-    least: float
-    most: float
-    violated: tuple[int | None, ...]
+    label: str  # the contender
+    rows: int  # of each pass
+    median: float  # CPU ns per row
+    least: float  # of the passes
+    most: float  # of the passes
+    violated: tuple[int | None, ...]  # the first violated row of each formula
 
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """All figures of one workload.
+    """All figures of one workload."""
 
-    Attributes:
-        section: the table.
-        name: the line.
-        form: `past` or `future`.
-        rows: of the whole trace.
-        changing: the share of rows at which something changes.
-        figures: of the contenders that took part.
-        refusals: of the others, the reason by label.
-    """
-
-    section: str
-    name: str
-    form: str
-    rows: int
-    changing: float
-    figures: tuple[Figure, ...]
-    refusals: tuple[tuple[str, str], ...] = ()
+    section: str  # the table
+    name: str  # the line
+    form: str  # `past` or `future`
+    rows: int  # of the whole trace
+    changing: float  # the share of rows at which something changes
+    figures: tuple[Figure, ...]  # of the contenders that took part
+    refusals: tuple[tuple[str, str], ...] = ()  # of the others, the reason by label
 
 
 class Contender(Protocol):
@@ -151,20 +132,13 @@ class NativeReelay:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A peer that takes part.
+    """A peer that takes part."""
 
-    Attributes:
-        label: as it stands in the tables.
-        way: how it is asked.
-        form: the only form of formulas that is measured; empty: both.
-        required: how a formula is demanded at every row.
-        most: with more formulas, passing over a few rows, or making the monitors, takes too long.
-    """
-
-    label: str
-    way: Way
-    form: str = ""
-    required: str = "{}"
+    label: str  # as it stands in the tables
+    way: Way  # how it is asked
+    form: str = ""  # the only form of formulas that is measured; empty: both
+    required: str = "{}"  # how a formula is demanded at every row
+    # with more formulas, passing over a few rows, or making the monitors, takes too long
     most: int = 1_000
 
     def request(self, workload: Workload, rows: int) -> dict[str, Any]:

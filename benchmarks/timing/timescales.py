@@ -30,22 +30,15 @@ _WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """One property with its traces.
+    """One property with its traces."""
 
-    Attributes:
-        name: property and scope.
-        names: the columns.
-        past: the past form, to hold at every row; with `LOW` and `HIGH` bounds.
-        future: the future form, likewise.
-        episode: rows on which both forms hold, for the bounds low and high.
-        violation: rows on which the past form is false at the last of them.
-    """
-
-    name: str
-    names: str
-    past: str
-    future: str
+    name: str  # property and scope
+    names: str  # the columns
+    past: str  # the past form, to hold at every row; with `LOW` and `HIGH` bounds
+    future: str  # the future form, likewise
+    # rows on which both forms hold, for the bounds low and high
     episode: Callable[[random.Random, int, int], Sequence[Part]]
+    # rows on which the past form is false at the last of them
     violation: Callable[[int], Sequence[Part]]
 
     def text(self, form: str, high: int) -> str:

@@ -21,23 +21,14 @@ SECOND = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Workload:
-    """Formulas to hold at every row, and the rows.
+    """Formulas to hold at every row, and the rows."""
 
-    Attributes:
-        section: the table it belongs to.
-        name: the line of that table.
-        form: `past` or `future`: what the formulas speak of.
-        formulas: with bounds in rows.
-        columns: by name the value at each row.
-        period: ticks from row to row.
-    """
-
-    section: str
-    name: str
-    form: str
-    formulas: tuple[Formula, ...]
-    columns: Mapping[str, Column]
-    period: int = 1
+    section: str  # the table it belongs to
+    name: str  # the line of that table
+    form: str  # `past` or `future`: what the formulas speak of
+    formulas: tuple[Formula, ...]  # with bounds in rows
+    columns: Mapping[str, Column]  # by name the value at each row
+    period: int = 1  # ticks from row to row
 
     @property
     def rows(self) -> int:
@@ -55,35 +46,21 @@ class Workload:
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How much is measured.
+    """How much is measured."""
 
-    Attributes:
-        rows: of the traces that are judged row by row.
-        columns: rows of what is judged in memory or by whole processes; and a tenth of them.
-        longest: rows of the traces on which deadlines grow.
-        bounds: of the Timescales families.
-        counts: of monitors on one stream.
-        traces: damaged ones per agreement.
-        step_seconds: that a peer may step on one workload to be compared.
-        repeats: passes of each contender.
-        processes: of each program, beside a first one that does not count.
-        file_rows: of one large file.
-        files: of many.
-        pass_seconds: what one pass may take; slow contenders get fewer rows.
-    """
-
-    rows: int = 50_000
+    rows: int = 50_000  # of the traces that are judged row by row
+    # rows of what is judged in memory or by whole processes; and a tenth of them
     columns: int = 1_000_000
-    longest: int = 300_000
-    bounds: tuple[int, ...] = timescales.BOUNDS
-    counts: tuple[int, ...] = (10, 100, 1000)
-    traces: int = 2
-    step_seconds: float = 30
-    repeats: int = 5
-    processes: int = 3
-    file_rows: int = 10_000_000
-    files: int = 1_000
-    pass_seconds: float = 0.1
+    longest: int = 300_000  # rows of the traces on which deadlines grow
+    bounds: tuple[int, ...] = timescales.BOUNDS  # of the Timescales families
+    counts: tuple[int, ...] = (10, 100, 1000)  # of monitors on one stream
+    traces: int = 2  # damaged ones per agreement
+    step_seconds: float = 30  # that a peer may step on one workload to be compared
+    repeats: int = 5  # passes of each contender
+    processes: int = 3  # of each program, beside a first one that does not count
+    file_rows: int = 10_000_000  # of one large file
+    files: int = 1_000  # of many
+    pass_seconds: float = 0.1  # what one pass may take; slow contenders get fewer rows
 
 
 QUICK = Size(5_000, 100_000, 20_000, (10, 1000), (10, 100), 1, 10, 3, 2, 1_000_000, 40, 0.05)
