@@ -4,8 +4,8 @@ from dataclasses import replace
 from itertools import islice
 
 import pytest
-from benchmarks.comparisons.lossy_doors import DOORS
-from benchmarks.comparisons.lost import outcomes, trials
+from tests.tools.lossy_doors import DOORS
+from tests.tools.lost import outcomes, trials
 
 pytestmark = pytest.mark.law
 RUNS = 50

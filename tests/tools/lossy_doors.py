@@ -11,15 +11,14 @@ from random import Random
 from time import sleep
 from typing import Any
 
-from benchmarks.comparisons.lost import Door, Trial, Verdicts
-from tests.tools.doors import arrow_of, content_of
-
 from rvmon.adapters.json_objects import JsonObjects, feed_lines
 from rvmon.errors import TraceError
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Sample
+from tests.tools.doors import arrow_of, content_of
+from tests.tools.lost import Door, Trial, Verdicts
 
 
 def _object_of(sample: Sample) -> bytes:

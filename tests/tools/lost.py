@@ -11,15 +11,14 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from tests.tools.differential import cases_of
-from tests.tools.law import judge, word
-from tests.tools.sound import is_spoken_of, narrowed
-
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 from rvmon.verdict import Verdict
+from tests.tools.differential import cases_of
+from tests.tools.law import judge, word
+from tests.tools.sound import is_spoken_of, narrowed
 
 FILLINGS = 6
 """So many times what was lost is filled in: once by what it really was."""
