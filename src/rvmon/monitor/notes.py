@@ -49,7 +49,7 @@ _WHY = (
 
 
 class Note(NamedTuple):
-    """A note of the core about an attempt; the layout of its words is described in `told.c`.
+    """A note of the core about an attempt; the layout of its words is described in `write_notes.c`.
 
     Attributes:
         words: the int64 words of the note.

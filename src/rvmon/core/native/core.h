@@ -226,7 +226,7 @@ void rv_each_open(rv_monitor *m, rv_take take, void *user);
 /* Notes: for each record, the raw data from which a reason ("why did it fail?") can be derived:
  * where its automaton stood just before the decision, since when each proposition had its truth,
  * and the letters that matter. Off by default: a note takes some tens of words per decision and
- * some nanoseconds per change. notes/told.c documents the words.
+ * some nanoseconds per change. notes/write_notes.c documents the words.
  *
  * Letters are stored in chunks called pieces, shared by many notes; a full piece never changes. A
  * reader may attach two pointers of its own to a piece; `let_go` is called with each when the piece

@@ -326,7 +326,7 @@ struct home {
     int32_t over_count;
     uint32_t last_rank;
     networks *truths;          /* the form whose truths are recorded (rv_truths); NULL as yet */
-    bool is_blind;             /* an outage hid positions from it, so nothing is told */
+    bool is_blind;             /* an outage hid positions from it, so nothing is reported */
     covering *covering;        /* coverage; NULL: none */
     rv_hit **moves;            /* by judge, moves between locations (rv_moves); NULL: none */
 };
@@ -351,7 +351,7 @@ struct rv_monitor {
     int64_t sorted;            /* records already in order */
     int64_t captured_count;
     int64_t captured_room;
-    int64_t *notes;            /* note words, and the states that notes share (notes/told.c) */
+    int64_t *notes;            /* note words, and the states that notes share (notes/write_notes.c) */
     int64_t note_count;
     int32_t note_room;
     int32_t span_count;

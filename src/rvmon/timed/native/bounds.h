@@ -24,7 +24,7 @@ static inline cut opposite(cut c)
 }
 
 /* As answers have it. */
-static inline int64_t told_bound(bound b)
+static inline int64_t number_of_bound(bound b)
 {
     return (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
 }

@@ -55,7 +55,7 @@ static int counts(void *context, const numbers *path, int32_t loop, const int64_
     return (counted < 0) ? -1 : (counted > 0);
 }
 
-static PyObject *told(const answer *found)
+static PyObject *answered(const answer *found)
 {
     const Py_ssize_t path = (Py_ssize_t)(found->path.count * sizeof *found->path.at);
     const size_t part = (size_t)found->dim * found->dim * sizeof *found->parts;
@@ -129,7 +129,7 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
         found = search(numbers_of, costs_of, &from);
         PyEval_RestoreThread(c.thread);
         if (PyErr_Occurred() == NULL) {
-            made = told(&found);
+            made = answered(&found);
         }
         release_answer(&found);
     }

@@ -113,8 +113,8 @@ static void tell_way(engine *h, uint32_t back)
     }
 }
 
-/* Whether time passes without bound on the loop that was told, which starts at a node: 1 or 0; -1 if
- * the search ended. */
+/* Whether time passes without bound on the given loop, which starts at a node: 1 or 0; -1 if the
+ * search ended. */
 static int ask_counts(engine *h, uint32_t n)
 {
     int64_t *head;
@@ -126,7 +126,7 @@ static int ask_counts(engine *h, uint32_t n)
         return -1;
     }
     for (e = 0; e < h->entries; e++) {
-        head[e] = told_bound(zone_of(h, n)[e]);
+        head[e] = number_of_bound(zone_of(h, n)[e]);
     }
     counts = h->from->counts(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
     give_back(h, head, room, sizeof *head);

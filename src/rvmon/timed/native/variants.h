@@ -198,7 +198,7 @@ static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
         }
     }
     if (!apply(h, w, edges, n)) {
-        const bool is_numbers = h->failed; /* told where the move itself is taken */
+        const bool is_numbers = h->failed; /* reported where the move itself is taken */
         h->failed = false;
         return is_numbers;
     }
@@ -258,7 +258,7 @@ static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink t
         || is_watcher(h, edge_at(h, edges[0])[EDGE_AUTOMATON])) {
         return take(h, w, edges, n);
     }
-    if (!apply(h, w, edges, n)) { /* told where the move itself is taken */
+    if (!apply(h, w, edges, n)) { /* reported where the move itself is taken */
         h->failed = false;
         h->state = before;
         return take(h, w, edges, n);

@@ -286,42 +286,42 @@ static void tell_end(engine *h)
 
 static answer search_here(const int32_t *plan, const double *costs, const caller *from)
 {
-    answer told;
+    answer found;
     engine made;
     engine *h = &made;
     uint32_t k;
     int e;
-    (void)memset(&told, 0, sizeof told);
+    (void)memset(&found, 0, sizeof found);
     if (make_engine(h, plan, costs, from)) {
         run(h);
         tell_end(h);
     }
     if ((h->state == SEARCH_FOUND) && (h->parts.count > 0)) {
         uint32_t room = 0;
-        told.parts = enlarge(h, NULL, &room, (uint64_t)h->parts.count * (uint64_t)h->entries,
-                             sizeof *told.parts);
-        for (k = 0; (told.parts != NULL) && (k < h->parts.count); k++) {
+        found.parts = enlarge(h, NULL, &room, (uint64_t)h->parts.count * (uint64_t)h->entries,
+                             sizeof *found.parts);
+        for (k = 0; (found.parts != NULL) && (k < h->parts.count); k++) {
             for (e = 0; e < h->entries; e++) {
-                told.parts[(size_t)k * (size_t)h->entries + (size_t)e] =
-                    told_bound(nth(h, &h->parts, k)[e]);
+                found.parts[(size_t)k * (size_t)h->entries + (size_t)e] =
+                    number_of_bound(nth(h, &h->parts, k)[e]);
             }
-            told.part_count = k + 1;
+            found.part_count = k + 1;
         }
     }
-    told.state = h->state;
-    told.ending = h->ending;
-    told.loop = h->loop;
-    told.improper = h->improper;
-    told.visited = h->visited;
-    told.stored = h->stored;
-    told.states = h->state_count;
-    told.peak = h->peak;
-    told.path = h->path;
-    told.dim = (uint32_t)h->dim;
-    told.spans = h->spans;
-    told.span_count = (h->spans != NULL) ? (uint32_t)h->automata[3 * h->automaton_count - 2] : 0;
-    told.memory = h->memory;
-    return told;
+    found.state = h->state;
+    found.ending = h->ending;
+    found.loop = h->loop;
+    found.improper = h->improper;
+    found.visited = h->visited;
+    found.stored = h->stored;
+    found.states = h->state_count;
+    found.peak = h->peak;
+    found.path = h->path;
+    found.dim = (uint32_t)h->dim;
+    found.spans = h->spans;
+    found.span_count = (h->spans != NULL) ? (uint32_t)h->automata[3 * h->automaton_count - 2] : 0;
+    found.memory = h->memory;
+    return found;
 }
 
 #endif

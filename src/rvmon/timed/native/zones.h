@@ -12,8 +12,8 @@ typedef enum { SEARCH_RUNS, SEARCH_ENDED, SEARCH_FOUND, SEARCH_STOPPED, SEARCH_F
 /* How a run ends that was found. */
 enum { END_REACHED, END_DEAD, END_IDLE, END_STUCK, END_LOOP, END_ZENO };
 
-/* Steps of a path, each told as: kind, piece behind (-1: none), a number, edges, their indices. Of a
- * move the number is of further bounds under which it can be taken, told as: x, y, c, 1 for `<= c`. */
+/* Steps of a path, each given as: kind, piece behind (-1: none), a number, edges, their indices. Of a
+ * move the number is of further bounds under which it can be taken, given as: x, y, c, 1 for `<= c`. */
 enum { STEP_MOVE, STEP_CROSSING, STEP_MARK };
 
 typedef struct {

@@ -1,5 +1,5 @@
 /* One bound of the robustness of a formula while a trace goes by: what is new of each operator goes from
- * operands to operators, and a value is told as soon as nothing that may come can change it. What is
+ * operands to operators, and a value is handed on as soon as nothing that may come can change it. What is
  * kept is what is not settled.
  *
  * Source: SEMANTICS 5; Deshmukh et al. 2017 (figures of a part of a trace). */
@@ -163,7 +163,7 @@ void gauge_run(gauging *w)
 
 /* ---- shapes */
 
-/* Which leaves never change and are read by sweeps beside others alone: nobody has to be told of these. */
+/* Which leaves never change and are read by sweeps beside others alone: nobody has to hear of these. */
 static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
 {
     int32_t i;

@@ -185,7 +185,7 @@ void margins_clear(run *r)
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
         q->asks.first = q->asks.end = 0;
-        q->told = 0;
+        q->reported = 0;
         q->readings[0].stamps.end = 0;
         q->passes = false;
         q->position = -LIMIT;
@@ -196,7 +196,7 @@ void margins_clear(run *r)
     }
 }
 
-/* Ask for the position at which an attempt begins, up to which nothing was told. */
+/* Ask for the position at which an attempt begins, up to which nothing was asked. */
 void ask_for(run *r, int32_t index, int64_t position, int32_t record)
 {
     measuring *q = &r->margins[index];

@@ -1,6 +1,6 @@
 /* Figures that were found, until somebody takes them; and attempts that wait for theirs.
  *
- * An attempt in doubt has its figure told once it is sure that there was a trigger, or the run is over:
+ * An attempt in doubt has its figure reported once it is sure that there was a trigger, or the run is over:
  * before it may be met, and leave none. */
 #include "margins/margins.h"
 #include "runs/runs.h"
@@ -60,7 +60,7 @@ void margin_vanished(rv_monitor *m, int32_t record)
 }
 
 /* A figure with whose it is; where nothing triggered it, nothing is owed. */
-rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record)
+rv_margin as_reported(const rv_monitor *m, const rv_margin *figure, int32_t record)
 {
     rv_margin made = *figure;
     if (record != 0) {
@@ -111,13 +111,13 @@ static int margins_compared(const void *one, const void *other)
     return (a->number == b->number) ? 0 : ((a->number < b->number) ? -1 : 1);
 }
 
-static bool is_to_be_told(const rv_monitor *m, int32_t record)
+static bool is_reportable(const rv_monitor *m, int32_t record)
 {
     const margin_record *own = (record == 0) ? NULL : &m->margins.records[record - 1];
     return (own == NULL) || own->sure || m->finished;
 }
 
-/* Bring what can be told to the front; what vanished is dropped. */
+/* Bring what can be reported to the front; what vanished is dropped. */
 int64_t rv_margins(rv_monitor *m, const rv_margin **margins)
 {
     margin_results *s = &m->margins;
@@ -135,10 +135,10 @@ int64_t rv_margins(rv_monitor *m, const rv_margin **margins)
         figure = s->found[i];
         if ((record != 0) && s->records[record - 1].vanished) {
             free_record(s, record);
-        } else if (is_to_be_told(m, record)) {
+        } else if (is_reportable(m, record)) {
             s->found[s->ready + waiting] = s->found[s->ready];
             s->owners[s->ready + waiting] = s->owners[s->ready];
-            s->found[s->ready] = as_told(m, &figure, record);
+            s->found[s->ready] = as_reported(m, &figure, record);
             s->owners[s->ready] = 0;
             s->ready++;
             if (record != 0) {
@@ -219,9 +219,9 @@ static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached,
     rv_monitor *m = r->home->monitor;
     measuring *q = &r->margins[index];
     const bool streamed = is_streamed(r, index);
-    const margin_cursor begin = {q->asks.first, q->told};
+    const margin_cursor begin = {q->asks.first, q->reported};
     const int64_t count = q->asks.end - q->asks.first
-                          + (streamed ? q->readings[0].stamps.end - q->told : 0);
+                          + (streamed ? q->readings[0].stamps.end - q->reported : 0);
     const int32_t root = shape_of(r, index)->count - 1;
     const size_t size = (size_t)(3 * count + 1) * sizeof(double);
     margin_end end = {instant, LIMIT, REST_LEAST};
@@ -304,12 +304,12 @@ typedef struct {
 static bool tell_open_margin(void *user, const rv_margin *figure, int32_t record)
 {
     const margin_telling *to = user;
-    rv_margin told;
+    rv_margin reported;
     if ((record == 0) || to->monitor->margins.records[record - 1].vanished) {
         return true;
     }
-    told = as_told(to->monitor, figure, record);
-    return to->take(to->user, &told);
+    reported = as_reported(to->monitor, figure, record);
+    return to->take(to->user, &reported);
 }
 
 void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)

@@ -94,13 +94,13 @@ bool takes_step(gauging *w, int32_t place, int64_t at, double value)
     return has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place));
 }
 
-/* The number of the first position that some operator has not told of, or nobody was told of. */
+/* The number of the first position that some operator has no value of, or that was not reported. */
 static int64_t oldest_position(const gauging *w)
 {
     int64_t found = w->g->stamps.end;
     int32_t i;
     if (!w->thin) {
-        found = least(found, w->q->told);
+        found = least(found, w->q->reported);
     }
     for (i = 0; w->sparse && (i < w->shape->count); i++) {
         const int32_t kind = w->shape->nodes[i].kind;
@@ -149,7 +149,7 @@ static void join_bounds(margin_part *made, const margin_part *before, const marg
     made->high = within(behind->high, before->least, before->most);
 }
 
-/* Work out the bounds of several together, of which those before `middle` are told with all behind. */
+/* Work out the bounds of several together, of which those before `middle` are known with all behind. */
 static void halve(margin_parts *s, int32_t middle)
 {
     int32_t i;

@@ -94,7 +94,7 @@ static void tell_known(run *r, int32_t index)
     gauge *most = q->parted ? &q->readings[1] : NULL;
     const int64_t known = q->parted ? least(least_one->nodes[root].known, most->nodes[root].known)
                                     : least_one->nodes[root].known;
-    margin_cursor next = {q->asks.first, q->told};
+    margin_cursor next = {q->asks.first, q->reported};
     margin_cursor done = next;
     margin_ask one = {0, 0};
     while (next_asked(q, streamed, &next, &one) && (one.position <= known)) {
@@ -106,7 +106,7 @@ static void tell_known(run *r, int32_t index)
     }
     r->asked -= (int32_t)(done.ask - q->asks.first);
     q->asks.first = done.ask;
-    q->told = done.position;
+    q->reported = done.position;
     (void)gauge_value(least_one, root, known); /* nobody asks for what is before */
     if (most != NULL) {
         (void)gauge_value(most, root, known);
@@ -211,7 +211,7 @@ void enter_position(run *r, int32_t index, int64_t t)
     if (!q->active) {
         q->active = true;
         q->parted = false;
-        q->told = 0;
+        q->reported = 0;
         q->work.thin = !is_streamed(r, index);
         q->work.aligned = q->work.sparse && !q->work.thin;
         gauge_begin(s, &q->readings[0], position);
@@ -350,7 +350,7 @@ void margins_miss(run *r, int64_t t)
         margins_cut(r, i, t);
         r->asked -= (int32_t)(q->asks.end - q->asks.first);
         q->asks.first = q->asks.end;
-        q->told = q->readings[0].stamps.end;
+        q->reported = q->readings[0].stamps.end;
         q->missed = true;
         q->active = false;
         q->passes = false;

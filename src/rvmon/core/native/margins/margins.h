@@ -234,7 +234,7 @@ void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask 
 /* ---- margin_results.c */
 bool room_for_figure(rv_monitor *m);
 void margins_cut(run *r, int32_t index, int64_t t);
-rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record);
+rv_margin as_reported(const rv_monitor *m, const rv_margin *figure, int32_t record);
 
 /* The place of another figure, where it stays until it is taken; NULL: there is none. */
 static inline rv_margin *figure_found(rv_monitor *m, int32_t record)

@@ -49,8 +49,8 @@ typedef struct {
     margin_parts parts;        /* of an `until`: what is not settled */
     int64_t known;             /* up to where it is known */
     int64_t joined;            /* up to where its operands are brought together */
-    int64_t next;              /* of a window, the first position that is not told */
-    int64_t positions;         /* the number of the first position that is not told of */
+    int64_t next;              /* of a window, the first position that is not known */
+    int64_t positions;         /* the number of the first position that is not known */
     double carried;            /* what it was last */
     bool begun;
 } margin_node;
@@ -138,8 +138,8 @@ typedef struct measuring {
     gauge scratch;             /* where the end of a trace is tried */
     double *letter[2];         /* scratch: what the leaves are, at least and at most */
     double *behind[2];         /* what they are behind what occurs at a position, likewise */
-    margin_steps asks;         /* positions of attempts that are not told; the value is the record */
-    int64_t told;              /* where each position is asked for: how many are told */
+    margin_steps asks;         /* positions of attempts without a result; the value is the record */
+    int64_t reported;          /* where each position is asked for: how many are reported */
     int64_t position;          /* of the letter that was read last */
     bool passes;               /* what is `behind` the last position is not given yet */
     bool active;

@@ -1,4 +1,4 @@
-/* The history from which notes are written (told.c). It never influences verdicts.
+/* The history from which notes are written (write_notes.c). It never influences verdicts.
  *
  * Per run: for each node that notes describe, since when it has its truth and when it last had each
  * other truth; and the same before the last change of any node, because a network may report a decision

@@ -1,6 +1,6 @@
 /* Notes: the raw data from which monitor/reasons derives why an attempt was decided, or is open.
- * notes.c keeps the history of truths as it happens, letters.c the letters of networks, told.c writes a
- * note with each record. Verdicts never depend on notes. */
+ * notes.c keeps the history of truths as it happens, letters.c the letters of networks, write_notes.c
+ * writes a note with each record. Verdicts never depend on notes. */
 #ifndef RVMON_NOTES_H
 #define RVMON_NOTES_H
 
@@ -24,7 +24,7 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 /* ---- letters.c: the letters by which a network judges */
 void keep_letter(run *r, int32_t index, int64_t t);
 
-/* ---- told.c: writing notes */
+/* ---- write_notes.c: writing notes */
 int64_t note_inconclusive(run *r, int32_t index, const attempt *x);
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
 int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end);
@@ -77,7 +77,7 @@ typedef struct {
 int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number);
 void pin_kept_letters(rv_monitor *m);
 
-/* ---- told.c */
+/* ---- write_notes.c */
 enum { NOTE_DECIDED, NOTE_OPEN, NOTE_NOTHING };
 enum {
     NOTE_NETWORK = 1,          /* the judge is a network */

@@ -197,7 +197,7 @@ PyObject *decided_since(monitor *c);
 PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused);
 
 /* ---- module_rows.c: outages */
-PyObject *told(monitor *c, PyObject *args, telling tell);
+PyObject *pass_on(monitor *c, PyObject *args, telling tell);
 PyObject *lose_of(monitor *c, PyObject *args);
 PyObject *found_of(monitor *c, PyObject *args);
 PyObject *late_of(monitor *c, PyObject *args);

@@ -95,29 +95,29 @@ static PyObject *values_of(const rv_number *values, int32_t count)
     return made;
 }
 
-static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_number *captured)
+static PyObject *attempt_of(const monitor *c, const rv_record *record, const rv_number *captured)
 {
-    const int32_t count = (captured == NULL) ? 0 : c->captured[told->requirement];
+    const int32_t count = (captured == NULL) ? 0 : c->captured[record->requirement];
     const int64_t began = rv_times_of(c->m).began;
     attempt_record *made = new_record(c->attempt);
     if (made == NULL) {
         return NULL;
     }
-    made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
-    made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
-    made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
+    made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, record->requirement));
+    made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, record->verdict));
+    made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, record->decision));
     made->objects[DETAILS] = Py_NewRef(c->details);
-    made->number = told->number;
-    made->triggered = told->triggered;
+    made->number = record->number;
+    made->triggered = record->triggered;
     made->origin = (began != RV_NO_TIME) ? began : 0;
-    made->objects[DECIDED] = (told->decision == (uint8_t)RV_OPEN)
-        ? Py_NewRef(Py_None) : PyLong_FromLongLong(told->decided);
-    made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;
+    made->objects[DECIDED] = (record->decision == (uint8_t)RV_OPEN)
+        ? Py_NewRef(Py_None) : PyLong_FromLongLong(record->decided);
+    made->in_doubt = (record->in_doubt != 0U) ? 1 : 0;
     if (count > 0) {
         made->values = values_of(captured, count);
     }
     if ((made->objects[DECIDED] == NULL) || ((count > 0) && (made->values == NULL))
-        || !copy_note(&made->note, c->m, told)) {
+        || !copy_note(&made->note, c->m, record)) {
         Py_CLEAR(made);
     }
     return (PyObject *)made;

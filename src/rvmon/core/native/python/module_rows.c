@@ -232,7 +232,7 @@ PyObject *rows_of(monitor *c, PyObject *args)
     return made;
 }
 
-/* How module.c is told that names are lost, and found, or came too late. */
+/* How a caller reports that names are lost, and found, or came too late. */
 
 /* Take the numbers of names; false with an error. */
 static bool take_numbers(const monitor *c, PyObject *all, int32_t *numbers)
@@ -252,8 +252,8 @@ static bool take_numbers(const monitor *c, PyObject *all, int32_t *numbers)
     return true;
 }
 
-/* Have the core be told; false if what is there was judged already. */
-PyObject *told(monitor *c, PyObject *args, telling tell)
+/* Report it to the core; false if what is there was judged already. */
+PyObject *pass_on(monitor *c, PyObject *args, telling tell)
 {
     PyObject *names;
     PyObject *all;
@@ -289,12 +289,12 @@ PyObject *told(monitor *c, PyObject *args, telling tell)
 
 PyObject *lose_of(monitor *c, PyObject *args)
 {
-    return told(c, args, rv_lose);
+    return pass_on(c, args, rv_lose);
 }
 
 PyObject *found_of(monitor *c, PyObject *args)
 {
-    return told(c, args, rv_found);
+    return pass_on(c, args, rv_found);
 }
 
 /* late(names, t); of what cannot be read names is None. */
@@ -308,5 +308,5 @@ PyObject *late_of(monitor *c, PyObject *args)
     if (names == Py_None) {
         return is_done(rv_late(c->m, (int64_t)t, NULL, -1)) ? Py_NewRef(Py_True) : NULL;
     }
-    return told(c, args, rv_late);
+    return pass_on(c, args, rv_late);
 }

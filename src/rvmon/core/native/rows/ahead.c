@@ -146,10 +146,10 @@ static void look_for_news(const batch *s, column_watch *w, int64_t first)
         if (w->ignores_nan && (value.kind == RV_UNKNOWN)) {
             w->said &= ~bit;
         } else if (w->how == EACH_UPDATE) {
-            w->told |= bit;
+            w->needed |= bit;
         } else if ((w->how == BY_CONSTANTS) ? !compares_alike(w, &value)
                                             : !are_alike(&value, &w->last)) {
-            w->told |= bit;
+            w->needed |= bit;
             w->last = value;
             if (w->how == BY_CONSTANTS) {
                 learn_between(s, w);
@@ -196,16 +196,16 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
     const rv_column *c = w->column;
     uint64_t moved;
     w->said = bits_before(count);
-    w->told = 0;
+    w->needed = 0;
     if (w->is_event) {
         if (c->says != NULL) {
             w->said = rows_that_say(c, first, count, RV_SAYS_NO, RV_SAYS_YES);
-            w->told = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
+            w->needed = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
         } else {
-            w->told = w->said;
+            w->needed = w->said;
         }
-        w->told = (w->how == EACH_UPDATE) ? w->said : w->told;
-        return w->told;
+        w->needed = (w->how == EACH_UPDATE) ? w->said : w->needed;
+        return w->needed;
     }
     w->is_idle = is_idle_now(s, w);
     if (w->is_idle) {
@@ -221,14 +221,14 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         if (c->says != NULL) {
             w->said = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
         }
-        if ((w->how == EACH_UPDATE) || !find_turns(w, first, count, &w->told)) {
-            w->told = 0;
+        if ((w->how == EACH_UPDATE) || !find_turns(w, first, count, &w->needed)) {
+            w->needed = 0;
             look_for_news(s, w, first);
         }
-        moved = w->told;
+        moved = w->needed;
     }
     if (w->perishable) {
-        w->told = w->said;
+        w->needed = w->said;
         moved |= is_ageless(s, w) ? (w->said & (~w->said + 1)) : 0U; /* the first of them */
     }
     return moved;
@@ -302,7 +302,7 @@ void look_ahead(batch *s, int64_t row)
     for (i = 0; i < s->columns; i++) {
         column_watch *w = &s->watches[i];
         w->said = 0;
-        w->told = 0;
+        w->needed = 0;
         if (w->how != NO_UPDATES) {
             s->moved |= look_at_column(s, w, row, (int32_t)s->together);
         }

@@ -155,7 +155,7 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
     }
     for (i = 0; i < s->columns; i++) {
         const column_watch *w = &s->watches[i];
-        if (known && !bit_at(w->told, k)) {
+        if (known && !bit_at(w->needed, k)) {
             continue;
         }
         if (w->is_event) {

@@ -2,7 +2,7 @@
  * compared column by column, without branches where possible, and only rows at which something can
  * change are judged as samples (rv_step). The result is the same as judging each row.
  *
- * Two row masks per column: `said`, it has an update; `told`, the core has to see that update. A row is
+ * Two row masks per column: `said`, it has an update; `needed`, the core has to see that update. A row is
  * judged if some column tells, or something is due by then. */
 #ifndef RVMON_ROWS_H
 #define RVMON_ROWS_H
@@ -42,7 +42,7 @@ typedef struct {
     int64_t floor;             /* the same for whole numbers: (floor, ceiling) */
     int64_t ceiling;
     uint64_t said;             /* rows with an update, as bits */
-    uint64_t told;             /* those the core has to see */
+    uint64_t needed;           /* those the core has to see */
 } column_watch;
 
 /* A sample assembled from rows. */

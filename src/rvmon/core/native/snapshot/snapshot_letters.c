@@ -91,7 +91,7 @@ typedef struct {
     int32_t chain;             /* number of the first piece of its linked list; -1: not known yet */
     int32_t index;             /* position in that list */
     bool follows;
-} told_piece;
+} numbered_piece;
 
 static void forget_numbers(rv_monitor *m)
 {
@@ -117,7 +117,7 @@ static void forget_numbers(rv_monitor *m)
 /* Number the pieces that notes refer to, into `places` unless NULL; returns how many. Spans are taken
  * last first: per judge the numbered pieces then end with its last span, so reaching a numbered piece
  * ends the walk. */
-static int32_t number_pieces(rv_monitor *m, told_piece *places)
+static int32_t number_pieces(rv_monitor *m, numbered_piece *places)
 {
     int32_t count = 0;
     int32_t i;
@@ -154,7 +154,7 @@ static int32_t widest_letter(const rv_monitor *m)
 }
 
 /* Find the linked list of each piece, and its position there; a cycle is refused. */
-static void chain_pieces(carrier *c, told_piece *places, int32_t count)
+static void chain_pieces(carrier *c, numbered_piece *places, int32_t count)
 {
     int32_t done = 0;
     int32_t i;
@@ -180,7 +180,7 @@ static void chain_pieces(carrier *c, told_piece *places, int32_t count)
     demand(c, done == count);
 }
 
-static void carry_span(carrier *c, const told_piece *places, int32_t count, span_of_letters *own)
+static void carry_span(carrier *c, const numbered_piece *places, int32_t count, span_of_letters *own)
 {
     int32_t first = c->reading ? 0 : own->first->number;
     int32_t last = c->reading ? 0 : own->last->number;
@@ -201,7 +201,7 @@ void carry_spans(carrier *c, rv_monitor *m)
 {
     const int32_t widest = widest_letter(m);
     int32_t count = c->reading ? 0 : number_pieces(m, NULL);
-    told_piece *places;
+    numbered_piece *places;
     size_t size;
     int32_t i;
     carry_size(c, &count, MOST, 9);
@@ -215,7 +215,7 @@ void carry_spans(carrier *c, rv_monitor *m)
         (void)number_pieces(m, places);
     }
     for (i = 0; (i < count) && !is_lost(c); i++) {
-        told_piece *own = &places[i];
+        numbered_piece *own = &places[i];
         int32_t stride = c->reading ? 0 : own->piece->stride;
         carry_int(c, &stride, 1, (int64_t)widest + 1);
         own->piece = (c->reading && !c->refused) ? made_piece(m, stride) : own->piece;

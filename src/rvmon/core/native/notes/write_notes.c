@@ -352,7 +352,7 @@ void bracket_open_notes(rv_monitor *m, bool begins)
 }
 
 /* Whether `count` words at an index are notes. */
-static bool is_told(const rv_monitor *m, int64_t place, int64_t count)
+static bool are_written(const rv_monitor *m, int64_t place, int64_t count)
 {
     return (place >= 0) && (count >= 2) && (count <= m->note_count - place);
 }
@@ -378,16 +378,16 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note)
 {
     const int64_t *words;
     (void)memset(note, 0, sizeof *note);
-    if (!is_told(m, record->note, NOTE_HEAD)) {
+    if (!are_written(m, record->note, NOTE_HEAD)) {
         return false;
     }
     words = &m->notes[record->note];
-    if (!is_told(m, record->note, words[0] >> 40)) {
+    if (!are_written(m, record->note, words[0] >> 40)) {
         return false;
     }
     note->words = words;
     note->count = words[0] >> 40;
-    if (is_told(m, words[1], 2) && is_told(m, words[1], m->notes[words[1]])) {
+    if (are_written(m, words[1], 2) && are_written(m, words[1], m->notes[words[1]])) {
         note->state = &m->notes[words[1]];
         note->state_count = note->state[0];
     }
