@@ -4,7 +4,7 @@ import warnings
 
 import pytest
 
-from rvmon import Verdict, loads
+from rvmon import RvmonError, Verdict, loads
 
 gymnasium = pytest.importorskip("gymnasium")
 SPEC = """
@@ -94,3 +94,5 @@ def test_samples_within_a_step_have_their_instants():
         *_, info = env.step(action)
         decided.append([(one.name, one.triggered, one.decided) for one in info["rv"]["decided"]])
     assert decided == [[], [], [], [], [], [("P2#1", 30_000_000, 230_000_001)]]
+    with pytest.raises(RvmonError, match="step_s"):
+        Judged(gymnasium.make("CartPole-v1"), loads(SPEC), observe, step_s=0.0)

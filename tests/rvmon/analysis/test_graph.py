@@ -1,12 +1,14 @@
 """Drawn automata: their conditions lead where the machine goes."""
 
 import random
+import re
 
 import pytest
 from tests.tools import build
 
 from rvmon.analysis.graph import ANY, cubes_of, graph_of
 from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 
 pytestmark = pytest.mark.law
 
@@ -42,3 +44,19 @@ def test_a_response():
         ("start", "", "f", "P"),
         ("start", "", "not f", "A"),
     ]
+
+
+def test_random_automata_are_drawn():
+    rng = random.Random(3)
+    drawn = 0
+    for _ in range(40):
+        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
+        one = compile_spec(spec).requirements["R1"]
+        if one.automaton is None:
+            continue
+        graph = graph_of(one, one.automaton, spec)
+        names = {place.name for place in graph.places}
+        assert all({edge.source, edge.target} <= names for edge in graph.edges)
+        assert all(re.fullmatch(r"start|P|F|[A-Z]|L\d+", name) for name in names)
+        drawn += 1
+    assert drawn > 20

@@ -60,18 +60,6 @@ def test_a_group_without_goals_is_no_row(tmp_path, capsys):
     assert "0 of 0</td>" not in page.read_text()
 
 
-def test_holes_stand_with_their_reasons(door, capsys):
-    _, lines = shown(capsys, door, "--holes")
-    at = lines.index("6 holes:")
-    assert lines[at + 1] == "near: reach 0 of 1 hit"
-    assert "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m" in lines
-    told = " ".join(lines[at:])
-    assert (
-        "situation: no × far 0 of 1 hit at one instant gaze no, near far. No run has shown near "
-        "far; needs a run in which all of them meet. Nearest: wild-1." in told
-    )
-
-
 def test_requirements_stand_in_the_order_of_the_file(tmp_path, capsys):
     groups = [group_of(name, Subject.REQUIREMENT, [Item("passed")]) for name in ("T2", "T10")]
     path = str(tmp_path / "a.cov")

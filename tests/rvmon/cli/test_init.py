@@ -47,7 +47,7 @@ def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, says):
 @pytest.mark.slow
 def test_random_recordings_run_at_once(tmp_path):
     rng = random.Random(5)
-    for number in range(60):
+    for number in range(30):
         columns = [_random_column(rng, 30) for _ in range(rng.randint(1, 5))]
         names = [f"c{index}" for index in range(len(columns))]
         rows = [

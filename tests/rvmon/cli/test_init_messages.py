@@ -29,6 +29,7 @@ def arm(count=40):
         yield "/odom", t + 10, {"twist": {"twist": {"linear": {"x": x}}}}
         yield "/battery", t + 20, {"present": True, "voltage": 24.0}
         yield "/present", t + 30, {"data": True}
+        yield "/note", t + 35, {"data": "busy" if tick % 3 else "idle"}
         if tick % 10 == 5:
             yield "/go", t + 40, {}
             yield "/done", t + 10**7, {}
@@ -59,6 +60,7 @@ def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, 
     assert "event battery.present" not in text
     assert "battery.voltage: real [V] # always 24;" in text
     assert "battery.voltage >= 24" not in text
+    assert "signal note: {idle, busy}" in text
 
 
 def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_path, capsys):

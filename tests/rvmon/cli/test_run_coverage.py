@@ -117,33 +117,30 @@ def test_from_standard_input(files, monkeypatch):
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits of files")
 @pytest.mark.process
 @pytest.mark.parametrize("kilobytes", [0, 8])
-def test_a_full_disk_is_told_and_takes_nothing_away(tmp_path, kilobytes):
+def test_a_full_disk_is_told_and_takes_nothing_away(files, kilobytes):
     """Whether there was room for none, or some of the tables; `cover` tells what is left of it."""
-    (tmp_path / "arm.rv").write_text(SPEC)
-    (tmp_path / "calm.csv").write_text(CALM)
-    database = str(tmp_path / "c.db")
-    line = [sys.executable, "-m", "rvmon", "run", "arm.rv", "calm.csv", "--coverage", database]
+    resource = pytest.importorskip("resource")
+    words = ["run", "arm.rv", "calm.csv", "--coverage", "c.db"]
 
     def limited():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (kilobytes << 10, kilobytes << 10))
 
-    resource = pytest.importorskip("resource")
-    done = subprocess.run(  # noqa: S603
-        line, cwd=tmp_path, preexec_fn=limited, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert "the disk" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert main(["cover", database]) == 2
-    assert subprocess.run(line, cwd=tmp_path, capture_output=True, check=False).returncode == 0  # noqa: S603
-    assert main(["cover", database]) in (0, 1)
-    kept = [entry.record for entry in read([database]).entries]
-    done = subprocess.run(  # noqa: S603
-        line, cwd=tmp_path, preexec_fn=limited, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert [entry.record for entry in read([database]).entries] == kept
+    def told():
+        line = [sys.executable, "-m", "rvmon", *words]
+        done = subprocess.run(line, preexec_fn=limited, capture_output=True, text=True)  # noqa: S603
+        assert done.returncode == 2
+        return done.stderr
+
+    said = told()
+    assert "the disk" in said
+    assert "Traceback" not in said
+    assert main(["cover", "c.db"]) == 2
+    assert main(words) == 0
+    assert main(["cover", "c.db"]) in (0, 1)
+    kept = [entry.record for entry in read(["c.db"]).entries]
+    told()
+    assert [entry.record for entry in read(["c.db"]).entries] == kept
 
 
 def test_cover_goals_are_shown_or_open(tmp_path, capsys, says):

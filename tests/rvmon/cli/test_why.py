@@ -44,14 +44,6 @@ def test_an_attempt_in_doubt_has_a_name_of_its_own(door, capsys, says):
     assert "no attempt D1?2: there are D1#1 to D1?1" in capsys.readouterr().err
 
 
-def test_rows_show_truth_over_the_window(door, capsys):
-    assert main(["why", "door.rv", "a.csv", "D1#2"]) == 0
-    rows = {line[:34].strip(): line[34:] for line in capsys.readouterr().out.splitlines()}
-    assert rows["knock"].count("●") == 1
-    assert set(rows["not closed"]) == {"▁"}
-    assert rows["within 2 s not closed"][0] == "▁"
-
-
 def test_signals_are_told_as_they_were(tmp_path, capsys, says):
     """With unit at the trigger and the end, once where these are one; what is lost is so."""
     (tmp_path / "a.rv").write_text(

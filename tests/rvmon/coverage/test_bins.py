@@ -71,35 +71,10 @@ def test_steps(time, names, expected):
     assert counts(STEPS, states(*names), time=time) == expected
 
 
-def test_unknown_hits_nothing_and_ends_nothing():
-    """A dropout within a stretch: it has surely been entered once only."""
-    samples = [(t, {"p": value}) for t, value in enumerate([None, True, None, True, False, True])]
-    assert counts("coverpoint c = p {yes: true, no: false}", samples) == {"yes": 2, "no": 1}
-
-
-def test_upon():
-    """Where an attempt would start: not where it is unknown since when the occasion is there."""
-    goals = "coverpoint c = p {yes: true, no: false}\n  upon q"
-    values = [(True, False), (False, True), (True, True), (True, None), (True, True), (True, False)]
-    samples = [(t, {"p": p, "q": q}) for t, (p, q) in enumerate(values)]
-    assert counts(goals, samples) == {"no": 1}
-
-
 CROSS = """coverpoint a = p {yes: true, no: false}
 coverpoint b = state {idle, moving, ignore done}
 cross c = a, b
 """
-
-
-def test_cross():
-    """A combination is hit once for each stretch on which all of its bins are true."""
-    samples = [
-        (0, {"p": True, "state": "idle"}),
-        (1, {"state": "moving"}),
-        (2, {"p": False}),
-        (3, {"p": True}),
-    ]
-    assert counts(CROSS, samples) == {"yes × idle": 1, "yes × moving": 2, "no × moving": 1}
 
 
 def test_cross_is_where_its_points_are():

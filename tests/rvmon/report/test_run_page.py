@@ -10,7 +10,7 @@ import pytest
 from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
-from rvmon.report.panels import JudgedRun, RunPage
+from rvmon.report.panels import JudgedRun, RunPage, opening
 from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import write_run_pages
 from rvmon.report.run_text import print_reports
@@ -155,6 +155,8 @@ def test_without_failure_it_opens_on_what_is_open():
     assert "D1 was not triggered, quiet" in page
     assert "D1" in Reader(page).ids
     assert '<details class="parts">' in run_page(content(door(answer=1.0)))
+    with pytest.raises(rvmon.RvmonError, match="the specification has none: add one"):
+        opening(rvmon.loads("signal p : bool\n").evaluate([(0.0, {"p": True})]))
 
 
 def test_page_and_text_say_the_same_of_the_input(capsys):

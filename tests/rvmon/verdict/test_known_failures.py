@@ -89,3 +89,5 @@ def test_a_file_that_is_wrong_is_refused(tmp_path, text, told):
     with pytest.raises(RvmonError, match=r"known\.toml") as caught:
         read_known(path, ["R1", "R2"])
     assert told in str(caught.value)
+    with pytest.raises(RvmonError, match="cannot read"):
+        read_known(tmp_path / "none.toml", ["R1"])
