@@ -209,6 +209,19 @@ def test_hits_begin_anew_with_each_run():
         run.reset()
 
 
+def test_hits_go_on_behind_a_snapshot():
+    """A bin that was true before is one of a combination that is hit behind it."""
+    made, planned = bins(BINS)
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"p": True, "q": False}, True)
+    again = planned.monitor(frozenset())
+    assert again.load(run.save())
+    assert again.judge(1, {"q": True}, True)
+    hits = made.hits(again.hits())
+    assert {name: one.count for name, one in hits["all"].items()} == {"yes × both": 1}
+    assert {name: one.count for name, one in hits["asked"].items()} == {"yes": 1}
+
+
 def test_what_comes_too_late_is_not_counted():
     """Nor does it concern anybody where no requirement is."""
     made, planned = bins(BINS)

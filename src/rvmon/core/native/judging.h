@@ -302,6 +302,7 @@ typedef struct {
     int32_t *groups_called;
     int32_t *called;           /* watches whose groups evaluate the next position */
     uint8_t *is_called;        /* by watch */
+    uint64_t *true_bits;       /* by watch, whether it was true when last called */
     int32_t *bins;             /* scratch: the bins of all axes that are true */
     int32_t items;
     int32_t called_count;

@@ -273,8 +273,8 @@ bool begin_keeping(rv_monitor *m, kept_notes *to)
     drop_open_notes(m);
     to->count = 0;
     to->span_count = 0;
-    to->words = arena_take(&m->memory, (size_t)m->note_room * sizeof *to->words);
-    to->spans = arena_take(&m->memory, (size_t)m->span_room * sizeof *to->spans);
+    to->words = arena_enlarge(&m->memory, NULL, 0, (size_t)m->note_room * sizeof *to->words);
+    to->spans = arena_enlarge(&m->memory, NULL, 0, (size_t)m->span_room * sizeof *to->spans);
     if ((to->words == NULL) || (to->spans == NULL)) {
         give_up_keeping(m, to);
         return false;

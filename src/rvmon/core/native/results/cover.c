@@ -11,6 +11,12 @@
 
 #include <string.h>
 
+/* Words of as many bits as there are watches. */
+static int32_t words_of(const part_plan *p)
+{
+    return (p->watches.count + 63) / 64;
+}
+
 /* Allocate coverage for a part; false: memory is short. */
 static bool make_covering(home *h)
 {
@@ -42,10 +48,11 @@ static bool make_covering(home *h)
     c->groups_called = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups_called);
     c->called = arena_take(a, (size_t)p->watches.count * sizeof *c->called);
     c->is_called = arena_take(a, (size_t)p->watches.count);
+    c->true_bits = arena_take(a, (size_t)words_of(p) * sizeof *c->true_bits);
     c->bins = arena_take(a, (size_t)(most + 1) * sizeof *c->bins);
     if ((c->hits == NULL) || (c->current_items == NULL) || (c->is_current == NULL) || (c->groups == NULL)
         || (c->groups_called == NULL) || (c->called == NULL) || (c->is_called == NULL)
-        || (c->bins == NULL)) {
+        || (c->true_bits == NULL) || (c->bins == NULL)) {
         return false;
     }
     h->covering = c;
@@ -65,6 +72,7 @@ bool begin_cover(home *h)
     (void)memset(c->is_current, 0, (size_t)c->items);
     (void)memset(c->groups, 0, (size_t)p->groups.count * sizeof *c->groups);
     (void)memset(c->is_called, 0, (size_t)p->watches.count);
+    (void)memset(c->true_bits, 0, (size_t)words_of(p) * sizeof *c->true_bits);
     c->called_count = 0;
     return true;
 }
@@ -91,6 +99,42 @@ void call_watches(run *r)
 static uint8_t truth_of(const run *r, int32_t number)
 {
     return r->truth[r->part->watches[number].node];
+}
+
+/* Keep whether a watch is true. */
+static void keep_truth(run *r, int32_t number)
+{
+    const uint64_t bit = UINT64_C(1) << (number & 63);
+    uint64_t *word = &r->home->covering->true_bits[number >> 6];
+    *word = (truth_of(r, number) == IS_TRUE) ? (*word | bit) : (*word & ~bit);
+}
+
+/* The same for all, after a snapshot was read, which has the truths of nodes. */
+void keep_truths_of_watches(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->watches.count; i++) {
+        keep_truth(r, i);
+    }
+}
+
+/* Collect the bins of an axis that are true, from a place of `bins` on; returns the place behind. */
+static int32_t collect_bins(covering *c, int32_t first, int32_t count, int32_t used)
+{
+    const int32_t end = first + count;
+    int32_t place = used;
+    int32_t word;
+    for (word = first >> 6; (word << 6) < end; word++) {
+        uint64_t left = c->true_bits[word];
+        for (; left != 0U; left &= left - 1) {
+            const int32_t number = (word << 6) + lowest_bit(left);
+            if ((number >= first) && (number < end)) {
+                c->bins[place] = number - first;
+                place++;
+            }
+        }
+    }
+    return place;
 }
 
 /* Whether no bin of an item is false. The bins are digits of the item's number, the last axis the
@@ -139,12 +183,7 @@ static void count_items(run *r, const group_plan *g, covered *s, int64_t t)
     int32_t k;
     while (2 * count < g->axes.count) {
         begin[count] = used;
-        for (k = 0; k < axes[2 * count + 1]; k++) {
-            if (truth_of(r, axes[2 * count] + k) == IS_TRUE) {
-                c->bins[used] = k;
-                used++;
-            }
-        }
+        used = collect_bins(c, axes[2 * count], axes[2 * count + 1], used);
         at[count] = begin[count];
         end[count] = used;
         if (begin[count] == used) {
@@ -218,6 +257,7 @@ void cover(run *r, int64_t t)
     for (i = 0; i < c->called_count; i++) {
         const watch_plan *w = &r->part->watches[c->called[i]];
         const int32_t *own = LIST(PLAN(r), w->groups);
+        keep_truth(r, c->called[i]);
         for (k = 0; k < w->groups.count; k++) {
             if (!c->groups[own[k]].called) {
                 c->groups[own[k]].called = true;

@@ -22,6 +22,7 @@ void end_watch(run *r, int64_t end, int64_t reached);
 bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
 void call_watches(run *r);
+void keep_truths_of_watches(run *r);
 void cover(run *r, int64_t t);
 
 /* ---- watch.c: moves of attempts in automata */

@@ -1,5 +1,6 @@
 /* Parts in a snapshot: their runs, keys, stored samples, and coverage. */
 #include "formulas/formulas.h"
+#include "results/results.h"
 #include "runs/runs.h"
 #include "snapshot/snapshot.h"
 
@@ -323,6 +324,9 @@ static void carry_cover(carrier *c, home *h)
         carry_group(c, h, i);
     }
     carry_list(c, own->called, &own->called_count, p->watches.count, own->is_called);
+    if (c->reading) {
+        keep_truths_of_watches(h->root);
+    }
 }
 
 static void carry_moves(carrier *c, home *h)
