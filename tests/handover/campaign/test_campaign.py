@@ -23,7 +23,6 @@ SPECS = {robot: load(spec_path(robot)) for robot in ("legacy", "correct")}
 
 
 def small(*, monitors=True, **more):
-    """A few tests of two strategies against both robots."""
     options = {"tests": 6, "seed": 3, **more}
     campaign = handover_campaign(("legacy", "correct"), monitors=monitors)
     return plan(campaign, ("pseudorandom", "constrained"), **options)
@@ -38,13 +37,11 @@ def document(results):
 
 @pytest.fixture(scope="module")
 def results():
-    """The small campaign, played in this process."""
     return execute(small(), jobs=1)
 
 
 @pytest.fixture(scope="module")
 def directed_results():
-    """All directed tests against the robots that they are written for."""
     return execute(plan(handover_campaign(), ("directed",)), jobs=1)
 
 

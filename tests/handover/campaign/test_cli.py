@@ -33,8 +33,6 @@ ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
-    """The files of a small demo."""
-
     def make(folder):
         words = ["demo", "--tests", "3", "--conform", "1", "--jobs", "1", "--out", str(folder)]
         assert main(words) == 0

@@ -26,7 +26,6 @@ WORDS = (*RUN, "--tests", "12", "--jobs", "1")
 
 
 def files(folder):
-    """All files of a folder, but for the seconds that the tests took."""
     return {
         path.relative_to(folder): re.sub(
             rb'("seconds": |simulated in |\bin )[\d.]+', b"", path.read_bytes()
@@ -61,7 +60,6 @@ def whole(tmp_path_factory):
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """Where a campaign with the folder `out` is run."""
     monkeypatch.chdir(tmp_path)
     return tmp_path / "out"
 

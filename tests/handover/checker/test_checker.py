@@ -14,7 +14,6 @@ TESTS = {test.name: test for test in directed()}
 
 @pytest.fixture(scope="module")
 def spec():
-    """The requirements of the correct robot."""
     return rvmon.load(spec_path("correct"))
 
 

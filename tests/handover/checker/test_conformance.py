@@ -13,7 +13,6 @@ from handover.model import handover_network
 
 @pytest.fixture(scope="module")
 def network():
-    """The network, read once."""
     return handover_network()
 
 

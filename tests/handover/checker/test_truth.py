@@ -34,8 +34,6 @@ def failed(test, mutation=None):
 
 
 def other(**rules):
-    """The robot with other numbers or rules."""
-
     class Other(HandoverRobot):
         def __init__(self, *ports):
             super().__init__(*ports[:-1], replace(ports[-1], **rules))

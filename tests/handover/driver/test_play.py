@@ -58,7 +58,6 @@ def protocol_test(seed: int, **settings: object) -> AbstractTest:
 
 
 def instants(run: Run, name: str) -> list[float]:
-    """When an event occurred, seconds."""
     return [t / 1e9 for t, values in run.samples if values.get(name) is True]
 
 
@@ -108,7 +107,6 @@ def test_signals_to_the_correct_robot_do_not_get_lost() -> None:
 
 
 def digest(run: Run) -> str:
-    """A fingerprint of everything published."""
     return hashlib.sha256(repr((run.samples, run.states)).encode()).hexdigest()
 
 

@@ -46,7 +46,6 @@ class Played:
 
 
 def play(*actions: Action, informed_at: float | None = None, connected: bool = True) -> Played:
-    """Play actions against a robot that does nothing but inform."""
     schedule = Schedule()
     bus = Bus(schedule)
     signals: list[tuple[float, str]] = []

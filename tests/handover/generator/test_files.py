@@ -60,7 +60,6 @@ TESTS = st.builds(
 @settings(max_examples=50, deadline=None)
 @given(TESTS)
 def test_written_tests_read_back(test: AbstractTest) -> None:
-    """Reading what was written gives the same test."""
     assert from_json(to_json(test), AbstractTest) == test
 
 
@@ -106,13 +105,11 @@ def test_wrong_files_are_told(text: bytes, message: str, tmp_path: Path) -> None
 
 
 def test_missing_file_is_told(tmp_path: Path) -> None:
-    """A file that is not there is named."""
     with pytest.raises(TestError, match=r"none\.json: No such file"):
         load(tmp_path / "none.json", AbstractTest)
 
 
 def test_directed_tests_cover_every_verdict() -> None:
-    """For the correct robot and its mutants each verdict that can occur is expected somewhere."""
     tests = directed()
     assert len(tests) >= 10
     assert all(test.text and test.robot and not test.startup_loss for test in tests)

@@ -33,7 +33,6 @@ def test_pseudorandom_actions_are_uniform() -> None:
 
 
 def shares(counts: Counter[str]) -> list[float]:
-    """Each count as a share of all."""
     return [count / counts.total() for count in counts.values()]
 
 

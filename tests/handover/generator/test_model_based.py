@@ -24,12 +24,10 @@ from rvmon.timed.search.verify import verify
 
 
 def signals(test):
-    """The signals of a script, in order."""
     return [a.signal for a in test.actions if isinstance(a, SendSignal | ReceiveSignal)]
 
 
 def postures(test):
-    """The postures that a script takes last."""
     return {a.param: a.value for a in test.actions if isinstance(a, SetParam) and a.param != "time"}
 
 

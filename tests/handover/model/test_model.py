@@ -10,7 +10,6 @@ from rvmon.timed.search.verify import verify
 
 @pytest.fixture(scope="module")
 def network():
-    """The network, read once."""
     return handover_network()
 
 

@@ -103,7 +103,6 @@ class AttemptJudge:
         robot: type[HandoverRobot] = HandoverRobot,
         until: float = 300.0,
     ) -> HandoverRobot:
-        """Run the robot until it ends or the clock passes `until`."""
         machine = robot(self, self, self, self, behaviour)
         for wait in machine.run():
             self.time += wait
@@ -326,7 +325,6 @@ def test_an_arm_that_stopped_before_a_person_ends_the_task(
 
 
 def test_crashing_mutant_crashes() -> None:
-    """The mutant made to crash does so in `sense`."""
     bench = AttemptJudge(protocol())
     with pytest.raises(ZeroDivisionError):
         bench.play(robot=MUTATIONS["crashes"])

@@ -21,7 +21,6 @@ FORCES = ("hand_force", "other_hand_force", "forearm_force")
 
 
 def most(test: str, mutation: str | None = None) -> dict[str, float]:
-    """The greatest of each force in a run."""
     run = run_test(TESTS[test], robot="correct", mutation=mutation)
     found = dict.fromkeys(FORCES, 0.0)
     for _, values in run.samples:
@@ -32,7 +31,6 @@ def most(test: str, mutation: str | None = None) -> dict[str, float]:
 
 @pytest.mark.parametrize("far_hand", [False, True])
 def test_the_forearm_follows_the_hand(*, far_hand: bool) -> None:
-    """The wrist keeps its place behind the hand; the other hand stays where it is."""
     scene_faults = SceneFaults(beside_m=0.6, far_hand=far_hand)
     world = World(random.Random(1), scene_faults=scene_faults)
     beside = world.scene.beside

@@ -9,7 +9,6 @@ from handover.world.parameters import LATCH_LINGER_S, NS
 
 
 def at(schedule: Schedule, seconds: float) -> None:
-    """Let time pass."""
     schedule.at(round(seconds * NS), lambda: None)
     schedule.run_next()
 
@@ -56,7 +55,6 @@ def test_unlatched_message_cannot_be_read_later() -> None:
 
 
 def test_reading_needs_a_subscription() -> None:
-    """A node without a subscription receives nothing."""
     bus = Bus(Schedule())
     human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
     human.publish("signal", "ready", latched=True)

@@ -40,7 +40,6 @@ class Stage:
         yield from self.world.arm.follow(path)
 
     def fetch(self) -> Program:
-        """Grip the piece and hold it out."""
         x, z = self.world.piece()
         for height in (0.20, 0.08, 0.02):
             yield from self.go(x, z + height)
@@ -72,7 +71,6 @@ class Stage:
 
 
 def strap(stage: Stage, newtons: float) -> None:
-    """Hold the hand back where it is now, with at most this force."""
     scene = stage.world.scene
     band = pymunk.PivotJoint(scene.space.static_body, scene.hand, scene.hand.position)
     band.max_force = newtons

@@ -13,7 +13,6 @@ from handover.world.process import Process, Program
 
 
 def play(program: Program) -> tuple[Process, Schedule]:
-    """Run a program to its end."""
     schedule = Schedule()
     process = Process(schedule, Node(Bus(schedule), {}, 0.0), program)
     while schedule.next_ns() is not None:

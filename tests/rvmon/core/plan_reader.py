@@ -90,12 +90,10 @@ def record(name: str, data: bytes, offset: int) -> dict[str, Any]:
 
 
 def size_of_form(form: str) -> int:
-    """The size of what a format for `struct` stands for."""
     return struct.calcsize(f"={form}")
 
 
 def size_of(name: str) -> int:
-    """The size of a record."""
     return sum(size_of_form(form) for _, form in layouts()[name])
 
 

@@ -166,7 +166,6 @@ def _differs(one: native.Monitor, other: native.Monitor, looked_at: Sequence[str
 
 
 def by_number(attempt: Attempt) -> tuple[str, bool, int]:
-    """Where an attempt stands among those of its specification."""
     return attempt.requirement, attempt.in_doubt, attempt.number
 
 

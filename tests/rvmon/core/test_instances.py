@@ -7,11 +7,9 @@ from collections import Counter
 import pytest
 from tests.tools.differential import disagreements
 from tests.tools.forms import Maker
-from tests.tools.law import judge
 
 import rvmon
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
@@ -69,7 +67,6 @@ def test_what_is_over_changes_no_record(name, time):
 @pytest.mark.parametrize("time", ["", "time sampled every 10 ms\n"])
 @pytest.mark.parametrize("name", ["another event with the key", "what was before", "stretches"])
 def test_what_is_over_takes_no_room(name, time):
-    """However many keys go by, what is kept of those that are over is bounded."""
     monitor = rvmon.loads(text_of(REQUIRED[name], time)).monitor(keep=5)
     sizes = []
     for number in range(30_000):
@@ -155,54 +152,3 @@ def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lowe
     found = {one.number: (one.triggered, one.captured["n"]) for one in attempts}
     assert found[4] == (27, 1)
     assert found[5] == (32, -1)
-
-
-def test_an_instance_looks_back_to_the_first_position_of_the_run():
-    """Where nothing started yet: what is required speaks of the position before its event."""
-    spec = rvmon.loads(
-        "time sampled\nevent g(k : int)\n"
-        "requirement R\n  upon g\n  then (previous (next true))\n  for each n in g.k\n"
-    )
-    (attempt,) = spec.evaluate([(0, {}), (1e-9, {"g": {"k": 0}})]).attempts
-    assert attempt.verdict == "P"
-
-
-def test_a_value_that_occurs_after_the_last_tick_of_a_clock_tells_nothing():
-    """Of what has no value yet the trigger is unknown, and no other occurs at any position."""
-    spec = rvmon.loads(
-        "time sampled every 2 ns\nsignal y : int\nevent g(k : int)\n"
-        "requirement R\n  upon y != n\n  then true\n  for each n in g.k\n"
-    )
-    monitor = spec.monitor()
-    monitor.step_ns(0, {"y": 0})
-    monitor.step_ns(3, {"g": {"k": 0}})
-    assert monitor.finish_ns().verdicts["R"] == "I"
-
-
-@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ns\n"])
-@pytest.mark.parametrize("form", ["c", "c rows", "c+interrupt"])
-@pytest.mark.parametrize("before", [(), (Sample(0, {}),)])
-def test_an_instance_that_looks_back_knows_what_has_no_source(time, form, before):
-    """Its trigger is unknown then, as in one that begins afresh: it must not seem never to come."""
-    text = (
-        f"{time}signal ready : bool\nevent order(id: int)\n"
-        "requirement R1\n  upon ready and order\n"
-        "  then once[0 s, 10 ns] (within 10 ns ready)\n  for each k in order.id\n"
-    )
-    actions = (*before, Sample(10, {"order": {"id": 7}}))
-    case = Case(rvmon.loads(text).checked, actions, None, names=frozenset({"order"}))
-    assert disagreements(case, Maker(form)) == []
-
-
-@pytest.mark.parametrize("form", ["c", "c rows"])
-def test_what_another_key_says_is_no_update_where_something_was_lost(form):
-    """What was lost may have been of any key; a value beside it that is known is of one."""
-    text = (
-        "time sampled every 2 ns\nevent g(k: int)\n"
-        "requirement R1\n  upon g\n  then within 6 ns updated(g)\n  for each k in g.k\n"
-    )
-    samples = (Sample(3, {}), Sample(15, {"g": {"k": 1}}))
-    lost = Outage(frozenset({"g"}), 9, 15)
-    case = Case(rvmon.loads(text).checked, samples, 16, outages=(lost,))
-    assert disagreements(case, Maker(form)) == []
-    assert [one.in_doubt for one in judge(case).attempts] == [False, True]

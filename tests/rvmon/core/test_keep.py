@@ -13,10 +13,10 @@ from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 
 
 def told(attempt):
-    """All that is said of an attempt."""
     return tuple(str(getattr(attempt, one.name)) for one in fields(Attempt))
 
 
@@ -51,5 +51,9 @@ def test_what_is_kept_is_told_as_if_all_was(time):
                 own = [one for one in want.of(name, verdict) if one.decided is not None]
                 left = [one for one in got.of(name, verdict) if one.decided is not None]
                 assert list(map(told, left)) == list(map(told, own))[len(own) - len(left) :]
-        dropped += sum(sum(own.values()) for own in got.dropped.values())
+        for (name, verdict), count in expected.items():
+            left_out = got.dropped.get(name, {}).get(verdict, 0)
+            assert left_out == max(0, count - keep)
+            dropped += left_out
+        assert Report.from_json(got.to_json()) == got
     assert dropped > 150

@@ -42,7 +42,6 @@ def run(spec, leap, *, in_steps):
 
 
 def outcome_of(attempt):
-    """What is told of it at once."""
     return attempt.number, attempt.triggered, attempt.decided, attempt.verdict
 
 

@@ -53,14 +53,12 @@ NUMBERS = ("p", "q", "x", "n", "mode", "e", "f")
 
 
 def planned_of(text: str = SPEC) -> PlannedCore:
-    """A packed specification."""
     compiled = compile_spec(rvmon.loads(text).checked)
     return planned_core(compiled)
 
 
 @pytest.fixture(scope="module")
 def planned() -> PlannedCore:
-    """The specification above."""
     return planned_of()
 
 
@@ -76,7 +74,6 @@ def closer(*given: object, **named: object) -> list[rvmon.Attempt]:
 
 
 def test_samples_of_all_kinds_most_of_them_wrong():
-    """Nothing that comes breaks a monitor, and no attempt is damaged."""
     rng = random.Random(1)
     odd: list[Any] = [None, float("nan"), 7, 1 << 61, 1 << 70, "red", "none", {"k": None}, {}]
     odd += [{"k": 3, "where": "left"}, {"z": 1}, (), ({"k": 1},), ({"k": 1}, {"k": 2}), [], True]
@@ -282,7 +279,6 @@ def parts_of(planned: PlannedCore) -> list[Any]:
 
 
 def damaged(planned: PlannedCore) -> Iterator[list[Any]]:
-    """Arguments that do not fit each other."""
     data, reading, absent, look, attempts = parts_of(planned)
     numbers, words, kinds, single = reading
     yield [data[:50], reading, absent, look, attempts]
@@ -299,7 +295,6 @@ def damaged(planned: PlannedCore) -> Iterator[list[Any]]:
 
 
 def test_arguments_that_do_not_fit_are_refused(planned):
-    """Nothing is made of them."""
     assert Run(*parts_of(planned)).times() == (None, None, None)
     for given in damaged(planned):
         with pytest.raises((ValueError, TypeError)):

@@ -2,21 +2,13 @@
 
 import gc
 import pickle
-import random
-
-from tests.tools.drive import feed
 
 import rvmon
-from rvmon.session import Spec
-from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 MS = 1_000_000
 
 
 def spec_of(text):
-    """A specification in held time."""
     return rvmon.loads(f"spec watch\ntime held\n{text}")
 
 
@@ -56,34 +48,17 @@ def test_a_reason_can_be_read_long_after(tmp_path):
     assert pickle.loads(pickle.dumps(copies[1])) == failed  # noqa: S301
 
 
-def test_reasons_of_a_report_are_those_of_its_monitor():
-    """What a step handed out and what the report has are equal in all they say."""
-    monitor = spec_of(RESPONSE).monitor()
-    told = []
-    for t in range(400):
-        told += monitor.step_ns(t * MS, {"p": t % 9 < 4, "q": t % 5 == 0})
-    report = monitor.finish_ns(400 * MS)
-    decided = {(one.requirement, one.number): one for one in report.attempts}
-    assert len(told) > 50
-    for one in told:
-        assert decided[one.requirement, one.number] == one
-
-
 def test_many_open_attempts_say_what_they_wait_for():
-    """Each says its own deadline, however many are open."""
     spec = spec_of("event p\nsignal q : bool\nrequirement R\n  upon p\n  then within 200 s q\n")
     monitor = spec.monitor()
-    for t in range(20_000):
+    for t in range(2_000):
         monitor.step_ns(t * MS, {"p": True, "q": False})
     waiting = monitor.open
-    assert len(waiting) == 20_000
-    assert [one.deadline for one in waiting[::1000]] == [
-        (t + 200_000) * MS for t in range(0, 20_000, 1000)
-    ]
+    assert [one.deadline for one in waiting] == [(t + 200_000) * MS for t in range(2_000)]
     assert waiting[7].required == "`within 200 s q` by 200.007 s"
     assert dict(waiting[7].at_trigger) == {"p": True, "q": False}
     counts, oldest = monitor.open_counts(1)
-    assert counts == {"R": 20_000}
+    assert counts == {"R": 2_000}
     assert [one.number for one in oldest] == [1]
 
 
@@ -93,20 +68,8 @@ def test_what_an_endless_run_owes_is_told_by_its_last_part():
         "signal p, q : bool\nrequirement U\n  upon start\n  then always (p -> within 3 ms q)\n"
     )
     core = spec.monitor()
-    for t in range(30_000):
-        core.step_ns(t * MS, {"p": t % 4 == 0, "q": t % 4 == 2 and t < 29_990})
+    for t in range(10_000):
+        core.step_ns(t * MS, {"p": t % 4 == 0, "q": t % 4 == 2 and t < 9_990})
     (failed, *_) = core.finish().attempts
     assert failed.verdict.name == "FAIL"
-    assert failed.reason.startswith("`q` had to come true between 29.98")
-
-
-def test_open_attempts_are_told_of_at_any_time():
-    """To ask changes nothing of what is said later."""
-    rng = random.Random(3)
-    spec = Spec(random_spec(rng, Profile(time=TimeModel.HELD, captures=True)))
-    case = random_trace(rng, spec.checked, TraceProfile())
-    asked, other = spec.monitor(), spec.monitor()
-    for action in case.actions:
-        assert feed(asked, action) == feed(other, action)
-        assert asked.open == asked.open
-    assert asked.finish_ns(case.end).attempts == other.finish_ns(case.end).attempts
+    assert failed.reason.startswith("`q` had to come true between 9.98")

@@ -38,43 +38,28 @@ def planned(requirements: str, time: str = "held") -> PlannedCore:
 
 
 class Run:
-    """A run of the core, told in few words.
-
-    Args:
-        requirements: as text.
-        time: the model of it.
-    """
+    """A run of the core, told in few words."""
 
     def __init__(self, requirements: str, time: str = "held") -> None:
         self._planned = planned(requirements, time)
         self.core: native.Monitor = self._planned.monitor(frozenset())
 
     def sample(self, t: int, **values: Any) -> Run:
-        """Take a sample; true is an occurrence of an event."""
         assert self.core.judge(t, values, True)
         return self
 
     def lost(self, names: str, first: int, last: int) -> Run:
-        """Lose names, and find them again."""
         assert self.lose(names, first)
         assert self.found(names, last)
         return self
 
     def lose(self, names: str, since: int) -> bool:
-        """Lose names; whether they can be."""
         return self.core.lose([self._planned.numbers[name] for name in names.split()], since)
 
     def found(self, names: str, at: int) -> bool:
-        """Find them again; whether they can be."""
         return self.core.found([self._planned.numbers[name] for name in names.split()], at)
 
-    def late(self, names: str | None, t: int) -> None:
-        """Tell of a sample that came too late; `None`: it cannot be read."""
-        numbers = None if names is None else [self._planned.numbers[one] for one in names.split()]
-        assert self.core.late(numbers, t)
-
     def report(self, end: int | None = None) -> Report:
-        """End the run."""
         return report_of_run(self._planned, self.core, 0, self.core.finish(end))
 
     def said(self, end: int | None = None) -> list[str]:
@@ -92,14 +77,6 @@ def test_what_is_lost_at_the_end_is_lost_up_to_there():
     run = Run("requirement R\n  always p").sample(0, p=True)
     assert run.lose("p", 3)
     assert run.said(7) == ["0 I"]
-
-
-def test_what_was_judged_cannot_be_lost_any_more():
-    """It is refused, and nothing happens."""
-    run = Run("requirement R\n  always p").sample(0, p=True).sample(2, p=True)
-    assert not run.lose("p", 2)
-    assert not run.lose("p", -1)
-    assert run.said(3) == ["0 P 3"]
 
 
 @pytest.mark.parametrize("names", [[99], [-1]])
@@ -151,39 +128,6 @@ def test_of_many_ticks_a_network_says_nothing():
         run = Run(text.format(unit), "sampled").sample(0, p=False).lost("q", 2 * scale, 5 * scale)
         found = run.sample(7 * scale, p=False, e=True).sample(9 * scale).said()
         assert found == [f"{7 * scale} I", f"{2 * scale}? I"]
-
-
-TWO = "requirement A1\n  always p\nrequirement B1\n  upon e\n  then q"
-
-
-@pytest.mark.parametrize(
-    ("names", "t", "expected"),
-    [
-        ("p", 1, "I P"),
-        ("q", 1, "P I"),
-        ("e", 1, "P I"),
-        ("x s", 1, "P P"),
-        ("", 1, "P P"),
-        (None, 1, "I I"),
-        ("x", -1, "I I"),
-    ],
-)
-def test_what_comes_too_late_leaves_nothing_green_that_it_would_have_touched(names, t, expected):
-    """What reads one of its names, or all if it cannot be read, or the trace would begin there."""
-    run = Run(TWO).sample(0, p=True, q=True).sample(2, e=True)
-    run.late(names, t)
-    verdicts = run.report().verdicts
-    assert " ".join(verdicts[name].value for name in ("A1", "B1")) == expected
-
-
-def test_what_comes_too_late_takes_back_no_alarm():
-    """An attempt that begins behind it fails as ever, and the next run knows nothing of it."""
-    run = Run(TWO).sample(0, p=True, q=False)
-    run.late("p q", 0)
-    report = run.sample(2, e=True).report()
-    assert [report.verdicts[name].value for name in ("A1", "B1")] == ["I", "F"]
-    run.core.reset()
-    assert run.sample(0, p=True, q=True).report().verdicts["A1"].value == "P"
 
 
 @pytest.mark.law

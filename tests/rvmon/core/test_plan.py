@@ -86,7 +86,6 @@ def planned(text: str, *, measured: bool = False) -> Planned:
 
 
 def packed(text: str, *, measured: bool = False) -> Packed:
-    """The bytes of a specification."""
     return pack(planned(text, measured=measured))
 
 
@@ -104,27 +103,6 @@ def test_the_core_takes_a_written_specification(path):
     """What the demonstration and the examples specify is packed whole, by the core's own check."""
     spec = rvmon.load(path)
     planned_core(spec._compiled, measured=True).monitor(frozenset())
-
-
-def test_letters_of_many_propositions_are_classed_by_a_diagram():
-    """A diagram leads each letter to the class that the automaton has it in."""
-    plan = planned(DIAGRAM)
-    read = Plan(pack(plan).data)
-    (rule,) = plan.rules
-    assert rule.automaton is not None
-    (judge, *_) = read.records["JUDGES"]
-    assert judge["diagram"] >= 0
-    rng = random.Random(1)
-    for _ in range(200):
-        truths = [rng.choice((0, 2, 2, 1)) for _ in rule.alphabet.propositions]
-        for reading, weights in ((0, rule.alphabet.pessimistic), (3, rule.alphabet.optimistic)):
-            letter = sum(own[truth] for own, truth in zip(weights, truths, strict=True))
-            place = judge["diagram"]
-            while place >= 0:
-                decided = read.run("INTS", place, 1)[0]
-                (digit,) = read.run("INTS", place + 1 + reading + truths[decided], 1)
-                (place,) = read.run("INTS", place + 8 + digit, 1)
-            assert ~place == rule.automaton.class_of[letter]
 
 
 def test_equal_shapes_share_all_but_their_bounds():
@@ -224,8 +202,6 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
 
 
 def test_expressions_deeper_than_the_stack_are_refused():
-    """One that fits is packed, and one that nests a level deeper is refused."""
-
     def nested(depth: int) -> str:
         deep = "".join("1 + (x * (" for _ in range(depth // 2)) + "x" + "))" * (depth // 2)
         return f"spec s\nsignal x : real\nrequirement R\n  always {deep} > x\n"
@@ -236,7 +212,6 @@ def test_expressions_deeper_than_the_stack_are_refused():
 
 
 def test_comparisons_of_too_many_events_are_refused():
-    """Of eight events fields are compared at once, of nine they are not."""
     declared = "spec s\n" + "".join(f"event e{n}(k: int)\n" for n in range(9))
     eight = " + ".join(f"e{n}.k" for n in range(8))
     text = declared + "requirement R\n  always not ({} > 3)\n"
@@ -273,7 +248,6 @@ def check(tmp_path_factory):
 @pytest.mark.compiler
 @pytest.mark.law
 def test_the_core_takes_what_is_packed(check):
-    """Its own check finds nothing wrong with any plan."""
     longest = f"spec s\nsignal p : bool\nrequirement R\n  always within {2**62 - 1} ns p\n"
     texts = (EVERYTHING, DIAGRAM, longest)
     assert [check(packed(text).data) for text in texts] == [-1] * 3

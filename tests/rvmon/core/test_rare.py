@@ -10,6 +10,7 @@ from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.testing.generate.trace import Case
+from rvmon.testing.law.word import Outage
 
 NAMES = """signal p, q : bool
 signal x : real
@@ -22,10 +23,22 @@ event h(m: real)
 Make = Callable[[], Case]
 
 
-def case_of(time: str, required: str, told: str, end: int | None = None) -> Make:
-    """A case of one requirement, or of several, made when it is judged."""
+def case_of(
+    time: str,
+    required: str,
+    told: str,
+    end: int | None = None,
+    lost: tuple[tuple[str, int, int], ...] = (),
+    names: str | None = None,
+) -> Make:
+    """A case of one requirement, or of several, made when it is judged.
+
+    What was `lost` are names in one word, first and last instant; `names` are those with a source.
+    """
     text = f"time {time}\n{NAMES}requirement R\n  {required}\n"
-    return lambda: Case(rvmon.loads(text).checked, actions(told), end)
+    outages = tuple(Outage(frozenset(own), first, last) for own, first, last in lost)
+    sources = None if names is None else frozenset(names)
+    return lambda: Case(rvmon.loads(text).checked, actions(told), end, sources, outages)
 
 
 CASES = {
@@ -141,6 +154,100 @@ CASES |= {
         # What came since the last tick did not occur at it.
         ("upon g then key >= h.m", "0; 4 h=/0; 5 g=0; 7"),
     )
+}
+
+CASES |= {
+    f"an instance, {time}: {required}, {told}": case_of(time, required, told)
+    for time, required, told in (
+        # The numbers 1 and 1.0 are one.
+        ("held", "upon e then eventually h.m == key for each key in g.k", "0 e g=1; 1; 2 h=/1"),
+        ("held", "upon e then eventually g.k == key for each key in h.m", "0 e h=/1; 1; 2 g=1"),
+        # The trigger comes first, then the value of `for each`, both before a tick of the clock.
+        ("sampled every 3 ns", "upon e then true for each key in g.k", "10 e; 11 g=-2; 15"),
+        # It looks back to the first position of the run, where nothing started yet.
+        ("sampled", "upon g then (previous (next true)) for each n in g.k", "0; 1 g=0"),
+        # Of what has no value yet the trigger is unknown, and no other occurs at any position.
+        ("sampled every 2 ns", "upon x != n then true for each n in g.k", "0 x=0; 3 g=0"),
+    )
+}
+
+CASES |= {
+    f"an instance that looks back knows what has no source, {time}, {told}": case_of(
+        *(time, "upon p and g then once[0 s, 10 ns] (within 10 ns p) for each k in g.k"),
+        *(told, None, (), "g"),
+    )
+    for time in ("held", "sampled", "sampled every 10 ns")
+    for told in ("10 g=7", "0; 10 g=7")
+}
+
+CASES |= {
+    f"what has no source may have been true in a trigger, {time}: {trigger}": case_of(
+        *(time, f"upon {trigger} then not p", "0 p; 1 p", None, (), "p")
+    )
+    for time in ("held", "sampled")
+    for trigger in ("p and q", "p and not q", "not p and q", "q since[1 ns, inf) p")
+}
+
+CASES["a window over what can never be is captured all the same"] = case_of(
+    "sampled every 3 ns",
+    "upon start then immediately 1 <= v\n"
+    "  let v = 1 + integral(if once[2 ns, 2 ns] p then max(x, x) else 0, 3 ns) / 1 s",
+    "0 p x=3",
+)
+
+CASES |= {
+    f"lost of `{lost[0][0]}`, {time}: {required}": case_of(time, required, told, end, lost)
+    for time, required, told, end, lost in (
+        # What was lost may have been of any key; a value beside it that is known is of one.
+        (
+            *("sampled every 2 ns", "upon g then within 6 ns updated(g) for each k in g.k"),
+            *("3; 15 g=1", 16, (("g", 9, 15),)),
+        ),
+        # Every formula is unknown there, constants too; but it makes no number a member.
+        *(
+            ("sampled", f"upon g then {amount}", "2 g=2", None, (("", 1, 1),))
+            for amount in (
+                *("duration(false, 2 ns) >= 1 ns", "count(false, 2 ns) >= 1"),
+                "sum(if g.k > 1 and false then g.k else 0, 2 ns) > 0",
+            )
+        ),
+        # Time makes enough of what may be a member since the loss: no trigger is missed.
+        *(
+            (
+                *("held", f"upon integral(if p then x else 0{window}) >= 2 ns then false"),
+                *("0 x=1 -p", 40, (("p", 23, 40),)),
+            )
+            for window in ("", ", 5 ns")
+        ),
+        # Each edge has an attempt, whatever is known of what it owes.
+        (
+            *("held", "upon q then mean(h.m, 3 ns) > x"),
+            *("5 q; 14 x=0; 17 -q; 23 q", 23, (("x", 23, 23),)),
+        ),
+    )
+}
+
+CASES |= {
+    f"a number of a window: {required}, {told}": case_of("held", required, told, 20)
+    for required, told in (
+        ("always max(x, 3 ns) - min(x, 3 ns) <= 2", "0 x=0; 1 ?x; 2 x=0; 6 x=3"),
+        ("upon max(x, 3 ns) <= x then false", "0 x=5; 1 x=3"),
+        ("upon x + 2 <= ago(x, 3 ns) then false", "0 x=5; 1 x=3"),
+        ("always count(e, 10 ns) < 3", "0 e; 1 ?e; 2 e"),
+        *(
+            ("always sum(if p then h.m else 0, 10 ns) <= 5", f"0 p h=/{m}; 1 ?p h=/3")
+            for m in (2, 3, 6)
+        ),
+        # What hangs on `now` in doubt is known no longer at the next tick.
+        ("upon p then immediately now <= t0 let t0 = now", "1 -p; 3 ?p; 7 -p"),
+    )
+}
+
+CASES |= {
+    f"no window of the past holds what was before the trace, {time}": case_of(
+        time, "upon start then historically[0 ns, 5 ns] once F[0 ns, 3 ns] q", "0 -q; 1; 2 q"
+    )
+    for time in ("held", "sampled", "sampled every 2 ns")
 }
 
 BESIDE = "\nrequirement Q upon e then true"

@@ -166,7 +166,6 @@ def test_forged_bytes_do_no_harm(time):
 
 
 def test_a_refused_snapshot_changes_nothing():
-    """A run that was told to take up what is none stands where it stood."""
     plan = planned(REQUIREMENTS)
     run = run_of(plan, random.Random(1), 5).plain
     before = run.save()

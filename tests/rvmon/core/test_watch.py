@@ -89,7 +89,6 @@ def test_another_run_begins_anew():
 
 @pytest.mark.parametrize("place", [-1, 99, 1 << 40])
 def test_an_operator_that_is_none(place):
-    """It is refused, and so is any of a plan that keeps no truths."""
     compiled = compile_spec(rvmon.loads(AHEAD).checked)
     planned = planned_as(
         compiled.checked, (), Kept(pack(truths_plan(compiled)).data, frozenset(), frozenset())
@@ -125,7 +124,6 @@ def changed(data, section, record, name, value):
 
 
 def is_taken(data):
-    """Whether the core takes a plan."""
     checked = rvmon.loads(BINS).checked
     planned = planned_as(checked, (), Kept(data, frozenset(), frozenset()))
     try:
@@ -327,7 +325,6 @@ def test_an_attempt_in_two_minds_goes_nowhere():
     [("automaton_plan", "locations", (65,)), ("judge_plan", "automaton", (-1,))],
 )
 def test_moves_are_counted_in_small_automata_alone(record, name, value):
-    """What asks for others is refused."""
     _, data, planned = traced(MANY.format("R", 3))
     planned.monitor(frozenset())
     section = Section.AUTOMATA if record == "automaton_plan" else Section.JUDGES

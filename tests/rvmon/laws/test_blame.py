@@ -46,7 +46,6 @@ def test_what_is_blamed_was_false():
 
 
 def start_of(judgement: Judgement, attempt: Attempt) -> Start:
-    """Where an attempt began, by the law."""
     assert attempt.verdict is Verdict.FAIL
     followed = judgement.followings[attempt.requirement].attempts
     return next(one.start for one in followed if one.number == attempt.number)

@@ -27,7 +27,6 @@ pytestmark = pytest.mark.law
 @TRIED
 @given(cases(), st.data())
 def test_a_longer_trace_overturns_nothing(case: Case, data: st.DataObject) -> None:
-    """An attempt that the prefix decided stays decided so, at the same instant."""
     count = data.draw(st.integers(0, len(case.actions)))
     prefix = judge(replace(case, actions=case.actions[:count], end=None))
     later = outcomes(judge(case))
@@ -75,7 +74,6 @@ def test_samples_that_nobody_reads(data: st.DataObject, time: TimeModel) -> None
 @TRIED
 @given(cases())
 def test_order_inside_a_sample(case: Case) -> None:
-    """The order in which a sample lists its names changes nothing."""
     turned = tuple(
         Sample(action.t, dict(reversed(action.values.items())))
         if isinstance(action, Sample)

@@ -41,7 +41,6 @@ def test_an_ending_trigger_reads_unknown_as_not_false():
 
 
 def test_letters_are_numbered_without_gaps():
-    """The letters of several propositions are the numbers below the size."""
     formula = two(eventually(p), "and", two(always(q), "or", eventually(no(p))))
     found = alphabet(formula)
     digits = [

@@ -68,7 +68,6 @@ def test_respawned_windows_do_not_close():
 
 
 def test_construction_is_deterministic():
-    """The same formula gives the same tables."""
     formula = two(eventually(p, 0, 5), "and", always(two(q, "->", eventually(r, 0, 3))))
     first, second = build(formula), build(formula)
     assert (first.edges, first.class_of, first.targets) == (

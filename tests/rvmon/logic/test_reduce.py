@@ -77,7 +77,6 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
 @settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_reduction_is_idempotent(formula):
-    """What is reduced cannot be reduced further."""
     try:
         original, told = built(formula)
     except DoesNotCloseError:

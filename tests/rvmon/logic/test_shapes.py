@@ -28,7 +28,6 @@ def required_by(requirement: Requirement, factory: Factory) -> Iterator[tuple[Ne
 
 
 def tables(automaton: Automaton | None) -> object:
-    """All that is stepped through."""
     if automaton is None:
         return None
     classes = automaton.class_of
@@ -44,7 +43,6 @@ def tables(automaton: Automaton | None) -> object:
 
 
 def constructed(required: Next, alphabet: Alphabet) -> Automaton | None:
-    """The automaton of a formula, made for it alone."""
     try:
         return reduce(construct(required, alphabet, BUDGET), lambda residual: residual)
     except DoesNotCloseError:

@@ -21,7 +21,6 @@ def told(spec: rvmon.Spec, trace: object, time: str) -> str:
 
 @pytest.mark.parametrize("stamps", BEYOND)
 def test_ticks_beyond_the_limits_are_refused(stamps, tmp_path):
-    """Ticks of columns and Parquet files lie between the limits of time, at both ends."""
     spec = rvmon.loads(BOUND)
     table = {"t_ns": np.array(stamps), "x": np.array([1.0, 1.0])}
     path = tmp_path / "a.parquet"
@@ -74,7 +73,6 @@ def test_what_a_mask_hides_is_no_update(rows):
 
 
 def test_the_time_column_is_no_signal(tmp_path):
-    """A signal of the name of the time column has no source in arrays, lists and files."""
     spec = rvmon.loads("spec s\nsignal t : real\nrequirement R1\n  always t < 5\n")
     table = {"t": np.array([0.0, 1.0])}
     (tmp_path / "a.csv").write_text("t\n0\n1\n")
@@ -91,7 +89,6 @@ def test_the_time_column_is_no_signal(tmp_path):
 
 
 def test_truth_values_of_record_batches_are_read():
-    """A batch of rows is judged as a table of them is."""
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
     columns = {"t": pyarrow.array([0.0, 1.0]), "p": pyarrow.array([True, False])}
     batch = pyarrow.RecordBatch.from_pydict(columns)
@@ -151,7 +148,6 @@ def test_dates_that_are_not_declared_do_not_matter():
 @pytest.mark.parametrize("wrong", [5, None, 2.5, "soon", b"1", np.array(3), np.float64(1)])
 @pytest.mark.parametrize("name", ["t", "x"])
 def test_what_is_no_column_is_refused(name, wrong):
-    """A single value in the place of a column is named."""
     table = {"t": [0, 1], "x": [1.0, 1.0], name: wrong}
     with pytest.raises(rvmon.TraceError, match=f"column `{name}`: expected an array or a list"):
         rvmon.loads(BOUND).evaluate(table)

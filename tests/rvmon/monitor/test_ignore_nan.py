@@ -44,12 +44,10 @@ ROWS = [
 
 @pytest.fixture(params=["held", "sampled", "sampled every 100 ms"])
 def spec(request):
-    """The specification in each model of time."""
     return rvmon.loads(SPEC.format(time=request.param))
 
 
 def without(rows):
-    """The rows, without what is ignored; each is a sample all the same."""
     return [(t, {n: v for n, v in row.items() if v is not None and v == v}) for t, row in rows]
 
 

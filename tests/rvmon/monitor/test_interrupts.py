@@ -162,37 +162,36 @@ def _is_torn(report: Report) -> bool:
 
 
 def test_after_a_torn_step_nothing_passes() -> None:
-    """A step is judged in full, or not at all, or what has not failed is inconclusive."""
+    """A step is judged in full, or not at all, or what has not failed is inconclusive.
+
+    What goes on from a snapshot says the same, the terminal names the instant, and JUnit skips.
+    """
     spec = rvmon.loads(_SPEC)
     skipped = _ended(_begun(spec))
     places, monitor = _passed(spec)
     whole = _ended(monitor)
     assert skipped.verdicts["R1"] == "P"
     assert whole.verdicts["R1"] == "F"
-    torn = 0
+    torn, lines = 0, set()
     for monitor in _interrupted(spec, places):
+        other = spec.restore(monitor.snapshot())
+        assert other.verdicts == monitor.verdicts
         report = _ended(monitor)
+        assert other.finish_ns(3 * _S + 1) == report
         torn += _is_torn(report)
         assert _is_torn(report) or report in (skipped, whole)
+        facts = health_facts(report.health, report.origin)
+        found = [f"{names}  {fact}" for names, fact in facts if "interrupted" in fact]
+        assert bool(found) is ("was not evaluated in full" in junit_xml([report], spec.checked))
+        lines |= {line.partition(":")[0] for line in found}
         monitor.reset()
         monitor.step_ns(0, {"x": 1.0})
         assert monitor.finish_ns(1).verdicts["R1"] == "P"
     assert torn > len(places) / 2
-
-
-def test_a_snapshot_keeps_that_a_step_was_torn() -> None:
-    """What goes on from it says the same."""
-    spec = rvmon.loads(_SPEC)
-    places, _ = _passed(spec)
-    for monitor in _interrupted(spec, places[::9]):
-        other = spec.restore(monitor.snapshot())
-        assert other.verdicts == monitor.verdicts
-        assert other.finish_ns(3 * _S + 1) == monitor.finish_ns(3 * _S + 1)
+    assert "monitor  interrupted once, first at 1 s (stamp 2 s)" in lines
 
 
 def test_what_a_sample_raises_itself_tears_nothing() -> None:
-    """A mapping that cannot be read leaves the monitor as it was."""
-
     class Broken(dict[str, object]):
         def items(self) -> Any:
             raise LookupError("no such field")
@@ -202,17 +201,3 @@ def test_what_a_sample_raises_itself_tears_nothing() -> None:
     with pytest.raises(LookupError):
         monitor.step_ns(1, Broken(x=4.0))
     assert monitor.finish_ns(2).verdicts["R1"] == "P"
-
-
-def test_a_torn_run_is_told_in_every_output() -> None:
-    """The terminal names the instant; JUnit skips what is inconclusive."""
-    spec = rvmon.loads(_SPEC)
-    places, _ = _passed(spec)
-    lines = set()
-    for monitor in _interrupted(spec, places):
-        report = monitor.finish_ns(4 * _S)
-        facts = health_facts(report.health, report.origin)
-        found = [f"{names}  {fact}" for names, fact in facts if "interrupted" in fact]
-        assert bool(found) is ("was not evaluated in full" in junit_xml([report], spec.checked))
-        lines |= {line.partition(":")[0] for line in found}
-    assert "monitor  interrupted once, first at 1 s (stamp 2 s)" in lines

@@ -34,19 +34,16 @@ requirement Other
 
 
 def begun(more="", **options):
-    """A monitor that has had one sample at 0 s."""
     monitor = rvmon.loads(SPEC.format(more=more)).monitor(**options)
     monitor.step(0, {"x": 1.0, "other": True})
     return monitor
 
 
 def said(report):
-    """The verdicts in the order of the file."""
     return "".join(str(verdict) for verdict in report.verdicts.values())
 
 
 def drawn(seed):
-    """A random case in which names are lost."""
     rng = random.Random(seed)
     while True:
         spec = random_spec(rng, Profile(requirements=2, depth=2))
@@ -195,6 +192,17 @@ def test_what_comes_too_late_leaves_nothing_green_that_reads_it():
         ("other", "left out"),
         ("x", "left out"),
     ]
+
+
+def test_the_buffer_of_delayed_samples_is_bounded(monkeypatch):
+    """When too many samples wait, the oldest are judged, and input health says so."""
+    monkeypatch.setattr("rvmon.monitor.intake.MOST_HELD", 3)
+    monitor = rvmon.loads(SPEC.format(more="max delay 1 h")).monitor()
+    for t in range(6):
+        monitor.step(t, {"x": 1})
+    monitor.step(1, {"x": 2})
+    found = {(one.name, one.count, one.first) for one in monitor.finish().health}
+    assert {("buffer", 3, 0), ("x", 1, 10**9)} <= found
 
 
 def test_a_sample_that_is_refused_can_be_told_to_have_come_too_late():

@@ -54,12 +54,10 @@ def rows_of(times, columns):
 
 
 def arrays_of(times, columns):
-    """The same trace as arrays."""
     return {name: np.array(column) for name, column in {"t_ns": times, **columns}.items()}
 
 
 def figures_of(margins):
-    """All figures."""
     streams = {name: list(stream) for name, stream in margins.streams.items()}
     return dict(margins.attempts), dict(margins.doubtful), streams
 

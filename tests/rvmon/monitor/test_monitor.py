@@ -84,7 +84,6 @@ def test_open_attempts_say_what_they_wait_for(monitor):
 
 @pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])
 def test_an_impossible_time_is_an_error(monitor, t):
-    """A time that is no finite number of ticks is refused by every call."""
     for call in (
         lambda: monitor.step(t, {}),
         lambda: monitor.advance(t),
@@ -118,7 +117,6 @@ def test_a_name_without_source_is_unknown_and_must_not_arrive():
 
 @pytest.mark.parametrize("options", [{"only": ["R9"]}, {"settle": "never"}], ids=str)
 def test_an_unknown_option_is_named_with_those_there_are(options):
-    """A choice that does not exist is refused when the monitor is built."""
     with pytest.raises(UnknownNameError, match=r"there (are|is)"):
         rvmon.loads(SPEC).monitor(**options)
 

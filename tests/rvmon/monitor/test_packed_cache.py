@@ -156,7 +156,6 @@ def test_only_what_was_loaded_is_kept(folder):
 
 
 def test_it_can_be_switched_off(folder, monkeypatch):
-    """Then nothing is written."""
     decided, report, _ = judged()
     [path] = kept_in(folder)
     path.unlink()

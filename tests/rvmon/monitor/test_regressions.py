@@ -84,7 +84,52 @@ CASES = {
     "in sampled time an advance into a window is no position; the sample after it is one": (
         *("sampled", "upon p then always [5 ns, 9 ns] q", "0 p -q; 4 r; 7!; 8 -r; 12", 20),
     ),
-} | {
+    "a value comes again after it was stale, in samples that hold all names": (
+        *("held", "upon e then within 2 ns x == -1"),
+        *("4 x=-2 -e; 11 x=-2 e; 12 x=-2 -e; 13 x=-2 -e; 14 x=-2 -e; 18 x=-2 -e", None),
+    ),
+    "time that passes without a sample hides no further attempt": (
+        *("held", "whenever true then F[3 ns, 3 ns] G r", "-3 -r; 5!; 7", None),
+    ),
+    "in a silence each failure is followed by the next attempt, though an older one waits": (
+        *("held", "always (p -> (r and F[1 ns, 20 ns] q) or F[1 ns, 3 ns] q)"),
+        *("0 p -q r; 1 -p; 2 p -r; 15", None),
+    ),
+    "a gap is told when the first window that lies in it closes": (
+        *("held", "whenever p then F[2 ns, 5 ns] q", "0 p q; 10 -q; 20 q", None),
+    ),
+    "an instance fails under another letter before its next trigger": (
+        "sampled every 4 ns",
+        "whenever x > 0 or g.k == key then F[0 ns, 0 ns] false for each key in g.k",
+        *("0 x=1; 15 g=0; 24 g=0; 28 g=0", None),
+    ),
+    "a window without a tick is over in time": (
+        *("sampled every 10 ns", "upon e then F[1 ns, 5 ns] p", "0 p; 10 e; 16!", None),
+    ),
+    "what is read twice is born when both can be told": (
+        *("held", "always (delta(x) <= 1 and x <= 2)", "0 x=1", 0),
+    ),
+}
+
+CASES |= {
+    f"an age counts from the beginning before the first update, at {first}": (
+        *("held", "always age(x) <= 10 ns", f"0 y=1; {first} x=1", None),
+    )
+    for first in (5, 10, 11)
+}
+
+CASES |= {
+    f"what an open attempt is said to owe is undecided: {required}": (time, required, told, None)
+    for time, required, told in (
+        ("sampled every 3 ns", "upon e then G[1 ns, inf) (G[1 ns, 1 ns] p)", "0 p e; 4 q; 6!"),
+        ("sampled every 1 ns", "upon e then F[1 ns, inf) (G[1 ns, 2 ns] start)", "0 e; 3; 5; 7!"),
+        ("held", "whenever true then within 3 ns e", "0 e; 1; 2; 4!"),
+        ("sampled", "whenever p then G[1 ns, 1 ns] e", "0 p e; 4; 20; 22!"),
+        ("sampled every 1 ns", "upon q then F[1 ns, 1 ns] H[2 ns, 2 ns] F not q", "0 p e; 1 q; 3!"),
+    )
+}
+
+CASES |= {
     f"time comes to a tick of the clock and passes it: {steps}": (
         *("sampled every 3 ns", "upon e then next next p", f"0 p e; {steps}", 10),
     )
@@ -219,40 +264,6 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
     assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize(
-    ("time", "requirement", "samples"),
-    [
-        ("sampled every 3 ns", "upon e\n  then always[1 ns, inf) (always[1 ns, 1 ns] p)", [0, 4]),
-        ("sampled every 1 ns", "upon e\n  then F[1 ns, inf) (always[1 ns, 2 ns] start)", [0, 3, 5]),
-        ("held", "whenever true\n  then within 3 ns e", [0, 1, 2]),
-        ("sampled", "whenever p\n  then always[1 ns, 1 ns] e", [0, 4, 20]),
-        ("sampled every 1 ns", "upon q\n  then F[1 ns, 1 ns] (H[2 ns, 2 ns] (F not q))", [0, 1]),
-    ],
-)
-def test_what_is_owed_is_open(form, time, requirement, samples):
-    """What an open attempt is said to owe is undecided, and its deadline is the law's."""
-    spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nrequirement R1\n  {requirement}\n"
-    )
-    told = [Sample(t, {"p": True, "e": True} if t == 0 else {"q": True}) for t in samples]
-    case = Case(spec.checked, (*told, samples[-1] + 2))
-    assert not disagreements(case, Maker(form), online=True)
-
-
-def test_a_value_that_comes_again_after_it_was_stale_is_known():
-    """Samples that hold all names: time passes before it is seen what is new."""
-    spec = rvmon.loads(
-        "spec s\nsignal y : int stale after 4 ns\nevent e\n"
-        "requirement R1\n  upon e\n  then within 3 ns y == -1\n"
-    )
-    monitor = spec.monitor()
-    for t in (4, 11, 14, 18):
-        monitor.step_ns(t, {"y": -2, "e": t == 11})
-    (attempt,) = monitor.finish_ns().attempts
-    assert (attempt.decided, attempt.verdict) == (15, "F")
-
-
 @pytest.mark.parametrize("seed", [38, 57])
 def test_a_network_learns_of_an_until_in_order(seed):
     """What becomes known at once of several stretches is known as of its stamp, not before."""
@@ -263,51 +274,3 @@ def test_a_network_learns_of_an_until_in_order(seed):
     rng = random.Random(seed)
     told = [Sample(t, {"x": rng.uniform(0, 5), "y": rng.uniform(0, 4)}) for t in range(90)]
     assert not disagreements(Case(spec.checked, tuple(told)), Maker(), online=False)
-
-
-def test_time_that_passes_without_a_sample_hides_no_further_attempt():
-    """A failure that time brings after `advance` is followed by the next attempt, as without."""
-    spec = rvmon.loads(
-        "spec s\nsignal r : bool\n"
-        "requirement R\n  whenever true\n  then eventually[3 ns, 3 ns] G r\n"
-    )
-    monitor = spec.monitor()
-    monitor.step_ns(-3, {"r": False})
-    monitor.advance_ns(5)
-    monitor.step_ns(7, {})
-    attempts = monitor.finish_ns().attempts
-    assert [(one.triggered, one.decided) for one in attempts] == [(-3, 1), (2, 6), (7, None)]
-
-
-def test_what_is_read_twice_is_born_when_both_can_be_told():
-    """With one value nothing was judged of its change, though all of the value itself."""
-    spec = rvmon.loads(
-        "spec s\nsignal v : real\nrequirement R1\n  always (delta(v) <= 1 and v <= 2)\n"
-        "requirement R2\n  always v <= 2\n"
-    )
-    report = spec.evaluate({"t_ns": [0], "v": [1.0]})
-    assert report.verdicts == {"R1": "I", "R2": "P"}
-
-
-@pytest.mark.parametrize(("first", "expected"), [(0.5, "P"), (1.0, "P"), (1.1, "F")])
-def test_an_age_counts_from_the_beginning_before_the_first_update(first, expected):
-    """Nothing was due before; a sensor that begins too late has been silent."""
-    spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n  always age(x) <= 1 s\n")
-    report = spec.evaluate([(0, {"y": 1.0}), (first, {"x": 1.0})])
-    assert report.verdicts["R"] == expected
-
-
-@pytest.mark.parametrize(
-    ("trigger", "expected"),
-    [
-        ("p and lost", "I"),
-        ("p and not lost", "I"),
-        ("not p and lost", "NT"),
-        ("lost since[1 s, inf) p", "I"),
-    ],
-)
-def test_a_trigger_that_reads_what_has_no_source_may_have_been_true(trigger, expected):
-    """It is neither false nor passed over, as what comes later would be."""
-    text = f"spec s\nsignal p, lost : bool\nrequirement R\n  upon {trigger}\n  then not p\n"
-    report = rvmon.loads(text).evaluate({"t": [0, 1], "p": [True, True]}, allow_missing=["lost"])
-    assert report.verdicts["R"] == expected

@@ -71,7 +71,6 @@ def test_the_core_is_of_its_sources():
     ids=["changed", "added", "removed", "renamed", "moved"],
 )
 def test_hash_sees_each_change(change, tmp_path):
-    """A source that is changed, added, removed, renamed or moved on changes the hash."""
     (tmp_path / "a.c").write_bytes(b"int one;")
     (tmp_path / "b.h").write_bytes(b"int two;")
     before = rvmon.native.sources.source_hash(str(tmp_path))

@@ -52,7 +52,6 @@ def number(rng: random.Random) -> str:
 
 
 def csv_text(rng: random.Random, oddness: float) -> str:
-    """A recording of which so many cells are odd."""
     rows, t = [",".join(HEADER)], 0
     for _ in range(rng.randrange(40)):
         t += rng.choice([0, 1, 50_000_000, 600_000_000])

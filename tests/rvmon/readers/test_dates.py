@@ -21,7 +21,6 @@ EXPECTED = decided({"t_ns": NS, "x": X})
 
 
 def pandas_frames(module):
-    """Dates in a column, as an index with and without a name, and with a zone."""
     dates = module.to_datetime(NS)
     yield module.DataFrame({"t": dates, "x": X})
     yield module.DataFrame({"x": X}, index=module.Index(dates, name="t"))
@@ -61,7 +60,6 @@ def test_durations_count_from_their_start():
 
 
 def test_a_date_that_is_none_is_told():
-    """With its row."""
     with pytest.raises(rvmon.TraceError, match="row 1: time `NaT`"):
         decided({"t": np.array(["2024-05-01", "NaT"], "datetime64[ns]"), "x": [1.0, 2.0]})
 

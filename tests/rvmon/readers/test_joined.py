@@ -55,7 +55,6 @@ def written(folder, rng, most=40):
 
 
 def attempts(report):
-    """What was decided, and when."""
     return [(one.name, one.verdict, one.triggered, one.decided) for one in report.attempts]
 
 

@@ -19,7 +19,6 @@ requirement R1
 
 
 def judged(tmp_path, **columns) -> str:
-    """The verdict on a recording of three rows."""
     table = {"t": [0.0, 1.0, 2.0], "shut": [False, True, True], "knock": [False, True, False]}
     parquet.write_table(pa.table(table | columns), tmp_path / "a.parquet")
     return str(rvmon.loads(SPEC).evaluate(tmp_path / "a.parquet").verdicts["R1"])
@@ -43,7 +42,6 @@ def test_an_event_of_which_nothing_is_said_does_not_occur(tmp_path):
     ],
 )
 def test_columns_of_another_type_are_refused(columns, message, tmp_path):
-    """The message names the place, the cause and what to do."""
     with pytest.raises(rvmon.TraceError, match=message):
         judged(tmp_path, **columns)
 

@@ -31,7 +31,6 @@ requirement R3 "c"
 
 
 def csv_text(seed: int, rows: int = 1000) -> str:
-    """A plain file: every cell is filled."""
     rng = random.Random(seed)
     t, speed, p, count = 0, 0.3, False, 0
     lines = ["t,ignored,speed,p,stop,count"]

@@ -144,7 +144,6 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 @pytest.fixture
 def server(tmp_path):
-    """A folder, and the address at which it is served."""
     pytest.importorskip("fsspec")
     pytest.importorskip("aiohttp")
     handler = partial(Quiet, directory=str(tmp_path))
@@ -193,7 +192,6 @@ def test_an_address_without_a_recording_does_not_stop_the_others(tmp_path, serve
 
 
 def test_a_kind_of_address_that_is_not_known_is_told(spec):
-    """It names the kind."""
     pytest.importorskip("fsspec")
     with pytest.raises(TraceError, match=r"nowhere://x/a\.csv: cannot be read .*nowhere"):
         spec.evaluate("nowhere://x/a.csv")

@@ -197,7 +197,6 @@ def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path, file):
 
 
 def test_a_byte_order_mark_stands_before_a_quoted_header(tmp_path):
-    """The mark is no part of the first cell, in quotes or not."""
     _, samples = read(tmp_path, "a.csv", '\ufeff"t","n"\n1,4\n')
     assert samples == [(1_000_000_000, {"n": 4})]
 
@@ -209,7 +208,6 @@ def test_a_line_of_blanks_is_passed_over(tmp_path):
 
 
 def test_missing_file_is_named(tmp_path):
-    """A file that does not exist is an error of ours with its path."""
     with pytest.raises(TraceError, match=r"gone\.csv: No such file"):
         FileRecording(tmp_path / "gone.csv", SCHEMA)
 

@@ -19,7 +19,6 @@ def spec():
 
 
 def ends(spec, folder, stamps, time):
-    """The last instant as every door reads it."""
     table = {"at": stamps, "x": [1.0] * len(stamps)}
     rows = "".join(f"{stamp},1\n" for stamp in stamps)
     (folder / "a.csv").write_text(f"at,x\n{rows}")
@@ -169,7 +168,6 @@ def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
 
 
 def of_clocks(report):
-    """What is said of stamps."""
     return [one.remark for one in report.health if one.kind == "clock"]
 
 

@@ -26,13 +26,11 @@ def checked():
 
 @pytest.fixture
 def requirement(checked):
-    """The requirement with the given body."""
     return lambda body, **options: checked(f"requirement R {body}", **options).requirements["R"]
 
 
 @pytest.fixture
 def required(requirement):
-    """A formula, checked and printed again."""
     return lambda formula: format_formula(requirement(f"upon start then {formula}").consequent)
 
 

@@ -92,7 +92,6 @@ def test_a_damaged_file_is_of_no_account(folder, damage):
 
 
 def test_errors_are_not_kept(folder):
-    """A wrong text is told anew each time."""
     for _ in range(2):
         with pytest.raises(SpecError, match="unknown"):
             compile_cached("requirement R\n  always nothing\n")
@@ -147,7 +146,6 @@ def test_what_may_not_be_imported_any_more_is_refused(folder, tmp_path, harm):
 
 
 def test_it_can_be_switched_off(folder, monkeypatch):
-    """Then nothing is written."""
     monkeypatch.setenv("RVMON_CACHE", "off")
     assert compile_cached(TEXT) == compile_text(TEXT)
     assert not folder.exists()

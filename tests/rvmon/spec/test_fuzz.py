@@ -52,7 +52,6 @@ def answer(text):
 @settings(max_examples=150, deadline=None)
 @given(st.text(max_size=300))
 def test_any_text(text):
-    """Text of any characters."""
     answer(text)
 
 
@@ -60,13 +59,11 @@ def test_any_text(text):
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.sampled_from(WORDS), max_size=60))
 def test_any_words(words):
-    """Words of the language in any order."""
     answer("".join(words))
 
 
 @pytest.mark.slow
 def test_mutated_specifications():
-    """Specifications with words dropped, doubled, exchanged."""
     for seed in range(100):
         rng = random.Random(seed)
         words = WORD.findall(rng.choice(SEEDS))
@@ -102,5 +99,4 @@ def test_mutated_specifications():
     ids=lambda text: text[:20],
 )
 def test_nesting_and_repetition(text):
-    """Deep nesting and endless repetition."""
     answer(text)

@@ -54,12 +54,10 @@ def test_every_word_of_the_grammar_is_named():
 
 @pytest.mark.parametrize("sign", ["<->", "->", "-->", "&&", "||", "!", "A[]", "E<>", "inf", "∞"])
 def test_every_sign_is_named(sign):
-    """Signs that stand for words are named, too."""
     assert sign in PAGE.replace("\\|", "|")
 
 
 def test_every_unit_is_named():
-    """All units but those with a prefix stand in the table."""
     named = set(re.findall(r"`([^`]+)`", PAGE[PAGE.index("### Units") :]))
     prefixed = {
         unit for unit in unit_table() if unit[0] in "nuµmcdkMG" and unit[1:] in unit_table()

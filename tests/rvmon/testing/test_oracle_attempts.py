@@ -43,7 +43,6 @@ from rvmon.verdict import Verdict
 
 
 def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:
-    """The instants at which attempts start."""
     attempts = judge(requirement(true, upon=trigger), **told)
     return [int(attempt.split()[0]) for attempt in attempts]
 

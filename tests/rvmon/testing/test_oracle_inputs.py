@@ -268,7 +268,6 @@ def test_arithmetic(judge: Any, op: str, args: tuple[Numeric, ...], equals: floa
     [("<", "PFF"), ("<=", "PPF"), ("==", "FPF"), ("!=", "PFP"), (">=", "FPP"), (">", "FFP")],
 )
 def test_comparisons(judge: Any, op: str, verdicts: str) -> None:
-    """Each comparison below, at and above its threshold."""
     got = [judge(compared(x, op, 5), x=value)[0].split()[1] for value in "456"]
     assert "".join(got) == verdicts
 

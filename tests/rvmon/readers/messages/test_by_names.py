@@ -74,7 +74,6 @@ signal mode : {on, off}
 
 
 def values(path, binding=None, columns=None):
-    """What a recording says, by instant and name."""
     spec = rvmon.loads(SPEC + "requirement R1\n  always true\n")
     reading = spec.reading(binding=binding, columns=columns or {})
     samples = FileRecording(path, reading.schema)

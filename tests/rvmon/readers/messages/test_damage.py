@@ -91,7 +91,6 @@ def test_damage_anywhere_is_told_or_harmless(tmp_path, spec, name):
 @pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
 @pytest.mark.parametrize("data", [b"", b"t,speed\n0,1\n" * 90], ids=["empty", "text"])
 def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
-    """Empty files, and others by that name."""
     (tmp_path / name).write_bytes(data)
     with pytest.raises(rvmon.TraceError, match=rf"{name}: (cannot be read as|is an empty|is no )"):
         spec.evaluate(tmp_path / name)
@@ -114,7 +113,6 @@ def test_a_bag_whose_recorder_was_killed_is_told(tmp_path, spec, is_folder):
 
 @pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
 def test_a_bag_that_is_not_there_is_told(tmp_path, spec, name):
-    """As any file."""
     with pytest.raises(rvmon.TraceError, match=rf"{name}: No such file"):
         spec.evaluate(tmp_path / name)
 
@@ -190,7 +188,6 @@ def test_an_element_of_an_array_is_read(tmp_path):
 
 
 def test_a_recording_without_messages_is_told(tmp_path, spec):
-    """There is nothing to judge."""
     write_ros1(tmp_path / "a.bag", [])
     with pytest.raises(rvmon.TraceError, match="there is no topic"):
         spec.evaluate(tmp_path / "a.bag")

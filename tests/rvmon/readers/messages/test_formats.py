@@ -67,7 +67,6 @@ def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
 
 
 def samples(spec, path):
-    """What a recording says, instant by instant."""
     return [(sample.t, sorted(sample.values.items())) for sample in spec.recording(path)]
 
 
@@ -111,7 +110,6 @@ def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
 
 
 def samples_of(spec, path, binding):
-    """What a recording says under a binding."""
     return list(rvmon.load(spec).recording(path, binding=binding))
 
 

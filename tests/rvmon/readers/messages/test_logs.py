@@ -54,7 +54,6 @@ requirement R3
 
 
 def rows_at_random(seed, count=150, steps=OF_ALL):
-    """Numbers that a float of 32 bits holds, at stamps that doubles of seconds hold."""
     rng = random.Random(seed)
     t, rows = 1_000_000, []
     for _ in range(count):
@@ -73,7 +72,6 @@ def written(folder, name, rows):
 
 
 def spec_of(topic, name):
-    """The specification; the fields of telemetry are those of the dialect."""
     spec = rvmon.loads(SPEC.format(topic))
     if name != "a.tlog":
         return spec
@@ -219,7 +217,6 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
 
 
 def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
-    """The library gives those that are there."""
     asammdf = pytest.importorskip("asammdf")
     path = write_mdf(tmp_path / "a.mf4", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)])
     with asammdf.MDF(path) as file:
@@ -334,7 +331,6 @@ def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
 
 @pytest.mark.parametrize("kinds", [{1: 125}, {2: 126}, {1: 125, 4: 126}, {6: 125}])
 def test_what_a_binary_log_of_can_lost_is_unknown(tmp_path, kinds):
-    """From the object that says so to the one that says that it is over."""
     pytest.importorskip("can")
     path = write_can(tmp_path / "a.blf", CAN_ROWS, kinds)
     report = spec_of("Drive", "a.blf").evaluate(path)

@@ -39,7 +39,6 @@ def recording(path, odom, scan, *, write=write_ros1, count=400):
 
 
 def doubts(path, tmp_path, **arguments):
-    """What is said of clocks, by topic."""
     (tmp_path / "b.toml").write_text(BINDING)
     spec = rvmon.loads(SPEC)
     report = spec.evaluate(path, binding=tmp_path / "b.toml", **arguments)
@@ -64,7 +63,6 @@ def test_a_clock_that_is_behind_another(tmp_path):
 
 
 def ros2(path, sent):
-    """A bag of ROS 2."""
     return write_ros2(path, sent, "sqlite3")
 
 

@@ -33,7 +33,6 @@ ONE = "spec s\nsignal speed : real\nrequirement R1\n  always speed < 1\n"
 
 
 def folder(path, files, topics=""):
-    """A folder of tables that are one recording."""
     path.mkdir()
     for name, text in files.items():
         (path / name).write_text(text)
@@ -42,7 +41,6 @@ def folder(path, files, topics=""):
 
 
 def samples(path, **columns):
-    """What a recording says, by instant and name."""
     schema = rvmon.loads(SPEC).reading(columns=columns).schema
     return [(one.t, dict(one.values)) for one in FileRecording(path, schema) if one.values]
 

@@ -14,7 +14,6 @@ HEAD = (
 
 
 def required(text):
-    """What is required, as it is printed."""
     spec = rvmon.loads(f"{HEAD}({text})\n  let v = x\n")
     return format_formula(spec.checked.requirements["R"].consequent)
 
@@ -132,7 +131,6 @@ def test_what_is_refused(text, message):
 
 
 def test_printed_amounts_are_read_back():
-    """What is printed means the same."""
     for text in (
         "count(e and e.k == 1, 5 s) >= 3",
         "duration(a and x > 1, 90 s) >= 1 ns",

@@ -14,7 +14,6 @@ HEAD = (
 
 
 def loaded(text):
-    """The specification that owes this."""
     return rvmon.loads(HEAD + text + "\n")
 
 

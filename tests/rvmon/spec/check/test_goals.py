@@ -7,7 +7,6 @@ from rvmon.spec.print import format_formula
 
 
 def bins(checked, text):
-    """The bins of a coverpoint as text."""
     point = checked(f"coverpoint p {text}").coverpoints["p"]
     return {bin_.name: format_formula(bin_.formula) for bin_ in point.bins}
 
@@ -44,7 +43,6 @@ def test_clauses(checked):
 
 
 def test_weight(checked):
-    """How much a coverpoint or cross counts."""
     spec = checked("coverpoint p = a {yes: true} weight 0\ncross c = p weight 3")
     assert (spec.coverpoints["p"].weight, spec.crosses["c"].weight) == (0, 3)
 
@@ -58,7 +56,6 @@ def test_a_cross_is_where_its_coverpoints_are(checked):
 
 
 def test_cross(checked):
-    """Combinations that are ignored or illegal are listed."""
     spec = checked(
         "coverpoint p = a {yes: true, no: false}\ncoverpoint q = state {idle, moving}\n"
         "cross c = p, q\n  ignore p == no and q == idle\n  illegal p == no <-> q != idle\n  goal 2"
@@ -70,7 +67,6 @@ def test_cross(checked):
 
 
 def test_cover(checked):
-    """A cover goal is shown where its formula holds at some instant."""
     assert format_formula(checked("cover C = a and e").covers["C"].formula) == (
         "eventually (a and e)"
     )
@@ -111,12 +107,10 @@ def test_cover(checked):
     ],
 )
 def test_goals_that_are_refused(codes, text, codes_found):
-    """Each mistake is found by its rule."""
     assert codes(text) == codes_found
 
 
 def test_crosses_are_limited(codes):
-    """A cross of too many combinations is refused."""
     many = ", ".join(f"b{number}: {number}" for number in range(101))
     points = f"coverpoint p = n {{{many}}}\ncoverpoint q = x {{{many}}}\n"
     assert codes(f"{points}cross c = p, q") == ["RV061"]

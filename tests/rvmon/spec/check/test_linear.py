@@ -178,7 +178,6 @@ def _true(formula, label):
 
 
 def on_all_paths(structure, tableau):
-    """Where all paths fulfil a linear formula: none goes through the tableau of its negation."""
     import networkx as nx
 
     labels, after = structure

@@ -8,7 +8,6 @@ from rvmon.spec.print import format_formula
 
 
 def printed(spec):
-    """The consequent of R."""
     return format_formula(spec.requirements["R"].consequent)
 
 

@@ -24,7 +24,6 @@ SCOPES = {
 
 
 def timelines():
-    """All timelines of the library: pattern, call, scope, verdict, words."""
     for file in sorted(LIBRARY.iterdir(), key=lambda entry: entry.name):
         waiting = []
         for line in file.read_text().splitlines():

@@ -86,7 +86,6 @@ def test_names_of_a_model(checked, codes):
     ],
 )
 def test_what_is_no_property_is_refused(codes, text, code):
-    """Each mistake is found by its rule."""
     assert codes(f"property P: {text}") == [code]
 
 
@@ -151,6 +150,5 @@ def test_response_monitor_needs_a_property(codes):
 
 
 def test_roles(checked):
-    """Roles are kept."""
     assert checked(ROLES).signals["ok"].role is Role.INPUT
     assert checked(ROLES).signals["both"].role is None

@@ -112,7 +112,6 @@ def test_clauses(requirement):
     ],
 )
 def test_a_share_of_runs_is_kept(requirement, clause, share):
-    """For campaigns; written again, it reads the same."""
     found = requirement(f"upon e then within 1 s a {clause}")
     assert found.run_share == share
     assert share is None or requirement(f"upon e then F a {share}").run_share == share
@@ -145,7 +144,6 @@ def test_let_keeps_type_and_unit(codes):
 
 
 def test_for_each(requirement, codes):
-    """There is an instance for each value of a payload field, and nothing else."""
     found = requirement("upon pick then F pick.id == i for each i in pick.id")
     assert (found.for_each.name, found.for_each.value.event) == ("i", "pick")
     assert codes("requirement R upon pick and i == 3 then F a for each i in pick.id") == []

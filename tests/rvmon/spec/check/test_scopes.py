@@ -43,7 +43,6 @@ OPENS_ONCE = {"existence(p)", "precedence(s, p)"}
 
 @cache
 def compiled(requirement):
-    """A specification with that requirement."""
     return compile_text(f"""spec demo
 time sampled
 import patterns

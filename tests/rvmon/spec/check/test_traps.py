@@ -92,7 +92,6 @@ def test_false_at_the_first_instant(formula, codes):
 
 
 def test_the_position_before_the_first(codes):
-    """It is the same in sampled time."""
     assert codes("time sampled\nrequirement R always previous a\n") == ["RV048"]
     assert codes("time sampled\nrequirement R always (start or previous a)\n") == []
     assert codes("time sampled every 10 ms\nrequirement R always not not previous a\n") == ["RV048"]

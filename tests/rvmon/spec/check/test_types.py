@@ -56,7 +56,6 @@ from rvmon.units import UnknownUnitError, parse_unit
     ],
 )
 def test_what_does_not_fit_is_refused(codes, text, code):
-    """Each mistake is found by its rule, and only by that."""
     assert codes(f"requirement R {text}") == [code]
 
 
@@ -111,7 +110,6 @@ def test_products_carry_units(codes):
 
 
 def test_constant_comparison_is_settled(requirement):
-    """A comparison of constants is true or false."""
     assert requirement("upon start then eventually 3 s < 200 ms").consequent.operand.value is False
 
 
@@ -152,7 +150,6 @@ def test_malformed_units_are_refused(text):
     ],
 )
 def test_unit_factors(text, base, factor):
-    """Each unit has the factor of the SI brochure, exactly."""
     assert parse_unit(text).dimension == parse_unit(base).dimension
     assert parse_unit(text).factor / parse_unit(base).factor == factor
 

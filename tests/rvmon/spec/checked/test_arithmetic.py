@@ -30,7 +30,6 @@ def wanted_unit(op):
 
 @pytest.mark.parametrize("op", FUNCTIONS)
 def test_a_wrong_number_of_arguments_is_refused(op):
-    """As many as the entry says, and no others."""
     for count in range(1, 6):
         called = f"{op}({', '.join('x' * count)})"
         body = called if op is NumericOp.BIT else f"{called} < 1{wanted_unit(op)}"
@@ -79,7 +78,6 @@ def test_constants_are_worked_out_as_values_are(op):
     ],
 )
 def test_what_no_function_takes_is_refused(call, message):
-    """The message names the function, the argument, and its unit."""
     head = "spec s\nsignal x : real\nsignal n : int\nsignal d : real [m]\n"
     text = f"{head}requirement R\n  always {call}\n"
     with pytest.raises(rvmon.SpecError, match=re.escape(message)):

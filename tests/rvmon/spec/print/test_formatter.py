@@ -114,7 +114,6 @@ def test_long_lines_are_broken_at_loose_operators():
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "\n\n", "# a\n\n# b\n\n"])
 def test_file_without_items(text):
-    """Comments alone stay."""
     assert format_text(text).strip() == text.strip()
 
 

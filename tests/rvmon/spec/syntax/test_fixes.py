@@ -15,7 +15,6 @@ const T = 3 s
 
 
 def first_finding(text):
-    """The first finding of a specification."""
     with pytest.raises(SpecError) as caught:
         compile_text(HEAD + text)
     return caught.value.diagnostics[0]

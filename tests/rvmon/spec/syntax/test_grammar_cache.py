@@ -41,7 +41,6 @@ def test_another_grammar_has_other_tables(folder):
 
 
 def test_what_is_wrong_is_passed_over(folder):
-    """A file that is cut, changed or none of ours is worked out anew and replaced."""
     parser_of(GRAMMAR, OPTIONS)
     [path] = folder.glob("grammar-*")
     good = path.read_bytes()
@@ -62,7 +61,6 @@ def test_it_can_be_switched_off(folder, monkeypatch):
 
 
 def test_a_place_that_cannot_be_written_is_no_trouble(folder):
-    """Without a place to keep tables they are worked out each time."""
     folder.parent.joinpath("rvmon").write_text("a file")
     assert cache_folder() is None
     assert parser_of(GRAMMAR, OPTIONS).parse("a 7").children[0] == "7"

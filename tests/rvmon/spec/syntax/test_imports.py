@@ -66,7 +66,6 @@ def test_circle_is_an_error_with_both_places(compile_file, texts):
 
 
 def test_double_name_over_files_shows_both_files(compile_file):
-    """A name declared in two files is an error that names both."""
     with pytest.raises(SpecError) as caught:
         compile_file(main='import "one.rv"\nsignal a : bool', one="event a")
     (finding,) = caught.value.diagnostics
@@ -91,7 +90,6 @@ def test_what_cannot_be_read_is_said(compile_file, target):
 
 
 def test_binary_file_is_said(compile_file, tmp_path):
-    """An imported file that is no text."""
     (tmp_path / "one.rv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SpecError, match="it is not UTF-8 text"):
         compile_file(main='import "one.rv"')

@@ -10,7 +10,6 @@ from rvmon.timed.search.verify import verify
 
 
 def lamp():
-    """A lamp that somebody switches."""
     net = NetworkBuilder("lamp", "A lamp", unit=1_000_000_000)
     net.declare("chan press; int[0,3] count")
     light = net.automaton("Light", "clock y").location("off").location("on", invariant="y <= 5")

@@ -9,7 +9,6 @@ from rvmon.timed.search.verify import verify
 
 
 def model(declaration="", local="", invariant="", system="system T;", queries="", **labels):
-    """A model in UPPAAL's XML with one edge whose labels are given."""
     texts = "".join(f'<label kind="{kind}">{text}</label>' for kind, text in labels.items())
     return f"""<nta><declaration>{declaration}</declaration>
 <template><name>T</name><declaration>{local}</declaration>

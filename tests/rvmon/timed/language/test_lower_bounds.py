@@ -8,7 +8,6 @@ from rvmon.timed.search.verify import verify
 
 
 def model(invariant, update="", other="", channel=""):
-    """A location with an invariant that an edge leads to."""
     do, on = (f"{word} {text}" if text else "" for word, text in (("do", update), ("on", channel)))
     return f"""clock x, y
 int[0,3] v

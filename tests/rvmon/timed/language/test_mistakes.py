@@ -46,7 +46,6 @@ bool b = true true;
 
 
 def lines_of(text):
-    """The lines in which mistakes are told, as they are ordered."""
     with pytest.raises(ModelError) as raised:
         loads_network(text)
     starts = [one.spans[0].span.start for one in raised.value.diagnostics]

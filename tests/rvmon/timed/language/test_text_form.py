@@ -14,7 +14,6 @@ from rvmon.timed.search.verify import verify
 
 
 def findings(text):
-    """`(code, line, column)` of all findings of a text."""
     with pytest.raises(ModelError) as caught:
         loads_network(text)
     return [
@@ -24,7 +23,6 @@ def findings(text):
 
 
 def one(text):
-    """The only finding of a text."""
     with pytest.raises(ModelError) as caught:
         loads_network(text)
     (diagnostic,) = caught.value.diagnostics
@@ -191,7 +189,6 @@ A = "automaton A { location a start a } "
     ],
 )
 def test_each_mistake_has_its_code(text, code):
-    """Every kind of mistake is refused with a code of its own."""
     assert [found[0] for found in findings(text)] == [code]
 
 
@@ -260,7 +257,6 @@ def test_an_unbounded_int_is_fixed_by_a_range():
 
 
 def test_a_channel_used_by_nobody_is_a_warning():
-    """Channels without a partner are pointed out, but the model is a model."""
     network = loads_network("""
     chan lonely, sent, heard
     broadcast chan radio
@@ -317,7 +313,6 @@ def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
 
 
 def test_files_that_cannot_be_read_are_findings(tmp_path):
-    """A missing file and a binary one give a message, not a traceback."""
     with pytest.raises(ModelError, match="No such file"):
         load_network(tmp_path / "missing.ta")
     (tmp_path / "binary.ta").write_bytes(b"\xff\xfe\x00")

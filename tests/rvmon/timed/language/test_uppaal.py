@@ -15,7 +15,6 @@ MODELS = Path(__file__).parents[4] / "examples" / "models"
 
 
 def wrap(template, *, declaration="", system="system T;", queries="", parameter=""):
-    """A model with one template whose content is given."""
     return f"""<?xml version="1.0" encoding="utf-8"?>
 <!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.1//EN' 'http://nowhere/flat-1_2.dtd'>
 <nta>
@@ -30,13 +29,11 @@ ONE = '<location id="a"><name>a</name></location><init ref="a"/>'
 
 
 def edge(**labels):
-    """An edge from `a` to itself."""
     texts = "".join(f'<label kind="{kind}">{text}</label>' for kind, text in labels.items())
     return f'<transition><source ref="a"/><target ref="a"/>{texts}</transition>'
 
 
 def finding(text):
-    """The only finding of a model, and the text at its place."""
     with pytest.raises(ModelError) as caught:
         loads_network(text)
     (diagnostic,) = caught.value.diagnostics
@@ -102,7 +99,6 @@ def test_old_and_new_ways_to_write_instances():
 
 
 def test_arrays_may_be_indexed_by_a_type():
-    """The indices of `a[id]` are the values of the type, wherever it starts."""
     text = wrap(
         ONE + edge(select="i : id", guard="a[i] == 2", assignment="a[i] = 9, c[i] = 0"),
         declaration="typedef int[3,4] id; int[0,9] a[id] = {1, 2}; clock c[id];",
@@ -205,14 +201,12 @@ def test_a_query_that_cannot_be_read_is_a_warning():
     ],
 )
 def test_entities_are_refused(doctype):
-    """No entity is ever declared, so none can grow or reach outside the file."""
     with pytest.raises(ModelError) as caught:
         loads_network(f"{doctype}<nta><declaration>&a;</declaration></nta>")
     assert caught.value.diagnostics[0].code == "TA018"
 
 
 def test_deep_and_huge_files_are_refused():
-    """Nesting and length have limits."""
     with pytest.raises(ModelError, match="nested too deeply"):
         loads_network("<nta>" + "<a>" * 1000 + "</a>" * 1000 + "</nta>")
     with pytest.raises(ModelError, match="more than"):
@@ -250,5 +244,4 @@ def test_a_branch_point_is_a_choice_with_weights():
 
 @pytest.mark.parametrize("weights", [(0, 0), (2, -1)])
 def test_weights_that_share_nothing_are_refused(weights):
-    """A share needs a sum above 0."""
     assert finding(branching(*weights))[0] == "TA017"

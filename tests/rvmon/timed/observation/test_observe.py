@@ -48,7 +48,6 @@ event pressed, raised, dark
 
 
 def observed(requirements, model=LAMP, **options):
-    """The observations for some requirements, and the spec they come from."""
     spec = rvmon.loads(SPEC.format(requirements=requirements))
     return list(observe(loads_network(model), spec.checked, **options)), spec
 
@@ -199,7 +198,6 @@ def test_signals_can_be_bound_from_outside():
 
 
 def test_a_budget_is_told():
-    """A search that was cut short decides nothing."""
     ((one,), _) = observed(
         "requirement R\n  upon pressed then within 8 s dark", budget=Budget(states=3)
     )

@@ -42,7 +42,6 @@ automaton Room {
 
 
 def values(terms, text=MODEL, horizon=20):
-    """The first run's times, and the values of terms at each."""
     network = loads_network(text)
     (run,) = trajectories(network, asked_on(network, f"simulate [<={horizon}; 1] {{{terms}}}")[1])
     return run.times, run.values

@@ -61,7 +61,6 @@ def test_clocks_in_the_formula_are_met_while_time_passes():
 
 
 def test_the_same_seed_gives_the_same_figure():
-    """Simulation is repeatable."""
     assert share(COIN, "Pr[9](<> A.b)") == share(COIN, "Pr[9](<> A.b)")
     assert share(COIN, "Pr[9](<> A.b)") != share(COIN, "Pr[9](<> A.b)", seed=8)
 
@@ -92,6 +91,5 @@ def test_bounds_are_clopper_and_pearsons(successes, runs):
     ],
 )
 def test_what_cannot_be_simulated_is_refused(text, query, message):
-    """Queries beyond single runs, endless runs and Zeno loops are findings."""
     with pytest.raises(ModelError, match=message):
         share(text, query)

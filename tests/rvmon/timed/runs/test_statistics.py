@@ -107,7 +107,6 @@ def test_expected_values():
     ],
 )
 def test_what_has_no_figure_is_refused(query):
-    """Deadlocks, clocks as values, levels that are no probability."""
     with pytest.raises(ModelError):
         sampled(query)
 

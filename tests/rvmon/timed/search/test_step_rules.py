@@ -11,7 +11,6 @@ from rvmon.timed.search.verify import verify
 
 
 def holds(text, query):
-    """The answer to a query on a model given as text."""
     return verify(loads_network(text), query).holds
 
 
@@ -64,7 +63,6 @@ def test_guards_are_read_before_the_sender_writes():
 
 
 def test_urgent_channel_stops_time():
-    """Time does not pass while an urgent channel can be used."""
     assert holds(PAIR.format(kind="", invariant="", guard=""), "E<> x > 0 and Sender.s") is True
     assert (
         holds(PAIR.format(kind="urgent ", invariant="", guard=""), "E<> x > 0 and Sender.s")
@@ -86,7 +84,6 @@ def test_urgent_broadcast_needs_no_receiver():
 
 @pytest.mark.parametrize("kind", ["urgent", "committed"])
 def test_urgent_and_committed_locations_stop_time(kind):
-    """Time does not pass in an urgent or committed location of any automaton."""
     text = f"""
     clock x
     automaton A {{ {kind} location a location b start a edge a -> b }}
@@ -134,7 +131,6 @@ def test_reset_to_a_number():
 
 
 def test_strict_bounds_are_strict():
-    """`<` and `>` exclude the number itself."""
     text = """
     clock x
     automaton A { location a location b start a edge a -> b when x > 1 and x < 2 }

@@ -84,7 +84,6 @@ def test_pairs_that_time_forbids_are_missing():
 
 
 def test_a_budget_is_told():
-    """A suite that was cut short says so."""
     network = load_network(MODELS / "train_gate.ta", constants={"N": 4})
     suite = build_suite(network, Criterion.EDGES, budget=Budget(states=20))
     assert suite.stopped
