@@ -13,7 +13,7 @@ from random import Random
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
 from fuzz.timed_damage import damaged, survives
-from tests.tools.timed_ctl import holds_at_start, random_formulas
+from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError
 from tests.tools.timed_runs import shows
@@ -160,3 +160,37 @@ COMPARISONS = {
         part=500,
     ),
 }
+
+
+def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:
+    """Queries of CTL over some state formulas, with nests of up to three operators."""
+    for _ in range(count):
+        yield _random_path(random, states, random.choice((1, 2, 2, 3)))
+
+
+def _random_path(random: Random, states: list[str], depth: int) -> str:
+    bound = f"[<={random.randint(0, 3)}]" if random.random() < 0.25 else ""
+    body = _random_state(random, states, depth - 1)
+    match random.choice(("unary", "unary", "unary", "until", "next")):
+        case "until":
+            left = _random_state(random, states, depth - 1)
+            return f"({random.choice('AE')}[{left} {random.choice('UUW')}{bound} {body}])"
+        case "next":
+            return f"({random.choice(('AX', 'EX'))} ({body}))"
+        case _:
+            return f"({random.choice(('EF', 'AG', 'AF', 'EG'))}{bound} ({body}))"
+
+
+def _random_state(random: Random, states: list[str], depth: int) -> str:
+    match random.choice(("plain", "path", "path", "not", "and", "or")):
+        case "path" if depth > 0:
+            return _random_path(random, states, depth)
+        case "not":
+            return (
+                f"not ({_random_state(random, states, depth - 1)})" if depth > 0 else "not deadlock"
+            )
+        case "and" | "or" as word if depth > 0:
+            first, second = (_random_state(random, states, depth - 1) for _ in range(2))
+            return f"({first} {word} {second})"
+        case _:
+            return random.choice(states)

@@ -13,6 +13,7 @@ import numpy as np
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.comparisons.coverage import judge as judge_coverage
 from benchmarks.comparisons.long_traces import Long, judge_long
+from benchmarks.comparisons.unrolled import unrolled
 from tests.tools.compare import Key
 from tests.tools.differential import campaign, case_of, cases_of
 from tests.tools.doors import content_of, whole
@@ -22,7 +23,7 @@ from tests.tools.forms import Compiler, Maker
 from tests.tools.generate_ltl import random_ltl, random_mtl
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge as oracle
-from tests.tools.ltl3 import Letter, Tableau, unrolled
+from tests.tools.ltl3 import Letter, Tableau
 from tests.tools.put_away import put_away
 from tests.tools.shrink import shrink
 from tests.tools.sound import is_spoken_of, narrowed, overturned

@@ -122,15 +122,7 @@ def write_ros1(
     own: Types = NONE,
     compression: str = "",
 ) -> Path:
-    """A bag of ROS 1.
-
-    Args:
-        path: of it.
-        sent: its messages.
-        types: by topic.
-        own: definitions of messages that ROS does not bring along.
-        compression: of its chunks.
-    """
+    """A bag of ROS 1."""
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores
 

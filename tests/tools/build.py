@@ -126,15 +126,7 @@ def requirement(
     name: str = "R",
     **rest: Any,
 ) -> Requirement:
-    """A requirement; `upon start` if no trigger is given.
-
-    Args:
-        consequent: what is required.
-        upon: the trigger, or
-        whenever: the trigger.
-        name: the id.
-        rest: further fields of `Requirement`.
-    """
+    """A requirement; `upon start` if no trigger is given."""
     mode = Mode.UPON if whenever is None else Mode.WHENEVER
     trigger = upon or whenever or start
     return Requirement(name, mode, trigger, consequent, pulse=is_pulse(trigger), **rest)
@@ -147,15 +139,7 @@ def spec_of(
     stale: Mapping[str, int] | None = None,
     ignoring: Container[str] = (),
 ) -> CheckedSpec:
-    """A specification over the test vocabulary.
-
-    Args:
-        requirements: its requirements.
-        time: the time model.
-        period: of `sampled every`, ticks.
-        stale: `stale after` of signals, ticks.
-        ignoring: the signals of which NaN and null are no update.
-    """
+    """A specification over the test vocabulary."""
     return CheckedSpec(
         name="test",
         title="",

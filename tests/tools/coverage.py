@@ -16,10 +16,6 @@ def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
     """A random specification that has coverpoints and, if there are several, a cross.
 
     What bins ask for is asked for by its requirements, too, so that traces are drawn for it.
-
-    Args:
-        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
-        profile: of the requirements.
     """
     spec = random_spec(rng, profile)
     shape = Shape(step=spec.time is not TimeModel.HELD, future=False)

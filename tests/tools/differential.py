@@ -127,13 +127,7 @@ def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
 
 
 def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
-    """How a monitor departs from the oracle on a case; empty if it does not.
-
-    Args:
-        case: what to judge.
-        make: gives a fresh monitor.
-        online: whether to check as well what it says at each action.
-    """
+    """How a monitor departs from the oracle on a case; empty if it does not."""
     return _found(Judgement(case), make, online) or []
 
 

@@ -53,10 +53,6 @@ def content_of(rng: Rng, case: Case) -> Content:
     """A random trace as rows, some of which are split or contradicted by further ones.
 
     Labels of which nothing is known are left out: text has no NaN.
-
-    Args:
-        rng: decides what a trace leaves open.
-        case: from `rvmon.testing.generate.trace.random_trace`.
     """
     columns = _columns(case.spec, case.names)
     rows: list[tuple[int, Cells]] = []

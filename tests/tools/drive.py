@@ -42,11 +42,7 @@ class OnlineMonitor(Monitored, Protocol):
 
 
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
-    """Tell a monitor the actions of a case, then finish.
-
-    Returns:
-        The report, and what each action returned.
-    """
+    """Tell a monitor the actions of a case, then finish."""
     if case.outages:
         return drive_losing(cast(Losing, monitor), case)
     returned = [feed(monitor, action) for action in case.actions]
@@ -54,11 +50,7 @@ def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt
 
 
 def drive_losing(monitor: Losing, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
-    """The same with what was lost; now and then nobody says that it was found.
-
-    Raises:
-        AssertionError: the monitor takes what was lost for judged already.
-    """
+    """The same with what was lost; now and then nobody says that it was found."""
     end = open_at_end(case) if len(case.actions) % 2 else None
     returned = []
     for action in told(case):
@@ -81,12 +73,7 @@ def feed(monitor: Monitored, action: Sample | int) -> Sequence[Attempt]:
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """From an instant on, some names are lost.
-
-    Attributes:
-        names: of signals and events; there may be none.
-        t: ticks.
-    """
+    """From an instant on, some names are lost."""
 
     names: tuple[str, ...]
     t: int
@@ -94,12 +81,7 @@ class Lost:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """An instant is the last at which some names are lost.
-
-    Attributes:
-        names: of signals and events; there may be none.
-        t: ticks.
-    """
+    """An instant is the last at which some names are lost."""
 
     names: tuple[str, ...]
     t: int

@@ -57,11 +57,7 @@ class Forked:
         return [line for line in text.splitlines(keepends=True) if line.endswith("\n")]
 
     def kill_when(self, is_time: Callable[[], bool]) -> bool:
-        """Kill it with all that it began as soon as something is true; `False`: it ended before.
-
-        Raises:
-            TimeoutError: neither came.
-        """
+        """Kill it with all that it began as soon as something is true; `False`: it ended before."""
         end = time.monotonic() + 20 * LONG
         while True:
             pid, status = os.waitpid(self._pid, os.WNOHANG)

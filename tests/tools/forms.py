@@ -44,11 +44,7 @@ class Compiler:
         self._compiled: CompiledSpec | None = None
 
     def __call__(self, spec: CheckedSpec) -> CompiledSpec:
-        """The compiled specification.
-
-        Raises:
-            RvmonError: it cannot be monitored.
-        """
+        """The compiled specification."""
         if self._compiled is None or spec is not self._spec:
             self._compiled = compile_spec(spec)
             self._spec = spec
@@ -75,11 +71,7 @@ class Maker:
         self._compile = compiler or Compiler()
 
     def __call__(self, case: Case) -> Monitored:
-        """A fresh monitor for a case.
-
-        Raises:
-            RvmonError: its specification cannot be monitored.
-        """
+        """A fresh monitor for a case."""
         compiled = self._compile(case.spec)
         if self._form == "c rows":
             return ByRows(compiled, case)
@@ -92,13 +84,7 @@ class Maker:
 
 
 class Interrupted:
-    """Before some of the calls, a monitor is replaced by the one that its snapshot gives.
-
-    Args:
-        monitor: fresh.
-        rng: says before which calls.
-        share: of the calls.
-    """
+    """Before some of the calls, a monitor is replaced by the one that its snapshot gives."""
 
     def __init__(self, monitor: Monitor, rng: random.Random, share: float = 0.1) -> None:
         self._monitor = monitor
@@ -114,12 +100,7 @@ class Interrupted:
 
 
 class Stepped:
-    """A monitor that is asked now and then what is due: that must change nothing.
-
-    Args:
-        monitor: fresh; or one that is interrupted.
-        rng: says when it is asked.
-    """
+    """A monitor that is asked now and then what is due: that must change nothing."""
 
     def __init__(self, monitor: Any, rng: random.Random) -> None:
         self._monitor = monitor
@@ -128,11 +109,7 @@ class Stepped:
         self._asked = False
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        """Take a sample.
-
-        Raises:
-            AssertionError: time alone decided what was not due.
-        """
+        """Take a sample."""
         decided: Sequence[Attempt] = self._monitor.step_ns(t_ns, values)
         if self._asked and (self._due is None or t_ns < self._due):
             early = [one for one in decided if (one.decided or 0) < t_ns]
@@ -177,14 +154,6 @@ class HeldBack(Stepped):
 
     The order of the names is random; a signal may come with another value before its last, an event
     may be denied before it occurs, and of two payloads each may come by itself.
-
-    Args:
-        monitor: fresh, with `settle="next"`.
-        spec: that it judges.
-        rng: says how samples are cut.
-
-    Attributes:
-        monitor: the same.
     """
 
     def __init__(self, monitor: Any, spec: CheckedSpec, rng: random.Random) -> None:
@@ -240,10 +209,6 @@ class ByRows:
 
     A sample now and then comes by itself. One is told in several rows of its instant if an event
     brings several payloads, and now and then without that.
-
-    Args:
-        compiled: judged by.
-        case: gives the sources.
     """
 
     silent = True

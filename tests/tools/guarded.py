@@ -9,11 +9,7 @@ _GROWN = "void *widened("
 
 
 def guarded_memory() -> str:
-    """The C that takes the place of the core's memory.c, which puts many blocks into one.
-
-    Raises:
-        ValueError: what makes arrays larger is no longer the end there.
-    """
+    """The C that takes the place of the core's memory.c, which puts many blocks into one."""
     _, found, grown = (_CORE / "memory.c").read_text(encoding="utf-8").partition(_GROWN)
     if not found or grown.count("\n}\n") != 2:
         raise ValueError(f"memory.c does not end with `{_GROWN}…`")

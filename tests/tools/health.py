@@ -17,12 +17,7 @@ from tests.tools.law import names_read
 
 
 def expected_health(case: Case, word: Word) -> list[Health]:
-    """The findings on the inputs of a case, without remarks.
-
-    Args:
-        case: what a monitor is told.
-        word: the same laid out position by position.
-    """
+    """The findings on the inputs of a case, without remarks."""
     case = replace(case, actions=tuple(heard(case.spec, case.samples)))
     readers = readers_of(case.spec)
     found = [*_unknown(case), *_stale(case, word), *_unfed(case, readers)]

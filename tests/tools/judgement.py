@@ -22,16 +22,7 @@ from tests.tools.waiting import Waiting
 
 
 class Judgement:
-    """The oracle's view of a case; each part is made when it is first asked for, and kept.
-
-    Args:
-        case: what to judge.
-
-    Attributes:
-        case: the same.
-        word: its trace, position by position.
-        followings: by requirement, its attempts as the prefix alone decides them.
-    """
+    """The oracle's view of a case; each part is made when it is first asked for, and kept."""
 
     def __init__(self, case: Case) -> None:
         self.case = case

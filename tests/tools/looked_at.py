@@ -13,13 +13,7 @@ _SCRIPT = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
 
 
 def faults(chromium: str, folder: Path, pages: Mapping[str, str]) -> list[str]:
-    """What is wrong with pages, each in two widths, light and dark, in one start of the browser.
-
-    Args:
-        chromium: path of the browser.
-        folder: where a file may be written.
-        pages: their HTML by name.
-    """
+    """What is wrong with pages, each in two widths, light and dark, in one start of the browser."""
     frames = [
         f'<iframe data-name="{html.escape(name)}" data-width="{width}" srcdoc="{html.escape(text)}"'
         f' style="color-scheme:{scheme};width:{width}px;height:900px;border:0"></iframe>'

@@ -8,7 +8,7 @@ Source: Vardi and Wolper 1994 for the tableau; Bauer, Leucker and Schallhart 201
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -23,7 +23,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.formula import UnaryOp as Op
 from rvmon.testing.law.syntax import subformulas
-from tests.tools.common_fragment import both, either, to_core
+from tests.tools.common_fragment import to_core
 
 Letter = frozenset[str]
 """The propositions that are true at a position."""
@@ -76,11 +76,7 @@ class Tableau:
         return cls(formula) if len(temporal) <= most else None
 
     def possible(self, word: Sequence[Iterable[str]]) -> frozenset[bool]:
-        """The truth values that the formula has on the infinite words that begin with `word`.
-
-        Args:
-            word: the propositions that are true at each position; at least one position.
-        """
+        """The truth values that the formula has on the infinite words that begin with `word`."""
         letters = [frozenset(letter) & frozenset(self.names) for letter in word]
         found = set()
         for wanted in (True, False):
@@ -176,58 +172,3 @@ def _is_temporal(part: Formula) -> bool:
             return True
         case _:
             raise ValueError("not an untimed formula of future operators over Boolean signals")
-
-
-def unrolled(formula: Formula) -> Formula:
-    """The same formula without bounds, where every tick is a position: windows as nests of `X`.
-
-    >>> from tests.tools.build import eventually, p
-    >>> from rvmon.spec.print import format_formula
-    >>> format_formula(unrolled(eventually(p, 1, 2)))
-    'next (p or next p)'
-    """
-    return _unrolled(to_core(formula))
-
-
-def _unrolled(formula: Formula) -> Formula:
-    match formula:
-        case Unary(op=Op.EVENTUALLY | Op.ALWAYS, operand=operand, interval=interval):
-            join = either if formula.op is Op.EVENTUALLY else both
-            return _windowed(formula.op, join, _unrolled(operand), interval or Interval(0, None))
-        case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
-            return _until(_unrolled(left), _unrolled(right), interval or Interval(0, None))
-        case Unary(op=op, operand=operand):
-            return Unary(op, _unrolled(operand))
-        case Binary(op=op, left=left, right=right):
-            return Binary(op, _unrolled(left), _unrolled(right))
-        case _:
-            return formula
-
-
-def _windowed(
-    op: Op, join: Callable[[Formula, Formula], Formula], operand: Formula, window: Interval
-) -> Formula:
-    later = _earlier(window)
-    if window.low:
-        return Unary(Op.NEXT, _windowed(op, join, operand, later))
-    if window.high is None:
-        return Unary(op, operand)
-    if window.high == 0:
-        return operand
-    return join(operand, Unary(Op.NEXT, _windowed(op, join, operand, later)))
-
-
-def _until(left: Formula, right: Formula, window: Interval) -> Formula:
-    later = _earlier(window)
-    if window.low:
-        return both(left, Unary(Op.NEXT, _until(left, right, later)))
-    if window.high is None:
-        return Binary(BinaryOp.UNTIL, left, right)
-    if window.high == 0:
-        return right
-    return either(right, both(left, Unary(Op.NEXT, _until(left, right, later))))
-
-
-def _earlier(window: Interval) -> Interval:
-    """The window as it is at the next tick."""
-    return Interval(max(window.low - 1, 0), None if window.high is None else window.high - 1)

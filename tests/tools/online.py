@@ -36,10 +36,6 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     what no prefix has decided, with the deadline and the parts that it waits for; before it is due,
     time alone decides nothing; what was forecast does not come out otherwise; a wrong sample is
     refused and changes nothing.
-
-    Args:
-        judgement: of the case, which is told.
-        monitor: fresh, for the spec and the sources of the case.
     """
     case = judgement.case
     settle = "next" if isinstance(monitor, HeldBack) else "now"
@@ -68,13 +64,7 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
 
 
 def differences_after_end(case: Case, monitor: Monitored, report: Report) -> list[str]:
-    """What a monitor does wrong once its run is finished: it has to take nothing, and stay so.
-
-    Args:
-        case: what it was told.
-        monitor: finished.
-        report: what it said then.
-    """
+    """What a monitor does wrong once its run is finished: it has to take nothing, and stay so."""
     last = case.actions[-1] if case.actions else 0
     later = 1_000 + (last.t if isinstance(last, Sample) else last)
     lines = []

@@ -22,15 +22,7 @@ HEAD = 32
 
 
 class Twins:
-    """Two runs that are told the same; all that they say has to be alike.
-
-    Args:
-        planned: the plan of both.
-        absent: the names without a source.
-
-    Attributes:
-        taken: so often one was taken up again.
-    """
+    """Two runs that are told the same; all that they say has to be alike."""
 
     def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
         self._planned = planned
@@ -39,21 +31,13 @@ class Twins:
         self.taken = 0
 
     def tell(self, action: Sample | int | Lost | Found) -> None:
-        """Tell both, and take one up again from what it is put away as.
-
-        Raises:
-            AssertionError: they say something different, or the bytes are not the same again.
-        """
+        """Tell both, and take one up again from what it is put away as."""
         said = [self._told(one, action) for one in (self.plain, self.other)]
         assert said[0] == said[1], f"at {action}: {said}"
         self.take_up()
 
     def take_up(self) -> None:
-        """Have one run be taken up again by a monitor that was just made.
-
-        Raises:
-            AssertionError: it does not stand as before.
-        """
+        """Have one run be taken up again by a monitor that was just made."""
         data = self.other.save()
         made = self._planned.monitor(frozenset())
         assert made.load(data), "what it was put away as is refused"
@@ -66,11 +50,7 @@ class Twins:
             assert self.plain.save() == self.other.save(), "it does not stand as before"
 
     def finish(self, end: int | None) -> None:
-        """End both.
-
-        Raises:
-            AssertionError: they say something different.
-        """
+        """End both."""
         assert self.plain.finish(end) == self.other.finish(end)
         assert self.plain.flush() == self.other.flush()
         self.take_up()
@@ -105,11 +85,7 @@ def actions_of(case: Case) -> Iterator[Sample | int | Lost | Found]:
 
 
 def put_away(compiled: CompiledSpec, case: Case) -> int:
-    """Run a case twice, once taken up again behind each call; how often it was.
-
-    Raises:
-        AssertionError: that changed something.
-    """
+    """Run a case twice, once taken up again behind each call; how often it was."""
     names = frozenset((*compiled.checked.signals, *compiled.checked.events))
     absent = frozenset() if case.names is None else names - case.names
     twins = Twins(planned_core(compiled), absent)

@@ -22,11 +22,6 @@ def refilled(rng: Rng, case: Case, *, whole: bool = True) -> Case:
     outage. Where a signal became stale, updates may be put in, if nothing in the specification
     counts updates; events without a source may occur. NaN of a signal that ignores it is no update:
     nothing is lost there.
-
-    Args:
-        rng: draws the values.
-        case: what is known.
-        whole: whether to fill in more than the outages.
     """
     through = _through_outages(rng, case)
     return _with_values(rng, case, through) if whole else through
@@ -74,13 +69,7 @@ def _may_be_overwritten(case: Case, name: str, t: int) -> bool:
 
 
 def _with_values(rng: Rng, case: Case, through: Case) -> Case:
-    """A case with a value wherever it says that it is unknown, or says nothing for want of one.
-
-    Args:
-        rng: draws the values.
-        case: what was known.
-        through: the same with its outages filled in, whose values stay, unknown or not.
-    """
+    """A case with a value wherever it says that it is unknown, or says nothing for want of one."""
     lost = _Lost(rng, case.spec)
     read = {sample.t: sample.values for sample in case.samples}
     actions: list[Sample | int] = []
@@ -125,13 +114,7 @@ class _Lost:
     spec: CheckedSpec
 
     def put(self, values: dict[str, Value], name: str, *, over: bool) -> None:
-        """Add what may have come of a name in an outage to what a sample says.
-
-        Args:
-            values: what it says.
-            name: of a signal or event.
-            over: whether it may have come behind that.
-        """
+        """Add what may have come of a name in an outage to what a sample says."""
         read = values.get(name)
         if name in self.spec.signals:
             if name not in values or over:

@@ -43,10 +43,6 @@ class Seen:
 
     What was seen at a decision is that of the position there, or of the one before: a decision that
     time alone brings comes before the position at its instant.
-
-    Args:
-        spec: gives the requirements.
-        starts: the law's attempts.
     """
 
     def __init__(self, spec: CheckedSpec, starts: Mapping[Key, Start]) -> None:

@@ -60,11 +60,7 @@ def _free_port() -> int:
 
 
 def until(true: Callable[[], bool]) -> None:
-    """Wait until it is: for three minutes, or longer where the machine has much to do.
-
-    Raises:
-        TimeoutError: it does not come.
-    """
+    """Wait until it is: for three minutes, or longer where the machine has much to do."""
     wait = _LEAST_S
     for _ in range(_LOOKS):
         if true():
@@ -93,11 +89,7 @@ def _started(command: list[str], port: int) -> subprocess.Popen[bytes]:
 
 
 class Broker:
-    """A broker of MQTT that can be stopped and started again at its port.
-
-    Args:
-        folder: for its settings.
-    """
+    """A broker of MQTT that can be stopped and started again at its port."""
 
     def __init__(self, folder: Path) -> None:
         self.port = _free_port()

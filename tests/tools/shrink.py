@@ -28,11 +28,6 @@ def shrink(case: Case, shows: Callable[[Case], bool], *, most: int = 5_000) -> C
 
     Greedy: the first smaller case that shows it is taken, until none does. Every step takes
     something away for good, so it ends.
-
-    Args:
-        case: shows it.
-        shows: whether a case does; has to answer for any case, not raise.
-        most: so many cases are tried at most.
     """
     tried = 0
     while True:

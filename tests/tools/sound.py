@@ -86,13 +86,6 @@ def overturned(
 ) -> Tried:
     """The verdicts on a case, against those with what it lost filled in at random.
 
-    Args:
-        rng: draws what is filled in.
-        case: of a specification that the law speaks of.
-        fillings: so many are tried.
-        judge: gives the verdicts.
-        whole: whether to fill in more than the outages.
-
     Source: SEMANTICS, section 7.
     """
     before = judge(case).verdicts

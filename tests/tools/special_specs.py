@@ -37,12 +37,7 @@ _TAILS = ("", "  at end: strict\n", "  at end: strong\n")
 
 
 def random_chain(rng: random.Random, *, untils: bool = False) -> CheckedSpec:
-    """A specification with such a requirement, in any model of time.
-
-    Args:
-        rng: draws it.
-        untils: whether `until` and its dual, in bounds, stand in the place of some windows.
-    """
+    """A specification with such a requirement, in any model of time."""
     time = rng.choice(("held", "sampled", f"sampled every {rng.randint(1, 3)} ns"))
     formula = rng.choice(("q", "not q", "(q and r)", "(q or r)", "x > 1"))
     for _ in range(rng.choice((1, 2, 2, 3, 3, 4))):

@@ -8,9 +8,6 @@ Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, secti
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from random import Random
-
 import networkx as nx
 
 from rvmon.timed.model.expressions import (
@@ -33,11 +30,7 @@ Regions = frozenset[Region]
 def holds_at_start(
     network: Network, query: Query, limit: int = 2_000, steps: Steps | None = None
 ) -> bool:
-    """Whether a query holds, whatever operators of CTL it has.
-
-    Raises:
-        TooManyRegionsError: there are more regions than the limit.
-    """
+    """Whether a query holds, whatever operators of CTL it has."""
     formula = query.formula
     assert not isinstance(formula, Asked)
     if isinstance(formula, LeadsToFormula):
@@ -152,37 +145,3 @@ class _Steps:
             if node in self._delays:
                 found |= nx.ancestors(self._delays, node)
         return frozenset(found)
-
-
-def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:
-    """Queries of CTL over some state formulas, with nests of up to three operators."""
-    for _ in range(count):
-        yield _random_path(random, states, random.choice((1, 2, 2, 3)))
-
-
-def _random_path(random: Random, states: list[str], depth: int) -> str:
-    bound = f"[<={random.randint(0, 3)}]" if random.random() < 0.25 else ""
-    body = _random_state(random, states, depth - 1)
-    match random.choice(("unary", "unary", "unary", "until", "next")):
-        case "until":
-            left = _random_state(random, states, depth - 1)
-            return f"({random.choice('AE')}[{left} {random.choice('UUW')}{bound} {body}])"
-        case "next":
-            return f"({random.choice(('AX', 'EX'))} ({body}))"
-        case _:
-            return f"({random.choice(('EF', 'AG', 'AF', 'EG'))}{bound} ({body}))"
-
-
-def _random_state(random: Random, states: list[str], depth: int) -> str:
-    match random.choice(("plain", "path", "path", "not", "and", "or")):
-        case "path" if depth > 0:
-            return _random_path(random, states, depth)
-        case "not":
-            return (
-                f"not ({_random_state(random, states, depth - 1)})" if depth > 0 else "not deadlock"
-            )
-        case "and" | "or" as word if depth > 0:
-            first, second = (_random_state(random, states, depth - 1) for _ in range(2))
-            return f"({first} {word} {second})"
-        case _:
-            return random.choice(states)

@@ -20,11 +20,7 @@ Instants = list[tuple[Fraction, Configuration]]
 
 
 def shows(network: Network, outcome: Outcome) -> bool:
-    """Whether the run of an outcome is one of the network and decides the query as it says.
-
-    Raises:
-        InvalidRunError: the run breaks a rule of the network.
-    """
+    """Whether the run of an outcome is one of the network and decides the query as it says."""
     run = outcome.run
     assert run is not None
     Rules(network).replay(run)

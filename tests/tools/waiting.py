@@ -95,12 +95,7 @@ class Waiting:
         return None
 
     def misnamed(self, required: str, origin: int) -> Iterator[str]:
-        """What is said to be required though it is none of the parts that wait for something.
-
-        Args:
-            required: from the record of an attempt.
-            origin: the first instant of its run, ticks.
-        """
+        """What is said to be required though it is none of the parts that wait for something."""
         parts = _PART.findall(required) or ([required] if required else [])
         wrong = set(parts)
         allowed = self._undecided(origin)

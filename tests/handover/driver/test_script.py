@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import pytest
@@ -22,20 +23,11 @@ class Body:
     schedule: Schedule
     done: list[tuple[float, str, tuple[float | bool, ...]]] = field(default_factory=list)
 
-    def look(self, offset: float, distance: float, angle: float) -> None:
-        self.note("look", offset, distance, angle)
+    def __getattr__(self, what: str) -> Callable[..., None]:
+        def note(*how: float, **named: bool) -> None:
+            self.done.append((self.schedule.now_ns / p.NS, what, (*how, *named.values())))
 
-    def reach(self, dx: float, dz: float, *, near: bool) -> None:
-        self.note("reach", dx, dz, near)
-
-    def grasp(self, *, closed: bool) -> None:
-        self.note("grasp", closed)
-
-    def withdraw(self) -> None:
-        self.note("withdraw")
-
-    def note(self, what: str, *how: float | bool) -> None:
-        self.done.append((self.schedule.now_ns / p.NS, what, how))
+        return note
 
 
 @dataclass

@@ -13,11 +13,15 @@ def at(schedule: Schedule, seconds: float) -> None:
     schedule.run_next()
 
 
-def test_latched_message_is_read_later() -> None:
-    """Who subscribes late still gets the latched message, with the time of its publication."""
+def two_nodes() -> tuple[Schedule, Bus, Node, Node]:
     schedule = Schedule()
     bus = Bus(schedule)
-    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    return schedule, bus, Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+
+
+def test_latched_message_is_read_later() -> None:
+    """Who subscribes late still gets the latched message, with the time of its publication."""
+    schedule, _, human, robot = two_nodes()
     human.publish("signal", "ready", latched=True)
     at(schedule, 5.0)
     robot.subscribe("signal")
@@ -28,9 +32,7 @@ def test_latched_message_is_read_later() -> None:
 
 def test_latched_message_vanishes_after_its_publisher() -> None:
     """A latched message outlives its publisher by the linger time and no longer."""
-    schedule = Schedule()
-    bus = Bus(schedule)
-    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    schedule, _, human, robot = two_nodes()
     robot.subscribe("signal")
     human.publish("signal", "ready", latched=True)
     at(schedule, 1.0)
@@ -43,11 +45,9 @@ def test_latched_message_vanishes_after_its_publisher() -> None:
 
 def test_unlatched_message_cannot_be_read_later() -> None:
     """A message that is not latched passes the taps and is gone."""
-    schedule = Schedule()
-    bus = Bus(schedule)
+    _, bus, human, robot = two_nodes()
     passed: list[tuple[str, Value]] = []
     bus.tap(lambda topic, value: passed.append((topic, value)))
-    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
     robot.subscribe("signal")
     human.publish("signal", True)
     assert robot.receive("signal") is None
@@ -55,8 +55,7 @@ def test_unlatched_message_cannot_be_read_later() -> None:
 
 
 def test_reading_needs_a_subscription() -> None:
-    bus = Bus(Schedule())
-    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    _, _, human, robot = two_nodes()
     human.publish("signal", "ready", latched=True)
     assert robot.receive("signal") is None
 

@@ -70,160 +70,133 @@ class Stage:
         return x, z
 
 
-def strap(stage: Stage, newtons: float) -> None:
-    scene = stage.world.scene
-    band = pymunk.PivotJoint(scene.space.static_body, scene.hand, scene.hand.position)
-    band.max_force = newtons
-    scene.space.add(band)
+def steps(*what: float | Callable[[Stage], Program | None]) -> Callable[[Stage], Program]:
+    """A program that waits so many seconds, or does what is named, one after the other."""
+
+    def program(stage: Stage) -> Program:
+        for one in what:
+            if isinstance(one, float):
+                yield one
+            elif (made := one(stage)) is not None:
+                yield from made
+
+    return program
 
 
-def fetch_offer_sense(stage: Stage) -> Program:
-    yield from stage.fetch()
-    stage.offer()
-    yield 2.0
-    stage.sense()
+def close(stage: Stage) -> None:
+    stage.world.gripper.close()
+
+
+def let_go(stage: Stage) -> None:
+    stage.world.gripper.open()
+
+
+def note(stage: Stage) -> None:
+    stage.notes.append(stage.piece)
+
+
+def to(x: float, z: float) -> Callable[[Stage], Program]:
+    return lambda stage: stage.go(x, z)
+
+
+def strapped(newtons: float) -> Callable[[Stage], None]:
+    """The hand is held back where it is."""
+
+    def strap(stage: Stage) -> None:
+        scene = stage.world.scene
+        band = pymunk.PivotJoint(scene.space.static_body, scene.hand, scene.hand.position)
+        band.max_force = newtons
+        scene.space.add(band)
+
+    return strap
+
+
+HANDED = (Stage.fetch, Stage.offer, 2.0, Stage.sense)
+UNREAD = Reading(gaze=None, pressure=None, location=None)
 
 
 @pytest.mark.parametrize("loss", [0.0, 1.0])
 def test_all_is_ok_when_the_human_takes_hold(loss: float) -> None:
     """Looking, reaching and holding make all readings true; what loses each says nothing of it."""
     stage = Stage(World(random.Random(1), faults=SensorFaults(loss=loss)))
-    stage.play(fetch_offer_sense, 25)
+    stage.play(steps(*HANDED), 25)
     value = None if loss else True
     assert stage.readings == [Reading(gaze=value, pressure=value, location=value)]
 
 
-def test_hand_held_back_is_not_seen() -> None:
-    """A hand that is told to hold but is held back at the chest gives no reading."""
+@pytest.mark.parametrize(("newtons", "seen"), [(60.0, None), (10.0, True)])
+def test_a_hand_that_is_held_back_gives_no_reading(newtons: float, *, seen: bool | None) -> None:
+    """Its force is limited, not absent: it gets past a weaker strap."""
     stage = Stage()
-    strap(stage, 60.0)
-    stage.play(fetch_offer_sense, 25)
-    assert stage.readings == [Reading(gaze=True, pressure=None, location=None)]
-
-
-def test_hand_overcomes_a_weak_strap() -> None:
-    """The hand's force is limited, not absent: it gets past a weaker strap."""
-    stage = Stage()
-    strap(stage, 10.0)
-    stage.play(fetch_offer_sense, 25)
-    assert stage.readings[0].location is True
+    stage.play(steps(strapped(newtons), *HANDED), 25)
+    assert stage.readings == [Reading(gaze=True, pressure=seen, location=seen)]
 
 
 def test_empty_gripper_gives_no_pressure() -> None:
     """The human alone holding the piece is no pressure: the robot must hold it, too."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield 0.5
-        stage.offer()
-        yield 2.0
-        stage.sense()
-
-    stage.play(program, 5)
+    stage.play(steps(0.5, Stage.offer, 2.0, Stage.sense), 5)
     assert stage.readings == [Reading(gaze=True, pressure=False, location=True)]
 
 
 def test_gripper_that_missed_gives_no_pressure() -> None:
-    """A gripper that closed beside the piece and a human hand in place are no pressure."""
+    """It closed beside the piece; a human hand in place is none."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from stage.go(-0.15, 0.12)
-        stage.world.gripper.close()
-        yield 0.5
-        stage.offer()
-        yield 2.0
-        stage.sense()
-
-    stage.play(program, 12)
+    stage.play(steps(to(-0.15, 0.12), close, 0.5, Stage.offer, 2.0, Stage.sense), 12)
     assert stage.readings[0].pressure is False
 
 
 def test_readings_follow_the_bodies() -> None:
     """When a body is moved by hand the reading changes, though the human intends as before."""
+
+    def lift(stage: Stage) -> None:
+        stage.world.scene.head.position += (0.0, 0.3)
+
+    def turn(stage: Stage) -> None:
+        stage.world.scene.head.position -= (0.0, 0.3)
+        stage.world.scene.head.angle -= 1.0
+
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from fetch_offer_sense(stage)
-        head = stage.world.scene.head
-        head.position += (0.0, 0.3)
-        stage.sense()
-        head.position -= (0.0, 0.3)
-        head.angle -= 1.0
-        stage.sense()
-
-    stage.play(program, 25)
+    stage.play(steps(*HANDED, lift, Stage.sense, turn, Stage.sense), 25)
     assert [reading.gaze for reading in stage.readings] == [True, False, False]
 
 
 def test_no_reading_before_and_during_a_motion() -> None:
     """A human who takes no part, or whose hand and head still move, gives no reading."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        stage.sense()
-        stage.offer()
-        yield p.REACTION_S + 0.2
-        stage.sense()
-
-    stage.play(program, 2)
-    assert stage.readings == [Reading(gaze=None, pressure=None, location=None)] * 2
+    stage.play(steps(Stage.sense, Stage.offer, p.REACTION_S + 0.2, Stage.sense), 2)
+    assert stage.readings == [UNREAD] * 2
 
 
 def test_hand_opens_after_its_reaction_time() -> None:
     """The human who decides to let go still holds for the reaction time, then no longer."""
     stage = Stage()
 
-    def program(stage: Stage) -> Program:
-        yield from fetch_offer_sense(stage)
+    def decide(stage: Stage) -> None:
         stage.world.human.grasp(closed=False)
-        yield p.REACTION_S - 0.05
-        stage.sense()
-        yield 1.5
-        stage.sense()
 
-    stage.play(program, 25)
+    stage.play(steps(*HANDED, decide, p.REACTION_S - 0.05, Stage.sense, 1.5, Stage.sense), 25)
     assert [reading.pressure for reading in stage.readings] == [True, True, False]
 
 
 def test_grasp_slips_when_it_is_overcome() -> None:
     """A hand that cannot follow loses the piece to the robot that pulls it away."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from fetch_offer_sense(stage)
-        strap(stage, 500.0)
-        yield from stage.go(0.05, 0.25)
-        stage.sense()
-
-    stage.play(program, 30)
+    stage.play(steps(*HANDED, strapped(500.0), to(0.05, 0.25), Stage.sense), 30)
     assert [reading.pressure for reading in stage.readings] == [True, False]
     assert stage.piece == pytest.approx((0.05, 0.23), abs=0.03)
 
 
 def test_released_piece_stays_in_the_human_hand() -> None:
-    """A piece that both held stays up when the robot lets go."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from fetch_offer_sense(stage)
-        stage.notes.append(stage.piece)
-        stage.world.gripper.open()
-
-    stage.play(program, 30)
+    stage.play(steps(*HANDED, note, let_go), 30)
     assert stage.piece == pytest.approx(stage.notes[0], abs=0.02)
 
 
 def test_unheld_piece_falls() -> None:
-    """A piece that nobody holds falls past the table's edge to the floor."""
+    """Past the table's edge to the floor."""
     stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from stage.fetch()
-        stage.notes.append(stage.piece)
-        stage.world.gripper.open()
-
-    stage.play(program, 25)
+    stage.play(steps(Stage.fetch, note, let_go), 25)
     assert stage.notes[0][1] == pytest.approx(HANDOVER[1] - 0.02, abs=0.01)
     assert stage.piece[1] < p.FLOOR_Z + p.PIECE_SIZE[1]
 
@@ -231,14 +204,7 @@ def test_unheld_piece_falls() -> None:
 def test_gripped_piece_stays_where_it_is() -> None:
     """A held piece does not creep: within 0.1 mm over 20 s, stepped throughout."""
     stage = Stage(World(random.Random(1), jump=False))
-
-    def program(stage: Stage) -> Program:
-        yield from stage.fetch()
-        stage.notes.append(stage.piece)
-        yield 20.0
-        stage.notes.append(stage.piece)
-
-    stage.play(program, 45)
+    stage.play(steps(Stage.fetch, note, 20.0, note), 45)
     assert stage.notes[1] == pytest.approx(stage.notes[0], abs=1e-4)
 
 
@@ -288,6 +254,24 @@ def test_redirected_hand_does_not_jump() -> None:
     assert stage.hand == pytest.approx((p.PIECE_X + 0.8, p.PIECE_SIZE[1] / 2 + 0.8), abs=0.01)
 
 
+def test_withdrawing_ends_all_readings() -> None:
+    """The person who loses interest lets go, and is seen no more at the chest."""
+    stage = Stage()
+    stage.play(steps(*HANDED, lambda stage: stage.world.human.withdraw(), 2.0, Stage.sense), 25)
+    assert stage.readings[1] == UNREAD
+    assert stage.hand == pytest.approx(p.HAND_REST, abs=0.01)
+    assert stage.piece == pytest.approx((HANDOVER[0], HANDOVER[1] - 0.02), abs=0.02)
+
+
+def test_reaching_into_the_grip_is_closer_than_five_centimetres() -> None:
+    """A hand that takes the piece from the table is inside the closing gripper."""
+    stage = Stage()
+    stage.play(steps(Stage.offer, 1.5, Stage.fetch), 25)
+    [distance] = [v["hand_distance"] for _, v in stage.world.recorder.samples if "grip_closed" in v]
+    assert distance is not None
+    assert distance < 0.05
+
+
 def test_arm_follows_paths_below_the_speed_limit() -> None:
     """The tool arrives where it was sent, and is never faster than collaborative operation."""
     stage = Stage()
@@ -308,49 +292,15 @@ def joints_at(x: float, z: float) -> tuple[float, float, float]:
     return joints
 
 
-def test_reaching_into_the_grip_is_closer_than_five_centimetres() -> None:
-    """A hand that takes the piece from the table is inside the closing gripper."""
-    stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        stage.offer()
-        yield 1.5
-        yield from stage.fetch()
-
-    stage.play(program, 25)
-    distances = [v["hand_distance"] for _, v in stage.world.recorder.samples if "grip_closed" in v]
-    assert len(distances) == 1
-    assert distances[0] is not None
-    assert distances[0] < 0.05
-
-
-def test_withdrawing_ends_all_readings() -> None:
-    """The person who loses interest lets go, and is seen no more at the chest."""
-    stage = Stage()
-
-    def program(stage: Stage) -> Program:
-        yield from fetch_offer_sense(stage)
-        stage.world.human.withdraw()
-        yield 2.0
-        stage.sense()
-
-    stage.play(program, 25)
-    assert stage.readings[1] == Reading(gaze=None, pressure=None, location=None)
-    assert stage.hand == pytest.approx(p.HAND_REST, abs=0.01)
-    assert stage.piece == pytest.approx((HANDOVER[0], HANDOVER[1] - 0.02), abs=0.02)
-
-
 @pytest.mark.parametrize(("in_plane", "feels_it"), [(True, True), (False, False)])
 def test_the_gripper_pushes_a_hand_in_its_plane_alone(*, in_plane: bool, feels_it: bool) -> None:
     """A hand on the table where the gripper comes down is hit, one in front of it is passed."""
     stage = Stage(World(random.Random(1), scene_faults=SceneFaults(hand_in_plane=in_plane)))
 
-    def program(stage: Stage) -> Program:
+    def reach(stage: Stage) -> None:
         stage.world.human.reach(*p.LOCATION_OK, near=True)
-        yield 1.5
-        yield from stage.go(p.LOCATION_OK[0] + 0.07, 0.05)
 
-    stage.play(program, 10)
+    stage.play(steps(reach, 1.5, to(p.LOCATION_OK[0] + 0.07, 0.05)), 10)
     forces = [v["hand_force"] for _, v in stage.world.recorder.samples if "hand_force" in v]
     assert (max(force or 0.0 for force in forces) > 10) is feels_it
 

@@ -27,14 +27,7 @@ TRACES = 4
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows in order of time, of which some have one instant.
-
-    Attributes:
-        rows: what each says.
-        cuts: the rows at which another block begins.
-        end: of the trace, ticks.
-        names: that have a source.
-    """
+    """Rows in order of time, of which some have one instant."""
 
     rows: Sequence[Sample]
     cuts: Sequence[int]
@@ -43,14 +36,7 @@ class Table:
 
 
 def random_table(rng: random.Random, spec: CheckedSpec, single: frozenset[str], most: int) -> Table:
-    """A table of up to so many rows.
-
-    Args:
-        rng: decides everything.
-        spec: declares the names.
-        single: events of which only one payload can be judged at one instant.
-        most: rows.
-    """
+    """A table of up to so many rows."""
     values: dict[str, list[Value]] = defaultdict(list)
     steps: list[int] = [1]
     for _ in range(TRACES):
@@ -191,9 +177,5 @@ _OPEN = DECISIONS.index(Decision.OPEN)
 
 
 def planned_for(spec: CheckedSpec, compiler: Compiler) -> PlannedCore:
-    """The packed plan of a specification.
-
-    Raises:
-        RvmonError: it is beyond the core.
-    """
+    """The packed plan of a specification."""
     return planned_core(compiler(spec))

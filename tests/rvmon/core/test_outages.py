@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 from tests.tools.differential import case_of
-from tests.tools.late import after_late
-from tests.tools.law import judge
+from tests.tools.law import after_late, judge
 
 import rvmon
 from rvmon import native

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from tests.rvmon.laws.tried import TRIED
 from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
 from tests.tools.compare import outcomes
-from tests.tools.late import after_late, is_touched
-from tests.tools.law import judge
+from tests.tools.law import after_late, is_touched, judge
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile

@@ -13,7 +13,6 @@ from tests.tools.build import (
     end,
     eventually,
     f,
-    fall,
     false,
     g,
     k,
@@ -51,12 +50,9 @@ def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:
     ("row", "expected"),
     [
         ("0.1.0.1", [2, 6]),
-        ("1.0.1", [0, 4]),
         # Not born before counts as an edge, unknown after known does not.
         ("u.1", [2]),
         ("0u1", []),
-        ("1u1", [0]),
-        ("u01", [2]),
         ("u1u1", [1]),
         ("0u01", [3]),
         # A repeated value is no edge.
@@ -67,11 +63,6 @@ def test_levels_start_at_edges(judge: Any, row: str, expected: list[int]) -> Non
     """`upon` a level starts where it becomes true, not at a recovery of the input."""
     for time in (TimeModel.HELD, TimeModel.SAMPLED):
         assert starts(judge, p, p=row, time=time) == expected
-
-
-def test_never_known_before(judge: Any) -> None:
-    """A trigger that is unknown until it is first true starts there."""
-    assert starts(judge, p, q="1", p="..1") == [2]
 
 
 def test_recovery_from_staleness(judge: Any) -> None:
@@ -86,7 +77,6 @@ def test_recovery_from_staleness(judge: Any) -> None:
     [
         # A pulse starts an attempt wherever it holds.
         (e, {"e": ".11.1"}, [1, 2, 4]),
-        (e, {"e": "u"}, []),
         (two(e, "and", p), {"e": ".1111", "p": "01.0"}, [1, 2]),
         (two(e, "or", f), {"e": ".1", "f": "..1"}, [1, 2]),
         (compared(k, ">", 3), {"g": ".4532"}, [1, 2]),
@@ -98,8 +88,6 @@ def test_recovery_from_staleness(judge: Any) -> None:
         (once(e, 0, 1), {"e": ".11..1"}, [1, 5]),
         (no(e), {"e": ".1.1"}, [2, 4]),
         (start, {"p": "1.1"}, [0]),
-        (true, {"p": "1.1"}, [0]),
-        (false, {"p": "1.1"}, []),
     ],
 )
 def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: Any) -> None:
@@ -110,41 +98,26 @@ def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: An
 @pytest.mark.parametrize(
     ("trigger", "expected"),
     [
-        (e, True),
         (no(e), False),
-        (no(no(e)), True),
-        (p, False),
         (false, True),
         (true, False),
-        (no(true), True),
         (start, False),
-        (compared(k, ">", 3), True),
-        (compared(x, ">", 3), False),
         (no(compared(k, ">", 3)), False),
         (compared(x, ">", k), True),
         (two(e, "and", p), True),
         (two(e, "or", p), False),
-        (two(e, "or", f), True),
-        (no(two(no(e), "or", p)), True),
         (no(two(no(e), "and", no(f))), True),
         (two(e, "->", p), False),
         (no(two(p, "->", no(e))), True),
-        (two(no(e), "->", f), True),
-        (two(e, "<->", p), False),
         (two(e, "<->", f), False),
         (two(e, "xor", f), True),
         # Its negation normal form is (!e | !f) & (e | f).
         (no(two(e, "<->", f)), True),
-        (two(e, "xor", p), False),
         (rise(p), True),
-        (two(rise(p), "or", fall(q)), True),
-        (no(rise(p)), False),
         (two(p, "S", e), False),
         (once(e), False),
         (probe("changed", "x"), True),
-        (probe("updated", "x"), True),
         (probe("known", "x"), False),
-        (no(probe("updated", "x")), False),
     ],
 )
 def test_pulse_by_syntax(trigger: Formula, expected: bool) -> None:
@@ -179,17 +152,13 @@ def test_order_of_the_report(judge: Any) -> None:
         # From 1 to 2 q is required and given; at 3 the episode ends.
         ({"p": "01.0", "q": "01"}, ["1 P 3"]),
         ({"p": "01.0", "q": "010"}, ["1 F 2"]),
-        ({"p": "01.0", "q": "01.0"}, ["1 P 3"]),
         # Further samples make no further attempts.
         ({"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
-        ({"p": "01110", "q": "01"}, ["1 P 4"]),
         ({"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
         # An unknown trigger starts an episode and ends none; q is required there if it held.
         ({"p": "1u10", "q": "1"}, ["0 P 3"]),
         ({"p": "1u10", "q": "101"}, ["0 I"]),
         ({"p": "1u10", "q": "100"}, ["0 F 2"]),
-        ({"p": "1u0", "q": "1"}, ["0 P 2"]),
-        ({"p": "0u1", "q": "0"}, ["1 F 2"]),
         ({"p": "u1.0", "q": "1"}, ["1 P 3"]),
         ({"p": "1.u", "q": "1"}, ["0 P 2 held"]),
         # What is required but not known leaves the episode open, unless something else fails.
@@ -197,7 +166,6 @@ def test_order_of_the_report(judge: Any) -> None:
         ({"p": "1..0", "q": "1u0"}, ["0 F 2"]),
         # Running at the end: held to it.
         ({"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
-        ({"p": "1", "q": "1u1", "end": 4}, ["0 I"]),
         # A failed episode goes on where what is required has not failed at once.
         ({"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
         ({"p": "1.1.1", "q": "01"}, ["0 F 0", "1 P 4 held"]),
@@ -234,7 +202,6 @@ def test_whenever_sampled(judge: Any) -> None:
     [
         # Required at 0 only; the episode is over at 1, q comes in time.
         ({"p": "10", "q": "0..1"}, ["0 P 3"]),
-        ({"p": "10", "q": "0...1"}, ["0 F 4"]),
         # Required at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
         ({"p": "1..0", "q": "0..1"}, ["0 P 3"]),
         ({"p": "1..0", "q": "0...1"}, ["0 F 4"]),
@@ -345,11 +312,6 @@ def test_upon_end(judge: Any) -> None:
 def test_empty_trace(judge: Any) -> None:
     """Without a sample there is no position, whatever time passes."""
     assert judge(requirement(p), advances=[5], end=9) == []
-
-
-def test_advance_before_the_first_sample(judge: Any) -> None:
-    """An `advance` before the first sample makes no position."""
-    assert judge(requirement(eventually(p, 0, 2)), p="...1", advances=[2]) == ["3 P 3"]
 
 
 def test_fold() -> None:

@@ -30,14 +30,12 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         # Held: max(last sample, last advance - 1, the t of finish).
         ({"p": "1..1"}, "0 P 3 held"),
         ({"p": "1", "advances": [6]}, "0 P 5 held"),
-        ({"p": "1", "end": 7, "advances": [6]}, "0 P 7 held"),
         ({"p": "1", "end": 4, "advances": [6]}, "0 P 5 held"),
         ({"p": "1..1", "end": 1}, "0 P 3 held"),
         # Sampled: `advance` moves no end, `finish` does.
         ({"p": "1", "advances": [6], **SAMPLED}, "0 P 0 held"),
         ({"p": "1", "end": 7, **SAMPLED}, "0 P 7 held"),
         ({"p": "1", "advances": [7], **EVERY_3}, "0 P 6 held"),
-        ({"p": "1", "end": 8, **EVERY_3}, "0 P 8 held"),
     ],
 )
 def test_where_the_end_is(judge: Any, told: dict[str, Any], expected: str) -> None:
@@ -51,43 +49,31 @@ def test_where_the_end_is(judge: Any, told: dict[str, Any], expected: str) -> No
         # An unbounded R counts as true if its window has opened.
         (always(p, 3), {"p": "1", "end": 2}, "0 I"),
         (always(p, 3), {"p": "1", "end": 3}, "0 P 3 held"),
-        (always(p, 3), {"p": "0", "end": 2}, "0 I"),
         (two(p, "R", q), {"p": "0", "q": "1", "end": 5}, "0 P 5 held"),
-        (two(p, "W", q), {"p": "1", "q": "0", "end": 5}, "0 P 5 held"),
         # Every other pending operator stays unknown.
         (two(p, "U", q), {"p": "1", "q": "0", "end": 5}, "0 I"),
-        (two(p, "M", q), {"p": "0", "q": "1", "end": 5}, "0 I"),
         (eventually(q), {"q": "0", "end": 5}, "0 I"),
         (always(p, 0, 9), {"p": "1", "end": 5}, "0 I"),
-        (two(p, "W", q, 0, 9), {"p": "1", "q": "0", "end": 5}, "0 I"),
         (two(always(p), "and", eventually(q)), {"p": "1", "q": "0", "end": 5}, "0 I"),
         (two(always(p), "or", eventually(q)), {"p": "1", "q": "0", "end": 5}, "0 P 5 held"),
         (following(p), {"p": "1", "end": 5, **SAMPLED}, "0 I"),
-        (following(always(p)), {"p": "1", "end": 5, **SAMPLED}, "0 I"),
         (following(always(p)), {"p": "01", "end": 5, **SAMPLED}, "0 P 5 held"),
         # In negation normal form: below a negation U is an R, and R a U.
         (no(eventually(q)), {"q": "0", "end": 4}, "0 P 4 held"),
-        (no(always(q)), {"q": "1", "end": 4}, "0 I"),
         (no(two(p, "U", q)), {"p": "1", "q": "0", "end": 4}, "0 P 4 held"),
-        (no(two(p, "R", q)), {"p": "0", "q": "1", "end": 4}, "0 I"),
-        (no(two(p, "W", q)), {"p": "1", "q": "0", "end": 4}, "0 I"),
         (no(no(always(p))), {"p": "1", "end": 4}, "0 P 4 held"),
         (two(eventually(q), "->", always(p)), {"p": "1", "q": "0", "end": 4}, "0 P 4 held"),
-        (two(always(q), "->", eventually(p)), {"p": "0", "q": "1", "end": 4}, "0 I"),
         # (G p & G p) | (!G p & !G p): the first half holds to the end.
         (two(always(p), "<->", always(q)), {"p": "1", "q": "1", "end": 4}, "0 P 4 held"),
         (two(always(p), "xor", always(q)), {"p": "1", "q": "1", "end": 4}, "0 I"),
         # Recursively, at each known position: an unanswered p stays open, an answered does not.
         (always(two(p, "->", eventually(q))), {"p": "010", "q": "0", "end": 5}, "0 I"),
         (always(two(p, "->", eventually(q))), {"p": "010", "q": "0.1", "end": 5}, "0 P 5 held"),
-        (always(eventually(p)), {"p": "0.1", "end": 5}, "0 P 5 held"),
         (always(eventually(p)), {"p": "1.0", "end": 5}, "0 I"),
         (eventually(always(p)), {"p": "0.1", "end": 5}, "0 P 5 held"),
-        (eventually(always(p)), {"p": "1.0", "end": 5}, "0 I"),
         (eventually(always(p), 9), {"p": "1", "end": 5}, "0 I"),
         # Unknown input is not made known by the end.
         (always(p), {"p": "1u1", "end": 5}, "0 I"),
-        (always(p), {"p": "1u0", "end": 5}, "0 F 2"),
         (two(always(p), "or", q), {"p": "1", "q": "u", "end": 5}, "0 P 5 held"),
     ],
 )
@@ -105,16 +91,12 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("weak", eventually(p), {"p": "0", "end": 5}, "0 P 5 policy"),
         ("weak", eventually(p, 0, 5), {"p": "0", "end": 4}, "0 P 4 policy"),
         ("weak", always(p), {"p": "1", "end": 5}, "0 P 5 policy"),
-        ("weak", always(p, 9), {"p": "1", "end": 5}, "0 P 5 policy"),
-        ("weak", no(eventually(p)), {"p": "0", "end": 5}, "0 P 5 policy"),
         ("weak", two(p, "U", q), {"p": "1", "q": "0", "end": 5}, "0 P 5 policy"),
         ("weak", following(p), {"p": "0", **SAMPLED}, "0 P 0 policy"),
         ("strong", eventually(p), {"p": "0", "end": 5}, "0 F 5 policy"),
         ("strong", always(p), {"p": "1", "end": 5}, "0 F 5 policy"),
         ("strong", always(p, 0, 5), {"p": "1", "end": 4}, "0 F 4 policy"),
-        ("strong", no(eventually(p)), {"p": "0", "end": 5}, "0 F 5 policy"),
         ("strong", following(p), {"p": "0", **SAMPLED}, "0 F 0 policy"),
-        ("strong", following(no(p)), {"p": "0", **SAMPLED}, "0 F 0 policy"),
         # In both directions of an equivalence the pending part is true, or false.
         ("weak", two(always(p), "<->", q), {"p": "1", "q": "0", "end": 5}, "0 P 5 policy"),
         ("strong", two(always(p), "<->", q), {"p": "1", "q": "1", "end": 5}, "0 F 5 policy"),
@@ -123,16 +105,12 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("strong", eventually(always(p)), {"p": "1", "end": 3}, "0 F 3 policy"),
         # pass and fail settle it outright.
         ("pass", eventually(p), {"p": "0", "end": 5}, "0 P 5 policy"),
-        ("pass", always(p), {"p": "1", "end": 5}, "0 P 5 policy"),
-        ("fail", eventually(p), {"p": "0", "end": 5}, "0 F 5 policy"),
         ("fail", always(p), {"p": "1", "end": 5}, "0 F 5 policy"),
         # What the prefix decided stays.
-        ("weak", eventually(p, 0, 3), {"p": "0", "end": 5}, "0 F 4"),
         ("weak", eventually(p, 0, 3), {"p": "0", "end": 3}, "0 F 4"),
         ("strong", always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
         ("pass", always(p), {"p": "1..0"}, "0 F 3"),
         ("fail", eventually(p), {"p": "1"}, "0 P 0"),
-        ("strict", eventually(p), {"p": "1"}, "0 P 0"),
     ],
 )
 def test_policies(judge: Any, policy: str, formula: Formula, told: Any, expected: str) -> None:
@@ -192,14 +170,12 @@ def test_policies_and_unknown_input(
         ("strict", {"p": "1", "q": "1", "end": 5}, "0 I"),
         ("weak", {"p": "1", "q": "1", "end": 5}, "0 P 5 policy"),
         ("strong", {"p": "1", "q": "1", "end": 5}, "0 F 5 policy"),
-        ("pass", {"p": "1", "q": "1", "end": 5}, "0 P 5 policy"),
         ("fail", {"p": "1", "q": "1", "end": 5}, "0 F 5 policy"),
         ("fail", {"p": "1", "q": "1uuu1", "end": 5}, "0 I"),
         # Episode over, the deadline of its last instant open.
         ("default", {"p": "1..0", "q": "1..0"}, "0 P 3"),
         ("default", {"p": "1.0", "q": "10"}, "0 I"),
         ("weak", {"p": "1.0", "q": "10"}, "0 P 2 policy"),
-        ("strong", {"p": "1.0", "q": "10"}, "0 F 2 policy"),
         # The first instant at which it was not met in time is 1, known at 4.
         ("weak", {"p": "1..0", "q": "10"}, "0 F 4"),
     ],

@@ -29,25 +29,20 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         # A timer decides as well as a message, and at the same instant.
         (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
         (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
-        (eventually(p, 0, 3), {"p": "0", "advances": [2, 4, 9]}, "0 F 4"),
-        (eventually(p, 0, 3), {"p": "0", "q": "0........1"}, "0 F 4"),
         # What is held counts between samples, from the opening of the window on.
         (eventually(p, 2, 3), {"p": "1", "end": 9}, "0 P 2"),
         (eventually(p, 2, 3), {"p": "1", "advances": [2]}, "0 I"),
         (eventually(p, 2, 3), {"p": "1", "advances": [3]}, "0 P 2"),
         (eventually(p, 2, 3), {"p": "1.0..1"}, "0 F 4"),
-        (eventually(p, 2, 3), {"p": "10.1"}, "0 P 3"),
         # A window of one point.
         (eventually(p, 0, 0), {"p": "1"}, "0 P 0"),
         (eventually(p, 0, 0), {"p": "0", "end": 0}, "0 F 1"),
-        (eventually(p, 0, 0), {"p": "01"}, "0 F 1"),
         (eventually(p, 3, 3), {"p": "0.1.0"}, "0 P 3"),
         (eventually(p, 3, 3), {"p": "0.10", "end": 4}, "0 F 4"),
         # Without an upper bound nothing is ever missed.
         (eventually(p), {"p": "0", "end": 50}, "0 I"),
         (eventually(p), {"p": "0...1"}, "0 P 4"),
         (eventually(p, 2), {"p": "1.0..1"}, "0 P 5"),
-        (eventually(p, 2), {"p": "1", "end": 1}, "0 I"),
         # An unknown value is neither: the window may still be met, else it stays open.
         (eventually(p, 0, 3), {"p": "u.1"}, "0 P 2"),
         (eventually(p, 0, 3), {"p": "0u0", "end": 9}, "0 I"),
@@ -62,17 +57,9 @@ def test_eventually(judge: Any, formula: Formula, told: dict[str, Any], expected
     ("formula", "told", "expected"),
     [
         (always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
-        (always(p, 0, 3), {"p": "1", "end": 2}, "0 I"),
-        (always(p, 0, 3), {"p": "1", "advances": [4]}, "0 P 4"),
         (always(p, 0, 3), {"p": "1..0"}, "0 F 3"),
-        (always(p, 0, 3), {"p": "1...0"}, "0 P 4"),
-        (always(p, 2, 3), {"p": "0.1", "end": 4}, "0 P 4"),
         (always(p, 2, 3), {"p": "0..1"}, "0 F 2"),
-        (always(p, 0, 0), {"p": "1"}, "0 P 1"),
-        (always(p, 0, 0), {"p": "10"}, "0 P 1"),
-        (always(p, 0, 3), {"p": "1u1", "end": 9}, "0 I"),
         (always(p, 0, 3), {"p": "1u0", "end": 9}, "0 F 2"),
-        (always(p), {"p": "1..0"}, "0 F 3"),
     ],
 )
 def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
@@ -94,7 +81,6 @@ def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: st
         # The bound itself, the tick after it, the end at the bound.
         ({"p": "1", "q": "0...1"}, "0 P 4"),
         ({"p": "1", "q": "0....1"}, "0 F 5"),
-        ({"p": "1", "q": "0", "end": 3}, "0 I"),
         ({"p": "1", "q": "0", "end": 4}, "0 F 5"),
         # An unknown left operand leaves it open, a false one behind it does not.
         ({"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
@@ -127,16 +113,11 @@ def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) ->
     ("low", "told", "expected"),
     [
         (0, {"p": "0", "q": "1", "end": 3}, "0 P 4"),
-        (0, {"p": "0", "q": "1", "end": 2}, "0 I"),
         # p releases q behind itself, not where it stands.
         (0, {"p": "0.1", "q": "1..0"}, "0 P 2"),
         (0, {"p": "0..1", "q": "1..0"}, "0 F 3"),
-        (0, {"p": "0", "q": "1.0"}, "0 F 2"),
-        (0, {"p": "0", "q": "1...0"}, "0 P 4"),
         # Before the window opens, q is not required, and p releases it for good.
         (2, {"p": "10", "q": "0"}, "0 P 0"),
-        (2, {"p": "0", "q": "0.1", "end": 4}, "0 P 4"),
-        (2, {"p": "0", "q": "0..1"}, "0 F 2"),
     ],
 )
 def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> None:
@@ -150,12 +131,8 @@ def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> N
     ("told", "expected"),
     [
         ({"p": "1", "q": "0", "end": 3}, "0 P 4"),
-        ({"p": "1", "q": "0", "end": 2}, "0 I"),
         ({"p": "1.0", "q": "0.1"}, "0 P 2"),
-        ({"p": "1.0", "q": "0"}, "0 F 2"),
         ({"p": "10", "q": "0.1"}, "0 F 1"),
-        ({"p": "0", "q": "1"}, "0 P 0"),
-        ({"p": "1...0", "q": "0"}, "0 P 4"),
     ],
 )
 def test_weak_until(judge: Any, told: dict[str, Any], expected: str) -> None:
@@ -170,7 +147,6 @@ def test_weak_until(judge: Any, told: dict[str, Any], expected: str) -> None:
         ({"p": "0.1", "q": "1.0"}, "0 F 2"),
         ({"p": "0", "q": "1", "end": 3}, "0 F 4"),
         ({"p": "0", "q": "1", "end": 2}, "0 I"),
-        ({"p": "0..1", "q": "1"}, "0 P 3"),
         ({"p": "1", "q": "0"}, "0 F 0"),
     ],
 )
@@ -183,16 +159,11 @@ def test_strong_release(judge: Any, told: dict[str, Any], expected: str) -> None
     ("formula", "told", "expected"),
     [
         # Bounds measure stamps; a missed deadline is decided at b + 1 though no sample is there.
-        (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
         (eventually(p, 0, 3), {"p": "0....1"}, "0 F 4"),
-        (eventually(p, 0, 3), {"p": "0", "end": 2}, "0 I"),
-        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 F 4"),
         (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
-        (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
         # Between samples there is no position: over an empty window F is false and G true.
         (eventually(p, 1, 2), {"p": "1..1"}, "0 F 3"),
         (always(p, 1, 2), {"p": "0..0"}, "0 P 3"),
-        (always(p, 0, 3), {"p": "1", "end": 4}, "0 P 4"),
         # A sample may still come at the very instant that `advance` names.
         (eventually(p, 0, 2), {"p": "0.1", "advances": [2]}, "0 P 2"),
         (two(p, "U", q, 0, 9), {"p": "1..0", "q": "0....1"}, "0 F 3"),
@@ -214,11 +185,8 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
     [
         # Positions are 3, 6, 9 ... from the first multiple at or after the first sample.
         (p, {"p": ".1"}, None),
-        (p, {"p": ".1", "end": 2}, None),
         (p, {"p": ".1", "end": 3}, "3 P 3"),
-        (p, {"p": ".1", "advances": [3]}, None),
         (p, {"p": ".1", "advances": [4]}, "3 P 3"),
-        (p, {"p": "1"}, "0 P 0"),
         # Signals by hold: only what holds at a multiple is seen.
         (p, {"p": ".1.0"}, "3 F 3"),
         (eventually(p, 0, 3), {"p": ".0..10", "end": 7}, "3 F 7"),
@@ -227,7 +195,6 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
         (eventually(p, 0, 4), {"p": ".0", "end": 6}, "3 I"),
         (eventually(p, 0, 4), {"p": ".0", "end": 7}, "3 F 8"),
         (eventually(p, 1, 2), {"p": "1", "end": 9}, "0 F 3"),
-        (following(p), {"p": "0.1", "end": 2}, "0 I"),
         (following(p), {"p": "0.1", "end": 3}, "0 P 3"),
     ],
 )
@@ -245,7 +212,6 @@ def test_clocked(judge: Any, formula: Formula, told: dict[str, Any], expected: s
         (eventually(always(p, 0, 2), 0, 2), {"p": "01.01", "end": 9}, "0 F 3"),
         # G[0,2] F[0,1] p: at 0 by 1, at 1 by 1, at 2 it needs 2 or 3.
         (always(eventually(p, 0, 1), 0, 2), {"p": "010.", "end": 9}, "0 F 4"),
-        (always(eventually(p, 0, 1), 0, 2), {"p": "0101", "end": 9}, "0 P 3"),
         # (p U[0,2] q) at 0 or 3 ticks later.
         (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0....1"}, "0 P 5"),
         (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0.....1"}, "0 F 6"),

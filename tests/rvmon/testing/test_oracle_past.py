@@ -36,18 +36,10 @@ from rvmon.spec.checked.specification import TimeModel
         (once(p, 0, 2), {"p": "10", "e": "...1"}, "F"),
         (once(p, 0, 3), {"p": "10", "e": "...1"}, "P"),
         (once(p, 3, 3), {"p": "10", "e": "...1"}, "P"),
-        (once(p, 2, 2), {"p": "10", "e": "...1"}, "F"),
         (once(p), {"p": "10", "e": "...1"}, "P"),
-        (once(p, 1), {"p": "0..1", "e": "...1"}, "F"),
         # Over nothing once is false and historically true.
         (once(p, 4, 9), {"p": "1", "e": "...1"}, "F"),
-        (historically(p, 4, 9), {"p": "0", "e": "...1"}, "P"),
-        (historically(p, 0, 2), {"p": "01", "e": "...1"}, "P"),
-        (historically(p, 0, 3), {"p": "01", "e": "...1"}, "F"),
-        (historically(p, 1, 2), {"p": "01.0", "e": "...1"}, "P"),
-        (historically(p), {"p": "1..0", "e": "...1"}, "F"),
         (historically(p, 0, 2), {"p": "1u1", "e": "...1"}, "I"),
-        (historically(p, 0, 1), {"p": "1u1", "e": "...1"}, "P"),
     ],
 )
 def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
@@ -89,10 +81,7 @@ def test_since(
     [
         # At the first position Y is false, rise(φ) is φ, fall(φ) is false.
         (previous(p), {"p": "1", "e": "1"}, "0 F 0"),
-        (no(previous(p)), {"p": "1", "e": "1"}, "0 P 0"),
         (rise(p), {"p": "1", "e": "1"}, "0 P 0"),
-        (rise(p), {"p": "0", "e": "1"}, "0 F 0"),
-        (fall(p), {"p": "0", "e": "1"}, "0 F 0"),
         (fall(p), {"p": "1", "e": "1"}, "0 F 0"),
         # In held time "before" is the tick before.
         (rise(p), {"p": "0.1", "e": "..1"}, "2 P 2"),
@@ -101,7 +90,6 @@ def test_since(
         (fall(p), {"p": "1.0", "e": "...1"}, "3 F 3"),
         (rise(p), {"p": "u.1", "e": "..1"}, "2 P 2"),
         (rise(p), {"p": "0u1", "e": "..1"}, "2 I"),
-        (rise(p), {"p": "u.0", "e": "..1"}, "2 F 2"),
         (fall(p), {"p": "1.u", "e": "..1"}, "2 I"),
     ],
 )
@@ -117,9 +105,7 @@ def test_rise_and_fall(judge: Any, formula: Formula, rows: Any, expected: str) -
         (previous(p), {"p": "1...0", "e": "....1"}, "4 P 4"),
         (rise(p), {"p": "0...1", "e": "....1"}, "4 P 4"),
         (rise(p), {"p": "0.1.1", "e": "....1"}, "4 F 4"),
-        (once(p, 0, 2), {"p": "1.0.0", "e": "....1"}, "4 F 4"),
         (once(p, 1, 3), {"p": "1...0", "e": "....1"}, "4 F 4"),
-        (historically(p, 1, 3), {"p": "0...1", "e": "....1"}, "4 P 4"),
     ],
 )
 def test_sampled_past(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
@@ -135,7 +121,6 @@ def test_sampled_past(judge: Any, formula: Formula, rows: Any, expected: str) ->
         # Not yet two ticks since the start, though p was never false.
         ({"p": "1", "e": ".1"}, "1 F 1"),
         ({"p": "01", "e": "...1"}, "3 P 3"),
-        ({"p": "01", "e": "..1"}, "2 F 2"),
         # The start is the first sample, not zero.
         ({"p": ".1", "e": "...1"}, "3 P 3"),
         ({"p": ".1", "e": "..1"}, "2 F 2"),
@@ -153,7 +138,6 @@ def test_held(judge: Any, rows: Any, expected: str) -> None:
     [
         # G[0,2] O[0,1] p: at 2 it needs p at 1 or 2.
         (always(once(p, 0, 1), 0, 2), {"p": "10.", "end": 3}, "0 F 2"),
-        (always(once(p, 0, 1), 0, 2), {"p": "1010", "end": 3}, "0 P 3"),
         # O[2,2] F[0,1] p at 3 looks at 1 and 2.
         (eventually(once(eventually(p, 0, 1), 2, 2), 3, 3), {"p": "0.1"}, None),
         (eventually(once(eventually(p, 0, 1), 2, 2), 3, 3), {"p": "0.1", "end": 4}, "0 P 3"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.tools.build import compared, spec_of, timeline, x, y
+from tests.tools.build import compared, spec_of, x, y
 
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
@@ -87,9 +87,3 @@ def test_differences_and_rates() -> None:
     assert (type(value(rate, *told_twice)), value(rate, *told_twice)) == (float, 3e9)
     assert value(delta, {"y": LEAST}, {"y": MOST}) is None
     assert value(rate, {"y": LEAST}, {"y": MOST}) is None
-
-
-def test_a_signal_that_is_drawn() -> None:
-    """Whole and real signals of drawn traces keep their kinds."""
-    [letter] = word_of(spec_of(), timeline(x="3", y="3")).letters
-    assert [type(letter.signals[name].value) for name in "xy"] == [float, int]

@@ -68,10 +68,8 @@ def test_what_functions_compute(functions, update, holds):
         ("S f() { return t; }", "f()", "TA016"),
         ("void f() { clock y; }", "f()", "TA004"),
         ("void f() { int[0,1] k; int[0,1] k; }", "f()", "TA003"),
-        ("void f(int[0,1] k, int[0,1] k) { }", "f(0, 1)", "TA003"),
         ("", "t = a", "TA004"),
         ("", "t.r = 1", "TA002"),
-        ("", "v = t", "TA004"),
     ],
 )
 def test_what_has_no_meaning_is_refused(functions, update, code):
@@ -86,7 +84,6 @@ def test_what_has_no_meaning_is_refused(functions, update, code):
     [
         ("int[0,9] f(int[0,9] n) { if (n > 5) return 1; }", "v = f(1)", "ends without a value"),
         ("void f() { while (true) v = 1; }", "f()", "go round more than 1,000,000 times"),
-        ("void f() { v = 100; }", "f()", "outside [0, 99]"),
         ("int[0,9] f(int[0,9] n) { return n; }", "v = f(10)", "outside [0, 9]"),
         ("void f() { v = a[v + 3]; }", "f()", "index 3 is outside the array"),
         ("void f() { v = 1 << (v + 40); }", "f()", "a shift by 40 bits"),

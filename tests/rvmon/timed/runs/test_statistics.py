@@ -1,10 +1,12 @@
 """Probabilities and expected values: figures whose errors are what they are said to be."""
 
 import json
+from math import comb
 
 import pytest
 
 from rvmon.cli import main
+from rvmon.confidence import interval
 from rvmon.errors import ModelError
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.elaborate import asked_on
@@ -27,9 +29,13 @@ automaton A {
 """
 
 
-def sampled(text, seed=1):
-    network = loads_network(COIN)
-    return sample(network, asked_on(network, text)[1], seed=seed)
+def figure(text, query, seed=1):
+    network = loads_network(text)
+    return sample(network, asked_on(network, query)[1], seed=seed)
+
+
+def sampled(query, seed=1):
+    return figure(COIN, query, seed)
 
 
 def test_estimates_have_bounds():
@@ -41,6 +47,8 @@ def test_estimates_have_bounds():
     away = sampled("Pr[<=2; 2000]([] not A.heads)")
     assert away.low < 0.7 < away.high
     assert sampled("Pr[<=0](<> A.heads)").value == 0
+    assert sampled("Pr[<=2](<> A.heads)") == sampled("Pr[<=2](<> A.heads)")
+    assert sampled("Pr[<=2](<> A.heads)") != sampled("Pr[<=2](<> A.heads)", seed=8)
 
 
 def test_bounds_are_kept_about_as_often_as_they_say():
@@ -50,6 +58,43 @@ def test_bounds_are_kept_about_as_often_as_they_say():
         for one in (sampled("Pr[<=2; 100](<> A.heads)", seed) for seed in range(30))
     )
     assert missed <= 5
+
+
+@pytest.mark.slow
+def test_delays_are_uniform_in_their_window():
+    """A bound in the middle of a window is met by half of the runs."""
+    text = """
+    clock x
+    automaton A { location a invariant x <= 10 location b start a edge a -> b when x >= 2 }
+    """
+    result = figure(text, "Pr[<=6; 2000](<> A.b)")
+    assert result.low < 0.5 < result.high
+    assert figure(text, "Pr[<=10](<> A.b)").value == 1
+    assert figure(text, "Pr[<=1](<> A.b)").value == 0
+
+
+def test_clocks_in_the_formula_are_met_while_time_passes():
+    """A formula that holds only in the middle of a wait is met."""
+    text = "clock x automaton A { location a invariant x <= 9 start a edge a -> a do x = 0 }"
+    assert figure(text, "Pr[<=50](<> x == 3 and A.a)").value > 0.5
+
+
+@pytest.mark.parametrize(("successes", "runs"), [(0, 20), (1, 20), (10, 20), (20, 20)])
+def test_bounds_are_clopper_and_pearsons(successes, runs):
+    """At each bound the observed count is just as improbable as the confidence allows."""
+    low, high = interval(successes, runs, 0.9)
+    at_least = sum(
+        comb(runs, k) * low**k * (1 - low) ** (runs - k) for k in range(successes, runs + 1)
+    )
+    at_most = sum(comb(runs, k) * high**k * (1 - high) ** (runs - k) for k in range(successes + 1))
+    assert low == 0 if successes == 0 else at_least == pytest.approx(0.05)
+    assert high == 1 if successes == runs else at_most == pytest.approx(0.05)
+
+
+def test_a_run_in_which_no_time_passes_is_refused():
+    hasty = "clock x automaton A { location a invariant x <= 0 start a edge a -> a }"
+    with pytest.raises(ModelError, match="moves in 0 units of time"):
+        figure(hasty, "Pr[<=5; 9](<> x > 3)")
 
 
 @pytest.mark.parametrize(
@@ -97,6 +142,7 @@ def test_expected_values():
     "query",
     [
         "Pr[<=2](<> deadlock)",
+        "Pr[<=2](<> EF A.heads)",
         "Pr[<=2](<> A.heads) >= 1.5",
         "Pr[<=2](<> A.heads) > 0.5",
         "Q[<=2](<> A.heads)",
@@ -204,14 +250,12 @@ automaton A {
 )
 def test_clocks_stop_and_run_at_other_rates(query, share):
     """Simulated exactly: 4 units stopped, then 6 at a rate of 2."""
-    network = loads_network(STOPPED)
-    assert sample(network, asked_on(network, query)[1]).value == share
+    assert figure(STOPPED, query).value == share
 
 
 def test_a_wait_without_end_has_the_rate_of_its_location():
     """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
-    network = loads_network(STOPPED)
-    found = sample(network, asked_on(network, "Pr[<=14; 4000](<> left)")[1])
+    found = figure(STOPPED, "Pr[<=14; 4000](<> left)")
     assert found.low < 0.632 < found.high
 
 

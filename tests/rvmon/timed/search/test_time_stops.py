@@ -19,12 +19,6 @@ automaton A {{
 """
 
 
-def ending(text, query):
-    """How the run ends that decides a query."""
-    outcome = verify(loads_network(text), query)
-    return outcome.holds, outcome.run.ending if outcome.run else None
-
-
 def test_a_zeno_loop_is_called_one():
     """A loop in which time cannot pass on is no plain counterexample."""
     outcome = verify(loads_network(LOOP.format(first="")), "A<> A.b")
@@ -33,55 +27,55 @@ def test_a_zeno_loop_is_called_one():
     assert "Zeno" in outcome.remark
 
 
-def test_a_loop_with_time_is_a_plain_one():
-    """If the loop resets the clock, time passes and the run is a real one."""
-    assert ending(LOOP.format(first="do x = 0"), "A<> A.b") == (False, Ending.LOOP)
+CONVERGING = """
+clock x, total
+automaton A {
+  location a invariant total <= 3
+  location b
+  start a
+  edge a -> a when x > 0 do x = 0
+  edge a -> b when total == 3
+}
+"""
+LOCKED = """
+clock x
+automaton A {
+  location a
+  location b invariant x <= 3
+  location c
+  start a
+  edge a -> b when x <= 4
+  edge b -> c when x <= 1
+}
+"""
+IDLE = "automaton A { location a location b start a edge a -> b }"
+
+ENDINGS = {
+    "if the loop resets the clock, time passes and the run is a real one": (
+        *(LOOP.format(first="do x = 0"), "A<> A.b", Ending.LOOP),
+    ),
+    "where a Zeno loop and a real loop both avoid the goal, the real one is shown": (
+        *(LOOP.format(first="edge a -> a when x >= 1 do x = 0"), "A<> A.b", Ending.LOOP),
+    ),
+    "delays that must shrink from round to round add up to less than a bound": (
+        *(CONVERGING, "A<> A.b", Ending.ZENO_LOOP),
+    ),
+    "a state that must be left but cannot be is a time-lock": (
+        *(LOCKED, "A[] not (deadlock and A.b)", Ending.TIME_LOCK),
+    ),
+    "and so it is where something is awaited": (LOCKED, "A.b --> A.c", Ending.TIME_LOCK),
+    "a state that nothing leaves while time goes on is a deadlock": (
+        *(IDLE, "A[] not deadlock", Ending.DEADLOCK),
+    ),
+    "idling there is a run": (IDLE, "A<> A.b", Ending.IDLE),
+}
 
 
-def test_a_proper_run_is_preferred():
-    """Where a Zeno loop and a real loop both avoid the goal, the real one is shown."""
-    text = LOOP.format(first="edge a -> a when x >= 1 do x = 0")
-    assert ending(text, "A<> A.b") == (False, Ending.LOOP)
-
-
-def test_a_loop_that_converges_is_zeno():
-    """Delays that must shrink from round to round add up to less than a bound."""
-    text = """
-    clock x, total
-    automaton A {
-      location a invariant total <= 3
-      location b
-      start a
-      edge a -> a when x > 0 do x = 0
-      edge a -> b when total == 3
-    }
-    """
-    assert ending(text, "A<> A.b") == (False, Ending.ZENO_LOOP)
-
-
-def test_a_time_lock_is_called_one():
-    """A state that must be left but cannot be is a time-lock."""
-    text = """
-    clock x
-    automaton A {
-      location a
-      location b invariant x <= 3
-      location c
-      start a
-      edge a -> b when x <= 4
-      edge b -> c when x <= 1
-    }
-    """
-    assert ending(text, "E<> deadlock and A.b") == (True, Ending.TIME_LOCK)
-    assert ending(text, "A.b --> A.c") == (False, Ending.TIME_LOCK)
-
-
-def test_a_deadlock_with_time_is_called_one():
-    """A state that nothing leaves while time goes on is a deadlock; idling there is a run."""
-    text = "automaton A { location a location b start a edge a -> b }"
-    assert ending(text, "A[] not deadlock") == (False, Ending.DEADLOCK)
-    assert ending(text, "A[] (deadlock imply A.b)") == (True, None)
-    assert ending(text, "A<> A.b") == (False, Ending.IDLE)
+@pytest.mark.parametrize("name", ENDINGS)
+def test_a_run_that_refutes_is_told_by_how_it_ends(name):
+    text, query, ending = ENDINGS[name]
+    outcome = verify(loads_network(text), query)
+    assert (outcome.holds, outcome.run.ending) == (False, ending)
 
 
 def test_a_deadlock_in_part_of_a_zone_is_found():
