@@ -38,7 +38,6 @@ def test_it_is_a_good_environment():
 
 
 def test_an_episode_is_a_test_that_can_be_played_again():
-    """What was published follows from the seed and what was begun, to the nanosecond."""
     for seed in (1, 2):
         env = _env(robot="legacy")
         samples = [one for *_, info in _episode(env, seed) for one in info["samples"]]
@@ -47,7 +46,6 @@ def test_an_episode_is_a_test_that_can_be_played_again():
 
 
 def test_it_is_judged_as_its_test_is():
-    """Verdicts and instants, by the samples within each step."""
     from handover.checker import spec_path
     from handover.environment import STEP_S, published
     from rvmon.adapters.gym import Judged
@@ -114,7 +112,6 @@ def test_the_piece_is_given_to_who_takes_it():
     ("mutation", "error"), [("crashes", "ZeroDivisionError"), ("ends-silently", "None")]
 )
 def test_a_robot_that_has_ended_ends_the_episode(mutation, error):
-    """Whether it crashed or only left."""
     *_, (*_, terminated, info) = _taken(_env(mutation=mutation))
     assert terminated
     assert str(info["error"]).startswith(error)

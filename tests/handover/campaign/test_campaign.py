@@ -46,14 +46,12 @@ def directed_results():
 
 
 def test_the_number_of_workers_changes_nothing(results):
-    """The same bytes with one worker and with two, which play it a second time."""
     once = document(results)
     assert document(execute(small(), jobs=2)) == once
     assert document(execute(small(seed=4), jobs=1)) != once
 
 
 def test_every_test_is_counted_once(results):
-    """P, F, NT and I add up to the number of tests; what was not run is absent."""
     content = json.loads(document(results))
     assert not content.keys() & {"model_checking", "partial"}
     for robot in content["robots"].values():
@@ -86,7 +84,6 @@ def test_tests_whose_signals_got_lost_are_repeated():
 
 
 def test_directed_tests_end_as_they_should(directed_results):
-    """Each known answer comes out; a planted fault says nothing about the robot as it is."""
     summary = summarise(directed_results, SPECS)
     for figures in summary.robots.values():
         assert [one.test.name for one in figures.known if not one.as_expected] == []
@@ -97,7 +94,6 @@ def test_directed_tests_end_as_they_should(directed_results):
 
 
 def test_without_monitors_nothing_is_judged():
-    """The simulation is the same, and no verdict is made up."""
     played = execute(small(monitors=False), jobs=1, controls=False)
     assert all(one.outcome.verdicts == {} for one in played.played)
     judged = execute(small(), jobs=1, controls=False)
@@ -107,7 +103,6 @@ def test_without_monitors_nothing_is_judged():
 
 
 def test_the_paper_counts_a_hundred_a_hundred_and_four():
-    """Each row of the published table adds up, and the fitted cells are in it."""
     table = paper_table()
     assert [group.runs for group in table.groups] == [100, 100, 4]
     for group in table.groups:
@@ -118,7 +113,6 @@ def test_the_paper_counts_a_hundred_a_hundred_and_four():
 
 
 def test_every_count_has_an_example(results):
-    """Each cell that is not nought leads to a test with that verdict."""
     examples = choose_examples(results.played)
     verdicts = {(one.job.robot, one.job.test.name): one.outcome.verdicts for one in results.played}
     for (robot, strategy, requirement, verdict), job in examples.by_cell.items():

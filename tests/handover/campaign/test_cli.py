@@ -41,7 +41,6 @@ def demo(tmp_path_factory):
 
 
 def test_the_page_has_what_the_model_says(demo):
-    """Its claims about all runs; the robot plays its edges, and runs of the robot conform to it."""
     page = (demo / "report.html").read_text()
     section = page[page.index("<h2>The model</h2>") :]
     claims = re.findall(
@@ -83,7 +82,6 @@ def test_the_paper_stands_beside_the_spread_over_seeds(demo):
 
 
 def test_the_demo_leaves_all_its_files(demo):
-    """Tables in four forms, coverage, pages, every test, and templates of those from the model."""
     names = {path.name for path in demo.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
     robots = {"correct", "legacy"}
@@ -114,7 +112,6 @@ def test_the_terminal_fits_two_screens(capsys):
 
 
 def test_directed_tests_say_which_others_failed(demo):
-    """A column for the paper's requirements; of the many others those that are to be looked at."""
     page = (demo / "report.html").read_text()
     section = page[page.index("<h2>Correct robot: directed tests</h2>") :]
     heads = re.findall(r"<th>(.*?)</th>", section[: section.index("</thead>")])
@@ -137,7 +134,6 @@ def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
 
 
 def test_all_forms_of_the_table_agree(demo):
-    """CSV and JSON have the same counts, of both robots and of the paper."""
     content = json.loads((demo / "table.json").read_text())
     rows = list(csv.DictReader(io.StringIO((demo / "table.csv").read_text())))
     assert {row["robot"] for row in rows} >= {"legacy", "correct", "paper"}
@@ -155,14 +151,12 @@ def test_all_forms_of_the_table_agree(demo):
 
 
 def test_all_links_of_the_pages_lead_somewhere(demo):
-    """Every address in the report and in its runs is a file of the demo."""
     for page in (demo / "report.html", *(demo / "runs").iterdir()):
         for address in re.findall(r'href="([^"#]+)', page.read_text()):
             assert (page.parent / address).exists(), (page.name, address)
 
 
 def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
-    """Both count all tests played, those with a planted fault too."""
     suite = tmp_path / "suite"
     suite.mkdir()
     for one in directed():
@@ -177,7 +171,6 @@ def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
 
 
 def test_a_strategy_of_another_robot_is_refused(capsys):
-    """Nothing would be played: place, cause, fix, and exit code 2."""
     assert main(["run", "--legacy", "--strategy", "disturbed", "--tests", "2"]) == 2
     told = " ".join(capsys.readouterr().err.split())
     assert "no test for the robot legacy: all of `disturbed` are for the robot correct" in told
@@ -261,7 +254,6 @@ def test_the_unmodified_robot_passes_its_gates(robot, capsys):
 
 
 def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
-    """The same command on a robot that decides too late: exit 1, without --strict."""
     late = replace(behaviour.CORRECT, decide_s=0.2)
     monkeypatch.setitem(behaviour.BEHAVIOURS, "correct", late)
     assert main(["run", "--strategy", "model-based", "--jobs", "1"]) == 1
@@ -283,7 +275,6 @@ def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
     ],
 )
 def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
-    """Exit 2, with the file's name, without a traceback."""
     path = tmp_path / "x.json"
     if content is not None:
         path.write_bytes(content.encode("utf-8", "surrogateescape"))
@@ -294,7 +285,6 @@ def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
 
 
 def test_a_folder_that_cannot_be_written_to_is_told_first(demo, capsys):
-    """Nothing is played for output that could not be kept."""
     test = str(demo / "tests" / "released.json")
     assert main(["replay", test, "--out", test]) == 2
     told = capsys.readouterr()

@@ -32,7 +32,6 @@ def closed(tmp_path_factory):
 
 
 def test_the_model_leads_to_all_outcomes_at_once(closed):
-    """A dozen show all that random ones do not: a release, and the readings that withhold."""
     folder, code, told = closed
     document = json.loads((folder / "closing.json").read_text())
     met = {tuple(goal) for test in document["tests"] for goal in test["added"]}
@@ -44,7 +43,6 @@ def test_the_model_leads_to_all_outcomes_at_once(closed):
 
 
 def test_all_say_the_same_share(closed, capsys):
-    """What closing prints and keeps, its page, and what `cover` is held against."""
     folder, _, told = closed
     share = json.loads((folder / "closing.json").read_text())["share"]
     words = f"{share_text(share)} covered"
@@ -83,7 +81,6 @@ def test_nothing_that_is_called_unreachable_was_met(closed):
 
 
 def test_the_suite_is_played_again_from_its_folder(closed, capsys):
-    """The same tests reach the same, and the page shows the edges of the model and the reasons."""
     folder, _, _ = closed
     suite = json.loads((folder / "closing.json").read_text())["suite"]
     assert {path.stem for path in (folder / "tests").iterdir()} == set(suite)
@@ -97,7 +94,6 @@ def test_the_suite_is_played_again_from_its_folder(closed, capsys):
 
 
 def test_nonsense_is_refused(tmp_path, capsys):
-    """A folder without tests, an unknown strategy: place, cause, fix, and exit code 2."""
     assert main(["run", "--suite", str(tmp_path)]) == 2
     assert "no test (.json) in this folder" in capsys.readouterr().err
     assert main(["close", "--strategy", "guessing"]) == 2

@@ -15,7 +15,6 @@ pytestmark = pytest.mark.campaign
 
 
 def test_there_are_mutants_of_all_states_and_numbers():
-    """Of each state, of what states share, and of the numbers of the correct robot alone."""
     functions = {one.function for one in code_mutants(robot_code())}
     assert {f"HandoverRobot.{state}" for state in STATES} < functions
     assert {"HandoverRobot.poll_signal", "CORRECT", "PIECE_TOLERANCE"} < functions

@@ -93,7 +93,6 @@ def left(folder, journal):
     ],
 )
 def test_it_comes_to_the_same_wherever_it_was_killed(whole, here, played, capsys, tests, torn):
-    """Between two tests, or within the writing of one, which is played again."""
     known, journal = whole
     lines = journal.splitlines(keepends=True)
     assert len(lines) == 1 + 12
@@ -105,7 +104,6 @@ def test_it_comes_to_the_same_wherever_it_was_killed(whole, here, played, capsys
 
 
 def test_what_lies_behind_damage_is_played_again(whole, here, played):
-    """An entry that differs from its checksum ends what is taken."""
     known, journal = whole
     lines = journal.splitlines(keepends=True)
     left(here, b"".join([*lines[:3], lines[3].replace(b"seconds", b"Seconds"), *lines[4:]]))
@@ -140,8 +138,6 @@ def test_shards_are_joined(whole, here, played, capsys):
 
 
 def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
-    """What its partial tables and pages were is written over."""
-
     def interrupted(plan, **options):
         def press_ctrl_c(count):
             if count == 4:
@@ -160,7 +156,6 @@ def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs the signals of POSIX")
 def test_a_campaign_that_is_killed_goes_on(here):
-    """By SIGKILL, whatever its processes do then, and more than once."""
     words = (*RUN, "--tests", "24")
     assert main((*words, "--jobs", "1")) == 0
     known = files(here)
@@ -185,7 +180,6 @@ def test_a_campaign_that_is_killed_goes_on(here):
     [("--seed", "2"), ("--tests", "11"), ("--strategy", "pseudorandom"), ("--no-monitors",)],
 )
 def test_another_campaign_is_refused(whole, here, capsys, other):
-    """Before anything is played or written; told are the file, the other campaign and the ways."""
     left(here, whole[1])
     assert main([*WORDS, *other]) == 2
     told = " ".join(capsys.readouterr().err.split())

@@ -19,7 +19,6 @@ def spec():
 
 @pytest.mark.parametrize("robot", SPECS)
 def test_both_robots_are_judged_by_the_same_requirements(robot):
-    """Five ids, in the paper's order; where triggers differ, the words do not."""
     texts = {name: one.text for name, one in rvmon.load(spec_path(robot)).requirements.items()}
     assert tuple(texts)[:5] == REQUIREMENTS
     words = rvmon.load(spec_path("correct")).requirements
@@ -27,7 +26,6 @@ def test_both_robots_are_judged_by_the_same_requirements(robot):
 
 
 def test_judging_online_equals_judging_the_recording(spec):
-    """Verdicts, instants and reasons are the recording's; nothing is left of the test before."""
     checker = Checker(spec)
     late = "mutant-releases-late"
     for name, verdict in ((late, "F"), ("released", "P"), ("withheld-no-gaze", "NT"), (late, "F")):

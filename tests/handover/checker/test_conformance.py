@@ -25,21 +25,18 @@ def of_the_model():
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", [*pseudorandom(2, seed=1), *constrained(1, seed=1)])
 def test_runs_of_the_correct_robot_conform(network, test):
-    """Whatever the human does, the network explains what the robot does."""
     assert check_run(network, run_test(test)).conforms is True
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("witness", [0, 1])
 def test_runs_that_follow_the_model_conform(network, of_the_model, witness):
-    """So does it where the human does as the model has it."""
     assert check_run(network, run_test(of_the_model[witness])).conforms is True
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize(("moved_s", "conforms"), [(0.0, True), (None, False), (1.0, False)])
 def test_the_robot_goes_by_the_readiness_of_the_human(network, of_the_model, moved_s, conforms):
-    """A robot that senses without it, or before it, leaves the network."""
     run = run_test(of_the_model[1])
     samples = []
     for t_ns, values in run.samples:
@@ -58,6 +55,5 @@ def test_the_robot_goes_by_the_readiness_of_the_human(network, of_the_model, mov
      ("ends-silently", 0)],
 )  # fmt: skip
 def test_faults_are_divergences(network, of_the_model, mutation, witness):
-    """A robot with a fault leaves the network on the test that meets the fault."""
     run = run_test(of_the_model[witness], mutation=mutation, startup_loss=False)
     assert check_run(network, run).conforms is False

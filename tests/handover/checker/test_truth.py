@@ -315,7 +315,6 @@ BY_SAMPLES = {
 
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_fails_its_requirements(monkeypatch, name):
-    """The robot as it is meets them in the same test."""
     fault, test, requirements = PLANTED[name]
     monkeypatch.setitem(mutants.MUTATIONS, name, fault)
     assert failed(TESTS[test], name) >= set(requirements.split())
@@ -340,7 +339,6 @@ def test_a_clamped_hand_bears_what_one_finger_presses():
 
 
 def test_each_requirement_on_the_world_can_fail():
-    """None is there that nothing above fails."""
     told = {name for _, _, names in PLANTED.values() for name in names.split()}
     own = {name for name in SPEC.requirements if name.startswith("T")}
     assert own == {name for name in told | set(BY_SAMPLES) if name.startswith("T")}
@@ -356,6 +354,5 @@ GENERATED = {
 
 @pytest.mark.parametrize("strategy", GENERATED)
 def test_the_correct_robot_owes_nothing(strategy):
-    """In generated tests it fails none of its requirements, whatever sensors and person do."""
     for test in GENERATED[strategy]():
         assert failed(test) == set(), test.name

@@ -28,7 +28,6 @@ def measured():
 
 
 def test_functions_belong_to_states():
-    """Each state owns the function of its name, and helpers that nobody else calls."""
     owners = state_of_functions()
     assert {state: owners[state] for state in STATES} == {state: state for state in STATES}
     assert owners["go_to"] == "move"
@@ -37,7 +36,6 @@ def test_functions_belong_to_states():
 
 
 def test_every_state_has_statements():
-    """The robot's code is divided among its states, each line in one of them."""
     assert {statements_name(state) for state in STATES} < GROUPS.keys()
     assert all(group.items for group in GROUPS.values())
     lines = [line for group in GROUPS.values() for line in group.items]
@@ -55,7 +53,6 @@ def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
 
 
 def test_tests_are_kept_apart(measured):
-    """What one test ran is not counted for another; together they cover more than each."""
     _, hits = measured
 
     def covered(one):
@@ -67,14 +64,12 @@ def test_tests_are_kept_apart(measured):
 
 
 def test_measuring_changes_nothing(measured):
-    """The run is the same as without measuring."""
     runs, _ = measured
     assert runs["released"] == run_test(TESTS["released"])
 
 
 @pytest.mark.campaign
 def test_all_transitions_that_happen_are_known(measured):
-    """The chart has a line for every transition that a robot took."""
     seen = set()
     for test in TESTS.values():
         if test.mutation is None:

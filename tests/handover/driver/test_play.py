@@ -72,7 +72,6 @@ def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
 
 @pytest.mark.parametrize("robot", ["correct", "legacy"])
 def test_jumps_change_no_event(robot: str) -> None:
-    """Tests give the same events at the same nanosecond whether rest is stepped or not."""
     gripped = 0
     for test in pseudorandom(3, seed=5) + constrained(6, seed=5):
         jumped = run_test(test, robot=robot)
@@ -92,7 +91,6 @@ def test_jumps_change_no_event(robot: str) -> None:
 
 
 def test_jumps_change_no_event_where_the_scene_surprises() -> None:
-    """So it is with collisions, sensors that fail and a person who does otherwise."""
     for test in disturbed(5, seed=6):
         short = structs.replace(test, horizon_s=40.0)
         assert facts(run_test(short)) == facts(run_test(short, jump=False))
@@ -111,7 +109,6 @@ def digest(run: Run) -> str:
 
 
 def test_same_seed_same_run_in_every_process() -> None:
-    """A run depends on its test alone: not on the process, its hash seed, or earlier runs."""
     test = constrained(3, seed=9)[2]
     first = run_test(test)
     run_test(protocol_test(1))
@@ -134,7 +131,6 @@ def test_same_seed_same_run_in_every_process() -> None:
 
 
 def test_samples_are_in_order_and_say_something() -> None:
-    """Stamps increase strictly, no sample is empty, none is after the horizon."""
     run = run_test(protocol_test(3))
     stamps = [t for t, _ in run.samples]
     assert stamps == sorted(set(stamps))
@@ -146,7 +142,6 @@ def test_samples_are_in_order_and_say_something() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_correct_robot_keeps_its_bounds(seed: int) -> None:
-    """Each state of the correct robot lasts no longer than the protocol allows."""
     longest = {
         "reset": 4.5,
         "receive_activation": 20.0,
@@ -167,7 +162,6 @@ def test_correct_robot_keeps_its_bounds(seed: int) -> None:
 
 
 def test_handover_succeeds_for_both_robots() -> None:
-    """A human who follows the protocol gets the piece from either robot, in the usual time."""
     for robot in ("correct", "legacy"):
         run = run_test(protocol_test(7), robot=robot)
         assert instants(run, "released")
@@ -189,7 +183,6 @@ def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
 
 
 def test_crash_is_a_result() -> None:
-    """A robot whose code crashes leaves a whole run with the exception in it."""
     run = run_test(protocol_test(1, mutation="crashes"))
     assert run.error is not None
     assert run.error.startswith("ZeroDivisionError")
@@ -199,7 +192,6 @@ def test_crash_is_a_result() -> None:
 
 
 def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
-    """The hook surrounds the robot's code: as often as it is resumed, and it changes nothing."""
     entered = 0
 
     @contextmanager
@@ -214,7 +206,6 @@ def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
 
 
 def test_a_scene_is_kept_on_demand() -> None:
-    """Frames come only when asked for, at most ten a second, and show the piece moving."""
     assert run_test(protocol_test(1)).scene is None
     scene = run_test(protocol_test(1), films=True).scene
     assert scene is not None
@@ -229,7 +220,6 @@ def test_a_scene_is_kept_on_demand() -> None:
 
 
 def test_arguments_win_over_the_file() -> None:
-    """Robot and mutation of the call replace those that the test names."""
     test = protocol_test(1, robot="legacy", mutation="crashes")
     assert run_test(test).robot == "legacy"
     other = run_test(test, robot="correct", mutation="releases-late")
@@ -241,7 +231,6 @@ def test_arguments_win_over_the_file() -> None:
     [({"robot": "modern"}, "correct, legacy"), ({"mutation": "no-such"}, "never-decides")],
 )
 def test_unknown_names_are_told(settings: dict[str, str], names: str) -> None:
-    """A robot or mutation that does not exist is an error that lists those that do."""
     with pytest.raises(TestError, match=names):
         run_test(protocol_test(1), **settings)  # type: ignore[arg-type]
 
@@ -279,7 +268,6 @@ def test_slow_sensors_delay_the_decision() -> None:
 
 
 def test_noise_is_seeded() -> None:
-    """Noisy sensors give other numbers, and the same ones again for the same seed."""
     noisy = protocol_test(1, faults=SensorFaults(noise_m=0.05))
     assert digest(run_test(noisy)) == digest(run_test(noisy))
     assert digest(run_test(noisy)) != digest(run_test(protocol_test(1)))

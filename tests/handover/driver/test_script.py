@@ -99,7 +99,6 @@ def test_actions_without_effect(action: Action) -> None:
 
 
 def test_withdrawing_takes_no_time_of_the_script() -> None:
-    """The person begins to withdraw, and the next action follows at once."""
     played = play(Withdraw(), SetParam("hpressureOk", 1))
     assert played.body.done == [(1.0, "withdraw", ()), (1.0, "grasp", (True,))]
 
@@ -147,7 +146,6 @@ def test_bad_location_is_off_on_both_axes_alike() -> None:
 
 
 def test_unconnected_human_publishes_nothing() -> None:
-    """A human whose process found no robot plays the script, but no signal goes out."""
     played = play(SendSignal("activateRobot"), SetParam("hpressureOk", 1), connected=False)
     assert played.signals == []
     assert [what for _, what, _ in played.body.done] == ["grasp"]

@@ -64,13 +64,11 @@ def test_written_tests_read_back(test: AbstractTest) -> None:
 
 
 def test_another_process_writes_the_same_file() -> None:
-    """Also what is left out there, as it has its default."""
     for test in (*directed(), *constrained(3, 1)):
         assert to_json(pickle.loads(pickle.dumps(test))) == to_json(test)  # noqa: S301
 
 
 def test_files_carry_the_name(tmp_path: Path) -> None:
-    """A saved test stands in a file of its name and loads as it was."""
     test = constrained(1, seed=0)[0]
     path = save(test, tmp_path)
     assert path.name == "constrained-000.json"

@@ -17,7 +17,6 @@ from handover.world.faults import SceneFaults, SensorFaults
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
-    """Kinds, signals and parameters come about equally often, and all of them come."""
     actions = [action for test in pseudorandom(1000, seed=3) for action in test.actions]
     kinds = Counter(type(action) for action in actions)
     assert {kind: pytest.approx(1 / 3, abs=0.02) for kind in kinds} == {
@@ -51,7 +50,6 @@ def test_values_are_in_range() -> None:
 
 
 def test_constrained_begin_with_the_protocol() -> None:
-    """Each begins with activation, wait, informing and readiness, and goes on at random."""
     tests = constrained(300, seed=1)
     assert all(test.actions[: len(PREFIX)] == PREFIX for test in tests)
     assert {len(test.actions) - len(PREFIX) for test in tests} == set(range(1, 11))
@@ -88,7 +86,6 @@ def deviations(actions: tuple[Action, ...]) -> set[str]:
 
 
 def test_probabilities_of_the_person_add_up() -> None:
-    """In each state something is done for certain, and each other state can be reached."""
     for ways in PERSON.values():
         assert sum(weight for weight, _, _ in ways) == pytest.approx(1)
     assert {state for ways in PERSON.values() for _, _, state in ways} == {*PERSON, "leaves"}
@@ -108,7 +105,6 @@ def test_numbers_of_the_person_have_a_source_or_are_called_free() -> None:
 
 @pytest.mark.parametrize("make", [pseudorandom, constrained, disturbed])
 def test_tests_depend_on_seed_and_index_alone(make: type) -> None:
-    """A longer campaign begins with the tests of a shorter one; another seed gives others."""
     assert make(20, seed=4)[:5] == make(5, seed=4)
     assert make(5, seed=4) != make(5, seed=5)
     tests = make(200, seed=4)

@@ -50,7 +50,6 @@ def test_postures_follow_the_witness():
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_tests():
-    """Tests follow from the seed alone, and differ between seeds."""
     assert model_based(4, seed=5) == model_based(4, seed=5)
     assert model_based(4, seed=5) != model_based(4, seed=6)
 
@@ -79,7 +78,6 @@ def test_chosen_times_are_those_of_some_run(policy):
 
 @pytest.mark.slow
 def test_waits_are_chosen_all_over_their_windows():
-    """A wait with a window of ten units takes each of its values for some seed."""
     template = templates()[0]
     (index,) = (i for i, s in enumerate(template.steps, 1) if s.does == "workflow: ready → tasking")
     seen = set()
@@ -91,7 +89,6 @@ def test_waits_are_chosen_all_over_their_windows():
 
 @pytest.mark.slow
 def test_templates_are_files(tmp_path):
-    """A template can be written, read by people and programs, and read back."""
     template = templates()[1]
     path = save_template(template, tmp_path)
     assert load_template(path, Action) == template
@@ -100,7 +97,6 @@ def test_templates_are_files(tmp_path):
 
 @pytest.mark.slow
 def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
-    """Tests say in their strategy and name which witness they follow; templates stand apart."""
     tests = {policy: model_based(4, 1, policy) for policy in ("likely", "shortest", "fastest")}
     assert {test.strategy for test in tests["likely"]} == {"model-based"}
     assert {test.strategy for test in tests["fastest"]} == {"model-based-fastest"}
@@ -116,7 +112,6 @@ def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
 
 @pytest.mark.slow
 def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
-    """A changed window is kept; contradictory limits and broken files are refused."""
     template = templates()[0]
     steps = list(template.steps)
     steps[2] = msgspec.structs.replace(steps[2], wait=Wait(100, 100))
@@ -132,7 +127,6 @@ def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
 
 
 def test_projection_keeps_only_human_and_sensors():
-    """No step of a template is the robot's."""
     network = handover_network()
     run = verify(network, "E<> robot.done and withheld").run
     steps, _ = project(network, run, PROJECTED, ACTIONS)

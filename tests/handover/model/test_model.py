@@ -14,7 +14,6 @@ def network():
 
 
 def test_it_is_six_automata(network):
-    """Robot, workflow, the three postures and the sensors, nothing else, and nothing odd."""
     names = [automaton.name for automaton in network.automata]
     assert names == ["robot", "workflow", "gaze", "location", "pressure", "sensors"]
     assert network.warnings == ()
@@ -39,7 +38,6 @@ def test_claims_on_all_runs_hold(network, claim):
 
 @pytest.mark.slow
 def test_release_comes_within_ten_units_and_no_less(network):
-    """The bound of the claim R1 is exact: half a second holds, one unit less does not."""
     (query,) = (q for q in network.queries if q.id == "R1_all")
     tight = query.text.replace("60", "10")
     assert verify(network, tight).holds

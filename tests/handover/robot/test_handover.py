@@ -122,7 +122,6 @@ def protocol(ready_after: float = 25.0) -> list[Message]:
 
 
 def test_handover_goes_through_all_states() -> None:
-    """A human who follows the protocol gets the piece after all nine states in order."""
     bench = AttemptJudge(protocol())
     bench.play()
     assert bench.states() == list(STATES)

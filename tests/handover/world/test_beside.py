@@ -68,14 +68,12 @@ def test_the_nearest_part_is_the_one_that_counts() -> None:
     ],
 )
 def test_each_part_feels_its_own_contacts(test: str, struck: set[str]) -> None:
-    """A force on the other hand is one on a hand; one on the forearm is none of these."""
     forces = most(test, TESTS[test].mutation)
     assert {name for name, force in forces.items() if force > 10} == struck
 
 
 @pytest.mark.campaign
 def test_contacts_of_a_struck_forearm_are_told_by_pair() -> None:
-    """What palm, fingers and piece press each is a vector sum of its own."""
     test = TESTS["mutant-strikes-a-forearm"]
     world = begun(test).world
     scene = world.scene

@@ -44,7 +44,6 @@ def test_latched_message_vanishes_after_its_publisher() -> None:
 
 
 def test_unlatched_message_cannot_be_read_later() -> None:
-    """A message that is not latched passes the taps and is gone."""
     _, bus, human, robot = two_nodes()
     passed: list[tuple[str, Value]] = []
     bus.tap(lambda topic, value: passed.append((topic, value)))
@@ -61,7 +60,6 @@ def test_reading_needs_a_subscription() -> None:
 
 
 def test_reads_slow_down_with_leaked_subscriptions() -> None:
-    """Each subscription beyond the first adds the growth to every read; it is told once."""
     bus = Bus(Schedule())
     node = Node(bus, {}, 0.001)
     node.subscribe("signal")

@@ -14,7 +14,6 @@ numbers = st.floats(-2, 2)
 @settings(deadline=None)
 @given(numbers, numbers, numbers, st.floats(0.2, 3))
 def test_path_meets_its_ends(start: float, speed: float, goal: float, duration: float) -> None:
-    """A path starts at place and speed, and ends at the goal at rest."""
     path = quintic(start, speed, goal, duration)
     assert evaluate(path, 0.0) == start
     assert slope(path, 0.0) == speed
@@ -32,7 +31,6 @@ def test_path_from_rest_is_the_min_jerk_profile(share: float) -> None:
 @settings(deadline=None)
 @given(st.floats(-0.2, 0.25), st.floats(0.05, 0.4))
 def test_inverse_kinematics_inverts(x: float, z: float) -> None:
-    """Joint angles for a point bring the grip there, gripper down."""
     joints = joints_for(x, z)
     assert joints is not None
     assert grip_point(joints) == pytest.approx((x, z), abs=1e-9)

@@ -21,8 +21,6 @@ def play(program: Program) -> tuple[Process, Schedule]:
 
 
 def test_waits_are_exact() -> None:
-    """A program that yields seconds is resumed at exactly that nanosecond."""
-
     def program() -> Program:
         for _ in range(10):
             yield 0.1
@@ -33,8 +31,6 @@ def test_waits_are_exact() -> None:
 
 
 def test_crash_is_a_result() -> None:
-    """An exception ends the program, and is told with type, text and place."""
-
     def program() -> Program:
         yield 1.0
         raise KeyError("gripper")
@@ -57,8 +53,6 @@ def test_wrong_waits_are_errors(wait: object) -> None:
 
 
 def test_program_that_passes_no_time_is_ended() -> None:
-    """A loop that waits for nothing is found out."""
-
     def program() -> Program:
         while True:
             yield 0.0
@@ -69,7 +63,6 @@ def test_program_that_passes_no_time_is_ended() -> None:
 
 
 def test_context_surrounds_each_step_only() -> None:
-    """The context is entered and left once for each step, the last one included."""
     entered: list[str] = []
 
     @contextmanager

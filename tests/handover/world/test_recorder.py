@@ -6,7 +6,6 @@ from handover.world.recorder import Recorder, SampleValue
 
 
 def test_one_instant_is_one_sample() -> None:
-    """What happens at one instant stands in one sample, the last value of a signal wins."""
     recorder = Recorder(None)
     recorder.event(5, "closed")
     recorder.signal(5, "speed", 0.1)
@@ -17,7 +16,6 @@ def test_one_instant_is_one_sample() -> None:
 
 
 def test_signals_are_kept_on_change_and_events_always() -> None:
-    """An unchanged signal makes no sample unless it is refreshed; an event always does."""
     recorder = Recorder(None)
     for t in (1, 2, 3):
         recorder.signal(t, "ok", False)
@@ -29,7 +27,6 @@ def test_signals_are_kept_on_change_and_events_always() -> None:
 
 
 def test_observer_sees_whole_samples_in_order() -> None:
-    """The observer is called once for each sample, when its instant is over."""
     seen: list[tuple[int, dict[str, SampleValue]]] = []
     recorder = Recorder(lambda t, values: seen.append((t, dict(values))))
     recorder.event(1, "a")

@@ -54,7 +54,6 @@ def test_functions_are_those_of_the_oracle(op, kind):
 
 
 def test_bits_are_those_of_twos_complement():
-    """Of a negative number, too."""
     spec = rvmon.loads(
         "spec s\nsignal a, b : int\nevent e\n"
         "requirement R\n  upon e\n  then immediately bit(a, b)\n"

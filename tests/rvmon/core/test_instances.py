@@ -55,7 +55,6 @@ def samples(rng, count):
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
 @pytest.mark.parametrize("name", REQUIRED)
 def test_what_is_over_changes_no_record(name, time):
-    """With many keys that come and go and come again, every record is that of the law."""
     text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(REQUIRED[name], time))
     checked = rvmon.loads(text).checked
     case = Case(checked, tuple(samples(random.Random(f"{name}/{time}"), 18)), None)

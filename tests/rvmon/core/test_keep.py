@@ -23,7 +23,6 @@ def told(attempt):
 @pytest.mark.slow
 @pytest.mark.parametrize("time", TimeModel)
 def test_what_is_kept_is_told_as_if_all_was(time):
-    """Verdicts, counts, next instants and what calls return do not change; few records are left."""
     dropped = 0
     for seed in range(4):
         rng = random.Random(f"keep/{time.name}/{seed}")

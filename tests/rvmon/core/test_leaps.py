@@ -48,7 +48,6 @@ def outcome_of(attempt):
 @pytest.mark.parametrize("time", ["held", "sampled every 500 ms"])
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_what_is_counted_is_what_would_be_told(form, time):
-    """Verdicts and counts are the same, and so are the first records and the last ones."""
     spec = spec_of(form, time)
     told, counted = (run(spec, 4_000, in_steps=steps) for steps in (True, False))
     assert not told.dropped

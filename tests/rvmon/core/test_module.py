@@ -200,7 +200,6 @@ def test_calls_of_another_form_are_left(run):
 
 
 def test_several_payloads_where_they_can_be_told_apart():
-    """They are taken as they come, however many they are."""
     text = "spec s\nevent e(k: int)\nrequirement R\n  upon e\n  then e.k > 9\n  for each i in e.k\n"
     run = planned_of(text).monitor(frozenset(), closer, closer)
     for t, count in enumerate((2, 1, 0, 3000, 5)):
@@ -212,7 +211,6 @@ def test_several_payloads_where_they_can_be_told_apart():
 
 
 def test_a_row_that_is_before_the_one_above_is_not_taken(run):
-    """Nor is what comes behind it; what stood before is, and so are several of one instant."""
     assert run.rows(np.array([1, 5, 5, 4, 9]), ()) == 3
     assert run.times() == (1, 5, 5)
     assert run.rows(np.array([3]), ()) == 0
@@ -312,7 +310,6 @@ def test_names_and_fields_of_wrong_numbers_are_left(planned):
 
 
 def test_the_layout_of_records_is_that_of_numpy(planned):
-    """The bytes of a run are whole records, and for each as many numbers as any captures."""
     run = planned.monitor(frozenset())
     assert run.judge(0, {"x": 0.5, "e": ({"k": -3}, {"k": 2})}, True)
     run.finish(5 * 10**9)
@@ -361,7 +358,6 @@ def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
 
 @pytest.mark.slow
 def test_nothing_is_left_behind(planned):
-    """However often everything is done, right and wrong, no block of memory more is in use."""
     wrong = list(damaged(planned))
     for _ in range(5):
         everything(planned, wrong)
@@ -375,7 +371,6 @@ def test_nothing_is_left_behind(planned):
 
 
 def test_other_threads_run_while_rows_are_judged(planned):
-    """Recordings are judged at the same time, each by a run of its own."""
     times = np.arange(1, 200_001) * 1000
     p = times // 1000 % 2 == 0
 

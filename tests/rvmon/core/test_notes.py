@@ -24,7 +24,6 @@ requirement W "lasting"
 
 
 def test_a_reason_can_be_read_long_after(tmp_path):
-    """After many samples, after a reset, when the monitor is gone, in another process."""
     monitor = spec_of(RESPONSE).monitor()
     monitor.step_ns(0, {"p": False, "q": False})
     monitor.step_ns(7 * MS, {"p": True})

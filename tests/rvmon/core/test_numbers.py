@@ -68,7 +68,6 @@ def test_a_whole_number_for_a_real_one_is_rounded_once():
 
 
 def test_fields_are_exact():
-    """The whole numbers of a payload are those that came, too."""
     spec = spec_of("not (e.k == 9007199254740993)")
     for k, verdict in ((2**53, "P"), (2**53 + 1, "F")):
         trace = [(0.0, {}), (1.0, {"e": {"k": k}})]

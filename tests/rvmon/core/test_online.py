@@ -96,7 +96,6 @@ S = 1_000_000_000
 
 
 def test_records_come_with_the_step_that_decides_them(spec):
-    """Each call returns what it decided, in the order of reports, and the report has all of it."""
     samples = [
         (0, FIRST),
         (S, {"p": True}),
@@ -117,7 +116,6 @@ def test_records_come_with_the_step_that_decides_them(spec):
 
 
 def test_all_kinds_of_values(spec):
-    """Numbers of NumPy, whole numbers for real ones, NaN, `None`, labels, payloads, subclasses."""
     values = [
         {"speed": 3},
         {"speed": np.float64(1.5), "p": np.bool_(True)},
@@ -165,7 +163,6 @@ def test_names_of_an_enumeration(spec):
 
 
 def test_names_in_any_order(spec):
-    """The order of names may change from sample to sample, and names be equal, not the same."""
     rng = random.Random(1)
     samples = []
     for t in range(200):
@@ -218,7 +215,6 @@ def test_what_is_wrong_is_refused(spec, t, values, error, text):
 
 
 def test_a_wrong_call(spec):
-    """Python's own errors for what is no call of a method."""
     monitor = spec.monitor()
     with pytest.raises(TypeError, match="positional"):
         monitor.step_ns()
@@ -236,7 +232,6 @@ def test_a_wrong_call(spec):
     ],
 )
 def test_seconds_are_rounded_alike_everywhere(spec, seconds):
-    """The same tick, or the same refusal, whatever the time is."""
     found = []
     for way in ("step", "step_ns"):
         monitor = spec.monitor()
@@ -250,7 +245,6 @@ def test_seconds_are_rounded_alike_everywhere(spec, seconds):
 
 
 def test_advance_finish_reset(spec):
-    """Time passes without samples; a finished run takes nothing; another one begins afresh."""
     monitor = spec.monitor()
     assert monitor.open == ()
     assert monitor.next_due is None
@@ -282,7 +276,6 @@ def test_no_sample_at_all(spec):
 
 
 def test_attempts_are_attempts(spec):
-    """Records are whole: equal, shown, copied, changed as others are."""
     monitor = spec.monitor()
     monitor.step(0.0, FIRST)
     (made,) = monitor.step(1.0, {"speed": 3.0})
@@ -320,7 +313,6 @@ def test_open_attempts_beyond_any_number():
 
 
 def test_decided_at_once_by_several_requirements():
-    """What a gap decides comes in the order of instants, whichever requirement it is of."""
     texts = [f"requirement R{n}\n  upon p\n  then within {n} s q\n" for n in range(1, 10)]
     spec = rvmon.loads("spec gap\nsignal p, q : bool\n" + "".join(texts))
     samples = [(t, {"p": row["p"], "q": False}) for t, row in knocks(0, 40)]
@@ -339,7 +331,6 @@ def test_a_monitor_is_freed(spec):
 
 
 def test_captured_values_are_told():
-    """Attempts say what they captured, with the types that were declared."""
     monitor = rvmon.loads(
         "spec s\nsignal x : int\nsignal mode : {red, green}\nevent e(k: int)\nrequirement R1\n"
         "  upon e\n  then within 1 s x > v\n  for each i in e.k\n  let v = x\n  let m = mode\n"

@@ -87,7 +87,6 @@ def test_what_is_no_name_cannot_be_lost(names):
 
 
 def test_names_come_as_numbers():
-    """Whatever can be gone through will do; of names without a source nothing is lost."""
     run = planned("requirement R\n  always p").monitor(frozenset({"q"}))
     assert run.lose(iter([1]), 0)
     assert run.found((), 0)

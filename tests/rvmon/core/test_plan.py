@@ -100,13 +100,11 @@ def drawn(seed: int) -> Planned | None:
 
 @pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.stem)
 def test_the_core_takes_a_written_specification(path):
-    """What the demonstration and the examples specify is packed whole, by the core's own check."""
     spec = rvmon.load(path)
     planned_core(spec._compiled, measured=True).monitor(frozenset())
 
 
 def test_equal_shapes_share_all_but_their_bounds():
-    """Requirements that differ in names and deadlines have one automaton's tables."""
     text = "spec s\nsignal p, q, r, s, t, u : bool\n" + "".join(
         f"requirement R{n}\n  upon {a}\n  then within {n + 1} s {b}\n"
         for n, (a, b) in enumerate(("pq", "rs", "tu"))
@@ -158,13 +156,11 @@ BEHIND = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW",
     ],
 )
 def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: Iterable[IntEnum]):
-    """Each name of plan.h is one of ours, with its number."""
     found = {name[len(prefix) :]: n for name, n in enumerators().items() if name.startswith(prefix)}
     assert found == {one.name: one.value for one in numbers}
 
 
 def test_limits_are_those_of_c():
-    """The stack has the same room on both sides; as many events may be read at once."""
     limits = dict(re.findall(r"#define (\w+) (\d+)\n", HEADER.read_text(encoding="utf-8")))
     assert int(limits["PROGRAM_DEPTH"]) == DEPTH
     assert int(limits["PAYLOAD_EVENTS_MOST"]) == MOST_EVENTS
@@ -172,7 +168,6 @@ def test_limits_are_those_of_c():
 
 @pytest.mark.compiler
 def test_records_have_the_layout_that_c_gives_them(tmp_path):
-    """Sizes and offsets are those of the types of plan.h."""
     lines = []
     for type_, fields in layouts().items():
         if type_ != "list":
@@ -258,7 +253,6 @@ def test_the_core_takes_what_is_packed(check):
 
 @pytest.mark.compiler
 def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
-    """Each number of what is measured is checked, be it too large or too small."""
     data = packed(EVERYTHING, measured=True).data
     plan = Plan(data)
     for name, skipped in (("MARGINS", {"spare"}), ("MEASURES", {"factor", "turned", "spare"})):
@@ -302,7 +296,6 @@ def test_a_plan_of_too_many_fields_is_refused(check):
 
 @pytest.mark.compiler
 def test_a_constant_that_is_no_number_is_refused(check):
-    """An infinite one is a number."""
     text = "spec s\nsignal x, y : real\nrequirement R\n  always x < y + 0.25\n"
     data = packed(text).data
     at = data.index(struct.pack("=d", 0.25), *Plan(data).places[Section.NUMBERS])

@@ -326,14 +326,12 @@ MANY["what is over of windows within windows is dropped from the rings, which go
 @pytest.mark.parametrize("form", ["c", "c rows"])
 @pytest.mark.parametrize("name", CASES)
 def test_a_rare_case_is_judged_as_the_law_has_it(name: str, form: str) -> None:
-    """By each call, and in the report."""
     assert disagreements(CASES[name](), Maker(form), online=True) == []
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", MANY)
 def test_many_of_a_kind_are_judged_as_the_law_has_it(name: str) -> None:
-    """By each call, and in the report."""
     maker = Maker("c")
     for make in MANY[name]:
         assert disagreements(make(), maker, online=True) == []

@@ -49,7 +49,6 @@ def case(number: int, time: TimeModel, *, outages: bool) -> Case:
 @pytest.mark.parametrize("outages", [False, True])
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED, TimeModel.CLOCKED])
 def test_a_run_taken_up_again_goes_on_alike(time, outages):
-    """Put away behind each call, and at the end, it says the same, and is the same bytes again."""
     compile_ = Compiler()
     cases = (case(number, time, outages=outages) for number in range(20))
     assert sum(put_away(compile_(one.spec), one) for one in cases) > 120
@@ -93,7 +92,6 @@ def test_why_a_value_is_unknown_is_part_of_it():
 
 @pytest.mark.law
 def test_chains_of_windows_taken_up_again_go_on_alike():
-    """So do those that are followed by where values change."""
     taken = 0
     for number in range(14):
         rng = random.Random(f"chain/{number}")
@@ -125,7 +123,6 @@ def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled every 2 ns"])
 def test_changed_bytes_are_refused(time):
-    """Each byte that is another, each end that is missing, and what is behind it, is found."""
     plan = planned(REQUIREMENTS, time)
     data = run_of(plan, random.Random(time), 12).plain.save()
     other = plan.monitor(frozenset())
@@ -180,7 +177,6 @@ def test_another_plan_refuses_it():
 
 
 def test_names_without_a_source_are_part_of_it():
-    """Who takes a run up again need not say which names have no source."""
     plan = planned("requirement R1\n  upon start\n  then eventually[2 ns, 2 ns] p")
     absent = plan.monitor(frozenset({"p"}))
     made = plan.monitor(frozenset())
@@ -192,7 +188,6 @@ def test_names_without_a_source_are_part_of_it():
 
 
 def test_a_head_says_what_it_is():
-    """The first words: what it is with its version, the plan's hash, the size."""
     plan = planned(REQUIREMENTS)
     data = plan.monitor(frozenset()).save()
     magic, hash_, size = struct.unpack_from("<8sQQ", data)

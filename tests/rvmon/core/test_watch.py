@@ -67,7 +67,6 @@ def test_an_unknown_value_is_neither_true_nor_false():
 
 
 def test_another_run_begins_anew():
-    """Nothing is left of the one before, unknown values among it."""
     text = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
     checked = rvmon.loads(text).checked
     compiled = compile_spec(checked)
@@ -134,7 +133,6 @@ def is_taken(data):
 
 
 def test_all_that_is_counted_is_packed():
-    """A group for each coverpoint and cross, whatever bins and occasions there are."""
     for seed in range(20):
         profile = Profile(requirements=1, captures=False, for_each=False)
         spec = with_random_coverage(random.Random(seed), profile)
@@ -168,14 +166,12 @@ def test_all_that_is_counted_is_packed():
     ],
 )
 def test_what_leads_nowhere_is_refused(section, record, name, value):
-    """The core takes the plan as it was packed, and no other number in it."""
     data = pack(Bins(rvmon.loads(BINS).checked).plan).data
     assert is_taken(data)
     assert not is_taken(changed(data, section, record, name, value))
 
 
 def test_axes_that_are_none_are_refused():
-    """So are items that nobody has room for."""
     data = pack(Bins(rvmon.loads(BINS).checked).plan).data
     plan = Plan(data)
     first, count = plan.records["GROUPS"][-1]["axes"]
@@ -191,7 +187,6 @@ def test_axes_that_are_none_are_refused():
 
 
 def test_hits_begin_anew_with_each_run():
-    """And what stands of a run before does not stand any more."""
     made, planned = bins(BINS)
     run = planned.monitor(frozenset())
     for _ in range(2):
@@ -221,7 +216,6 @@ def test_hits_go_on_behind_a_snapshot():
 
 
 def test_what_comes_too_late_is_not_counted():
-    """Nor does it concern anybody where no requirement is."""
     made, planned = bins(BINS)
     run = planned.monitor(frozenset())
     assert run.judge(0, {"p": True, "q": False}, True)
@@ -279,7 +273,6 @@ def moves(run, number):
 
 
 def test_a_segment_adds_its_size():
-    """Many attempts that go the same way at once count as many, for each requirement its own."""
     text = MANY.format("R", 3000) + MANY.format("S", 5).partition("\n")[2]
     compiled, data, planned = traced(text)
     one, other = Plan(data).records["AUTOMATA"][:2]

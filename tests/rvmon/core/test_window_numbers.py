@@ -31,7 +31,6 @@ IN_TIME = [
 
 @pytest.mark.parametrize(("text", "time"), IN_TIME)
 def test_windows_are_numbers_in_every_expression(text, time):
-    """What a user types first, in each time model."""
     every = " 500 ms" if time is TimeModel.CLOCKED else ""
     spec = rvmon.loads(f"spec s\ntime {time}{every}\n{HEIGHTS}\nrequirement R\n  always {text}\n")
     before = [(0.0, {"x": 0.0, "y": 1.0, "a": False, "b": False}), (1.0, {"a": True, "b": False})]
@@ -55,7 +54,6 @@ def test_windows_are_numbers_in_every_expression(text, time):
     ],
 )
 def test_members_take_the_memory_that_is_stated(measured, text):
-    """At most, when each is another number."""
     spec = rvmon.loads(f"signal x : real\nrequirement R\n  always not {text}\n")
     monitor = spec.monitor()
     monitor.step(0.0, {"x": 0.5})
@@ -89,7 +87,6 @@ def test_an_amount_is_due_between_samples():
     ],
 )
 def test_what_moves_between_samples_is_due_when_it_crosses(required, due):
-    """Worked out ahead, to the tick."""
     spec = rvmon.loads(f"spec s\nsignal x : real\nrequirement R\n  always {required}\n")
     monitor = spec.monitor()
     monitor.step(0.0, {"x": 1.0})

@@ -18,7 +18,6 @@ from rvmon.testing.strategies import cases
 @settings(max_examples=20, deadline=None)
 @given(data=st.data())
 def test_a_run_leaves_nothing_behind(data: st.DataObject) -> None:
-    """Whatever came before a reset, and however far, each call says what it says in a first run."""
     case = data.draw(cases())
     before = data.draw(st.integers(0, len(case.actions)))
     try:

@@ -63,7 +63,6 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
 
 
 def test_what_comes_after_the_delay_is_left_out() -> None:
-    """A sample below the watermark is not judged; one within it is, whatever came between."""
     spec = replace(spec_of(requirement(e, upon=e)), max_delay=3)
     monitor = Spec(spec).monitor()
     for t in (10, 6, 7, 20, 17, 16):

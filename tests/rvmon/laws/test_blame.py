@@ -23,7 +23,6 @@ PROFILE = Profile(depth=3, requirements=1, captures=False, for_each=False)
 
 @pytest.mark.law
 def test_what_is_blamed_was_false():
-    """Random failures: the part that the record names, at the instants that it names."""
     make = Maker("c", Compiler())
     blamed = 0
     for seed in range(150):

@@ -18,6 +18,5 @@ pytestmark = pytest.mark.law
 @TRIED
 @given(cases(Profile(), TraceProfile(outages=35)), st.randoms(use_true_random=False))
 def test_filling_in_what_was_lost(case, rng) -> None:
-    """A run's P or NT never becomes F, nor its F anything else."""
     assume(is_spoken_of(case.spec))
     assert overturned(rng, case, 4, judge).overturning is None

@@ -34,7 +34,6 @@ def late_cases(draw: st.DrawFn) -> tuple[Case, Case, Sample]:
 @TRIED
 @given(late_cases())
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
-    """What is P or NT is so with the late sample in its place too; what is F stays."""
     whole, judged, late = cases_
     verdicts = judge(judged).verdicts
     with_late = judge(whole).verdicts
@@ -49,7 +48,6 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
 @TRIED
 @given(late_cases())
 def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
-    """A requirement that is not touched has the same attempts without the late sample."""
     whole, judged, late = cases_
     spec = judged.spec
     touched = {
@@ -62,7 +60,6 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
 
 @pytest.mark.parametrize("time", TimeModel)
 def test_by_hand(time: TimeModel) -> None:
-    """A late update of `p` leaves F, and what reads `q` alone; in sampled time F."""
     spec = spec_of(
         requirement(p, whenever=true, name="A"),
         requirement(q, whenever=true, name="B"),

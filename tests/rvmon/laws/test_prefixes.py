@@ -38,7 +38,6 @@ def test_a_longer_trace_overturns_nothing(case: Case, data: st.DataObject) -> No
 @TRIED
 @given(cases(), st.data())
 def test_splitting_by_advance(case: Case, data: st.DataObject) -> None:
-    """`advance` between samples, to any instant up to the next, changes nothing."""
     actions: list[Sample | int] = []
     before: int | None = None
     for action in case.actions:
@@ -55,7 +54,6 @@ def test_splitting_by_advance(case: Case, data: st.DataObject) -> None:
 @TRIED
 @given(data=st.data())
 def test_samples_that_nobody_reads(data: st.DataObject, time: TimeModel) -> None:
-    """Where time has its own positions, samples that say nothing that is read change nothing."""
     case = data.draw(cases(Profile(time=time)))
     if not case.samples:
         return

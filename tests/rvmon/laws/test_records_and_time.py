@@ -16,7 +16,6 @@ from rvmon.spec.checked.specification import TimeModel
 @pytest.mark.law
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
 def test_advance_changes_no_record(time):
-    """Reasons, deadlines and blame are the same, however finely a stretch of time is split."""
     decided = 0
     for seed in range(60):
         rng = random.Random(f"advance/{seed}")

@@ -27,7 +27,6 @@ FURTHER = 1_000_000
 @TRIED
 @given(cases(Profile(mixed=False, requirements=1)))
 def test_scaling(case: Case) -> None:
-    """A million times longer: the same attempts and verdicts, the same instants."""
     parts = [part for r in case.spec.requirements.values() for part in _numbers(r.trigger)]
     parts += [part for r in case.spec.requirements.values() for part in _numbers(r.consequent)]
     parts += [
@@ -48,7 +47,6 @@ def _numbers(formula: Formula) -> list[UpdateFunction]:
 
 
 def longer(case: Case, factor: int) -> Case:
-    """A case of which all durations and stamps are so many times longer."""
     spec = case.spec
     signals = {
         name: replace(one, stale_after=one.stale_after and one.stale_after * factor)

@@ -67,7 +67,6 @@ def test_a_clock_that_is_started_later_is_none(body):
     ],
 )
 def test_many_attempts_are_judged_as_one_by_one(time, body):
-    """Runs that overlap, split, meet unknown input and end give the records of single attempts."""
     spec = compiled(body, time)
     assert moves_in_runs(spec._compiled.requirements["R1"].automaton)
     actions = []

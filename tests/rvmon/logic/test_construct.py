@@ -43,7 +43,6 @@ def test_usual_requirements_stay_small(name):
 
 
 def test_many_propositions_do_not_make_many_classes():
-    """Twelve propositions that matter one by one collapse to few classes of letters."""
     names = [SignalAtom(f"s{number}") for number in range(12)]
     formula = eventually(names[0], 0, 9)
     for name in names[1:]:
@@ -79,7 +78,6 @@ def test_construction_is_deterministic():
 
 @pytest.mark.slow
 def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
-    """Eighteen propositions have an automaton where they collapse."""
     names = [SignalAtom(f"s{number}") for number in range(18)]
     formula = eventually(names[0], 0, 1)
     for number, name in enumerate(names[1:], 2):

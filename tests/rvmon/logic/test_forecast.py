@@ -34,7 +34,6 @@ CASES = {
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("formula", CASES)
 def test_what_is_still_possible(formula, time):
-    """An open attempt says what it must become, and nothing where it can become either."""
     monitor = loads(HEAD.format(time, formula)).monitor()
     monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
     (attempt,) = monitor.open
@@ -76,7 +75,6 @@ def test_a_window_without_a_position_asks_for_nothing(time, forecast):
     ],
 )
 def test_attempts_of_all_ages_are_forecast_as_each_alone(formula, time):
-    """Ages of one class are forecast together: by no more than what they have in common."""
     if "every" in time:  # bounds are whole periods
         formula = formula.replace("19", "21")
     text = HEAD.format(time, formula).replace("upon start", "upon q")
@@ -94,7 +92,6 @@ def test_attempts_of_all_ages_are_forecast_as_each_alone(formula, time):
 
 
 def test_a_forecast_is_no_verdict():
-    """The report keeps `I`, and the forecast beside it."""
     spec = loads(HEAD.format("held", "(within 3 s p) and for 5 s not p"))
     report = spec.evaluate([(0, {"p": False, "q": False}), (1, {"q": True})])
     (attempt,) = report.attempts
@@ -140,7 +137,6 @@ def test_more_than_is_looked_at_is_not_forecast():
 @settings(max_examples=40, deadline=None)
 @given(case=cases(Profile(), TraceProfile()))
 def test_forecasts_come_true(case):
-    """What was forecast of an attempt at some moment is never overturned by a later decision."""
     if case.spec.max_delay is not None:
         return
     monitor = Spec(case.spec).monitor(sources=case.names)

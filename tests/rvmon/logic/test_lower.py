@@ -61,7 +61,6 @@ def test_what_is_decided_late_is_not_folded():
 
 
 def test_constants_are_folded_where_that_changes_no_instant():
-    """`true` decides an eventuality at once if its window starts at zero."""
     factory = Factory()
 
     def made(formula):

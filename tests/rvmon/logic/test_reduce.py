@@ -57,7 +57,6 @@ WORDS = st.lists(st.tuples(st.integers(0, 10**6), st.integers(1, 5)), min_size=1
 @settings(max_examples=150, deadline=None)
 @given(data=st.data(), steps=WORDS)
 def test_a_reduced_automaton_decides_the_same(data, steps):
-    """Verdicts, their instants and the values at the end stay, whatever is to be told apart."""
     formula = data.draw(formulas(Shape(mixed=False, step=True)))
     try:
         original, told = built(formula)
@@ -90,7 +89,6 @@ def test_reduction_is_idempotent(formula):
 @settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_what_people_are_told_stays(formula):
-    """No text of what is required gets lost, and none is told of another location."""
     try:
         original, told = built(formula)
     except DoesNotCloseError:

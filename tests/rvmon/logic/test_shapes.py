@@ -52,7 +52,6 @@ def constructed(required: Next, alphabet: Alphabet) -> Automaton | None:
 @pytest.mark.law
 @pytest.mark.parametrize("part", range(3))
 def test_an_automaton_of_a_known_shape_is_that_of_its_formula(part):
-    """It has the tables that construction gives, whatever the bounds and how near they lie."""
     shapes = Shapes()
     found = []
     for seed in range(20 * part, 20 * (part + 1)):

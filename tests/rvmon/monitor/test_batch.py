@@ -49,7 +49,6 @@ def test_seconds_beyond_the_limits_are_refused(stamps, tmp_path):
 
 @pytest.mark.parametrize("last", [4_611_686_018, 4_611_686_018.25, -4_611_686_018.25, 4.605e9])
 def test_seconds_up_to_the_limits_are_taken(last):
-    """What lists accept, arrays accept, and count it as the same ticks."""
     spec = rvmon.loads(BOUND)
     stamps = sorted([0, last])
     lists = spec.evaluate({"t": stamps, "x": [1.0, 7.0]})
@@ -62,7 +61,6 @@ def test_seconds_up_to_the_limits_are_taken(last):
 
 @pytest.mark.parametrize("rows", [3, 3000])
 def test_what_a_mask_hides_is_no_update(rows):
-    """A masked cell says nothing, as None in a list does not: the value before is held."""
     spec = rvmon.loads(BOUND)
     values = np.resize([1.0, 9.0, 1.0], rows)
     columns = {"t": np.arange(float(rows)), "x": np.ma.array(values, mask=values > 5)}
@@ -98,7 +96,6 @@ def test_truth_values_of_record_batches_are_read():
 
 @pytest.mark.parametrize("name", ["t", "x"])
 def test_two_columns_of_a_name_are_refused(name):
-    """No value is taken from one of two columns that nobody can tell apart."""
     names = ["t", "x", name]
     table = pyarrow.table([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]], names)
     with pytest.raises(rvmon.TraceError, match=f"column `{name}` stands twice in the table"):
@@ -108,7 +105,6 @@ def test_two_columns_of_a_name_are_refused(name):
 @pytest.mark.parametrize("unit", ["s", "ns"])
 @pytest.mark.parametrize("time", ["t", "t_ns"])
 def test_durations_count_from_their_start_and_dates_are_instants(time, unit, tmp_path):
-    """By their own unit, in arrays, Arrow tables and files; a value is none of them."""
     spec = rvmon.loads(BOUND)
     values = np.array([1.0, 1.0])
     path = tmp_path / "a.parquet"
@@ -129,7 +125,6 @@ def test_durations_count_from_their_start_and_dates_are_instants(time, unit, tmp
 
 @pytest.mark.parametrize("kind", ["datetime64", "timedelta64"])
 def test_dates_are_no_instants_of_pairs(kind):
-    """Nor of pairs, or of a step."""
     spec = rvmon.loads(BOUND)
     when = np.array([3], f"{kind}[ns]")[0]
     with pytest.raises(TraceError, match="give seconds as a number"):
@@ -139,7 +134,6 @@ def test_dates_are_no_instants_of_pairs(kind):
 
 
 def test_dates_that_are_not_declared_do_not_matter():
-    """Columns that the specification does not name may hold anything."""
     table = {"t": [0, 1], "x": [1.0, 1.0], "when": np.array([3, 4], "datetime64[ns]")}
     for trace in (table, pyarrow.table(table)):
         assert rvmon.loads(BOUND).evaluate(trace).verdicts == {"R1": "P"}

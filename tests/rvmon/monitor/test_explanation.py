@@ -85,7 +85,6 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_failure_names_obligation_window_and_place(name):
-    """A sentence counts from the first sample; the blame points into the spec's text."""
     requirement, samples, end, reason, blamed, window = CASES[name]
     spec, attempts = run(requirement, samples, end)
     [failed] = [a for a in attempts if a.verdict == "F"]
@@ -127,7 +126,6 @@ def test_a_known_that_is_asked_for_is_shown(told):
 
 
 def test_propositions_are_shown_at_trigger_and_decision():
-    """A record carries the values of what the requirement reads, unknown ones as None."""
     _, [failed] = run("upon go\nthen within 1 s (released and near)", [(0, {"go": True})], 5)
     assert failed.at_trigger == {"go": True, "released": False, "near": None}
     assert failed.at_decision == {"go": False, "released": False, "near": None}
@@ -147,7 +145,6 @@ def test_what_only_the_past_asks_of_is_unknown_until_it_has_a_value():
 
 
 def test_an_undecided_attempt_says_what_is_owed_and_till_when():
-    """An I names the obligation and its deadline."""
     samples = [(1, {"go": True})]
     _, [left] = run("upon go\nthen within 3 s released", samples, 2)
     assert (
@@ -238,7 +235,6 @@ def test_an_attempt_that_the_input_left_open_says_from_when_to_when_and_why(name
 
 
 def test_what_was_not_known_when_a_run_was_interrupted_may_end_after_that():
-    """A snapshot keeps which stretch an attempt waits to hear the end of."""
     spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately distance > 5 cm\n")
     first = spec.monitor()
     first.step(0, {"distance": 1.0})
@@ -317,7 +313,6 @@ def test_what_ended_an_episode_is_named(requirement, over):
 def test_parts_that_samples_decide_are_named_as_they_are_written(
     mode, required, samples, reason, blamed
 ):
-    """Also those that there is no position for, whose place is that of the consequent."""
     head = HEAD.replace("time held", "time sampled")
     spec = rvmon.loads(f"{head}requirement R\n{mode} start then {required}\n")
     (attempt,) = spec.evaluate(samples).attempts
@@ -328,7 +323,6 @@ def test_parts_that_samples_decide_are_named_as_they_are_written(
 
 
 def test_what_one_record_shows_is_its_own():
-    """Whoever changes a mapping of one attempt changes no other's."""
     spec = rvmon.loads("signal p : bool\nevent e\nrequirement R\n  upon e then p\n")
     monitor = spec.monitor()
     first, second = (monitor.step(t, {"p": True, "e": True})[0] for t in (0, 1))

@@ -68,7 +68,6 @@ def test_it_is_unknown_a_while_after_its_last_good_value(spec):
 
 @pytest.mark.parametrize("value", [NAN, None, np.float32("nan")])
 def test_samples_are_judged_as_without_what_they_ignore(spec, value):
-    """Whichever way it is said that there is no value."""
     rows = [(t, {n: value if v != v else v for n, v in row.items()}) for t, row in ROWS]
     told, expected = (spec.monitor(sources=["range", "free", "look"]) for _ in "12")
     for (t, row), (_, bare) in zip(rows, without(rows), strict=True):
@@ -98,7 +97,6 @@ def test_files_are_judged_as_samples(spec, tmp_path):
 
 
 def test_samples_that_are_merged_keep_the_value(spec):
-    """With equal stamps, NaN behind a value is no other value."""
     monitor = spec.monitor(settle="next")
     for t, row in ROWS:
         monitor.step(t, row)
@@ -109,7 +107,6 @@ def test_samples_that_are_merged_keep_the_value(spec):
 
 
 def test_what_is_wrong_is_still_refused(spec):
-    """Only NaN and null are ignored."""
     monitor = spec.monitor()
     with pytest.raises(TraceError, match="expected a number"):
         monitor.step(0.0, {"range": "far"})

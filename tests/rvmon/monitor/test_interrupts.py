@@ -138,7 +138,6 @@ def _untouched(report: Report) -> list[Attempt]:
 
 
 def test_an_interrupt_leaves_the_monitor_open() -> None:
-    """Whatever place of the code it strikes, later calls are taken, and judged right."""
     spec = rvmon.loads(_SPEC)
     places, whole = _passed(spec)
     expected = _untouched(_judged_on(whole))

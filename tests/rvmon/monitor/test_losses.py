@@ -95,7 +95,6 @@ def test_samples_that_are_held_back_are_lost_in_the_same_order():
 
 @pytest.mark.law
 def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
-    """Samples come in any order within `max delay`, and what was lost may have, too."""
     for seed in range(20):
         case = in_order(drawn(f"delay {seed}"))
         rng = random.Random(seed)
@@ -118,7 +117,6 @@ def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
 
 
 def test_what_is_lost_fails_nothing_and_passes_nothing():
-    """It is inconclusive, and input health says why; other requirements are as ever."""
     monitor = begun()
     monitor.step(1, {"go": True})
     monitor.lose(["done", "x"], since=2, until=3, why="the radio was silent")
@@ -131,7 +129,6 @@ def test_what_is_lost_fails_nothing_and_passes_nothing():
 
 
 def test_names_stay_lost_until_they_are_found():
-    """What samples say of them meanwhile does not count; behind it all does."""
     monitor = begun()
     monitor.lose(["x", "done"], since=1)
     assert not monitor.step(2, {"x": 9.0, "go": True, "done": True})
@@ -175,7 +172,6 @@ def test_what_is_missed_before_the_first_sample_leaves_nothing_green():
 
 
 def test_what_comes_too_late_leaves_nothing_green_that_reads_it():
-    """Records stay, and so does what fails."""
     monitor = begun("max delay 1 s")
     monitor.step(10, {"go": True, "other": False})
     monitor.step(12, {"done": True})
@@ -206,7 +202,6 @@ def test_the_buffer_of_delayed_samples_is_bounded(monkeypatch):
 
 
 def test_a_sample_that_is_refused_can_be_told_to_have_come_too_late():
-    """So can one of which nothing can be read."""
     monitor = begun()
     monitor.step(5, {"x": 2.0})
     with pytest.raises(TraceError):
@@ -220,7 +215,6 @@ def test_a_sample_that_is_refused_can_be_told_to_have_come_too_late():
 
 
 def test_what_was_judged_cannot_be_lost_any_more():
-    """It is too late then, and what comes behind it is lost."""
     monitor = begun()
     monitor.step(5, {"x": 1.0})
     monitor.lose(["x"], since=2, until=3)
@@ -228,7 +222,6 @@ def test_what_was_judged_cannot_be_lost_any_more():
 
 
 def test_nothing_is_lost_that_is_not_declared():
-    """Nor once the run is over; the monitor is as it was."""
     monitor = begun()
     with pytest.raises(UnknownNameError, match="`y`"):
         monitor.lose(["x", "y"], since=1)
@@ -245,7 +238,6 @@ def test_nothing_is_lost_that_is_not_declared():
 
 
 def test_margins_are_intervals_where_a_source_was_lost():
-    """A figure of what nobody heard lies between all that it may have been."""
     monitor = rvmon.loads(SPEC.format(more="")).robustness_monitor(only=["Slow"])
     monitor.step(0, {"x": 1.0})
     monitor.lose(["x"], since=2, until=3)

@@ -66,7 +66,6 @@ def figures_of(margins):
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("unknown", [0.0, 0.01])
 def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time, unknown):
-    """What is laid out by column gives the figures that it gives row by row."""
     for number in range(PAIRS // 4):
         rng = random.Random(f"long {time} {number}")
         spec, times, columns = random_case(rng, time, unknown)
@@ -76,7 +75,6 @@ def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time
 
 
 def test_what_is_judged_is_measured_beside():
-    """The figures are those of the attempts that were judged."""
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x > 1\n")
     source = Source(spec.recording(arrays_of([0, 1, 2], {"x": [3.0, 0.5, 2.0]})))
     found = spec.judge(source, robustness=True)
@@ -85,7 +83,6 @@ def test_what_is_judged_is_measured_beside():
 
 
 def test_without_requirements_there_is_nothing_to_measure():
-    """A specification may only have goals of coverage."""
     spec = rvmon.loads("spec s\nsignal x : real\n")
     found = spec.robustness(arrays_of([0, 1], {"x": [3.0, 2.0]}))
     assert (found.attempts, found.streams) == ({}, {})
@@ -99,7 +96,6 @@ INFINITE = float("inf")
 
 
 def test_what_is_not_known_is_measured_sample_by_sample():
-    """A column with NaN has intervals, as the samples have."""
     spec = rvmon.loads(TEXT.format("sampled", ""))
     stream = list(spec.robustness(arrays_of([0, 1], {"x": [3.0, float("nan")]})).streams["R"])
     assert [(t, found.low, found.high) for t, found in stream] == [
@@ -109,7 +105,6 @@ def test_what_is_not_known_is_measured_sample_by_sample():
 
 
 def test_what_becomes_stale_is_measured_sample_by_sample():
-    """Behind the time that a signal is good for, its value may be anything."""
     spec = rvmon.loads(TEXT.format("held", " stale after 2 ns").replace("immed", "for 5 ns immed"))
     [figure] = spec.robustness(arrays_of([0, 9], {"x": [3.0, 4.0]})).attempts.values()
     assert (figure.low, figure.high) == (-INFINITE, 2.0)
@@ -127,7 +122,6 @@ def test_a_stream_of_arrays_is_a_sequence():
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("until", [None, 1200.5])
 def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, until, tmp_path):
-    """Records, reasons and figures are the same, whatever of the recording is looked at."""
     spec = rvmon.loads(
         f"spec s\ntime {time}\nsignal x : real\nsignal p : bool\n"
         "requirement R1\n  upon rise(p)\n  then within 3 s x > 9\n"

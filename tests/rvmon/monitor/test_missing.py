@@ -71,7 +71,6 @@ def test_updates_of_a_missing_name_are_not_known():
 
 
 def test_a_name_that_is_read_has_a_column(spec, tmp_path):
-    """All doors refuse a recording without it, unless it may lack it: what reads it is I."""
     for trace in doors(tmp_path, without("speed")):
         with pytest.raises(rvmon.errors.MissingNameError, match="`speed`, read by R1"):
             spec.evaluate(trace)
@@ -91,7 +90,6 @@ def test_recordings_in_lines_declare_nothing(spec, tmp_path):
 
 
 def test_an_event_is_there_by_a_column_of_its_payload(spec, tmp_path):
-    """`pick.id` alone says that there is the event."""
     path = tmp_path / "a.csv"
     path.write_text("t,speed,gap,pick.id\n0,0,2,\n1,2,2,8\n")
     assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P", "R3": "F"}
@@ -114,7 +112,6 @@ def test_an_event_is_there_by_a_column_of_its_payload(spec, tmp_path):
     ],
 )
 def test_the_column_that_was_meant_is_told(spec, column):
-    """Whatever people change about a name: the message says the column, and how to map it."""
     table = {column if name == "speed" else name: cells for name, cells in COLUMNS.items()}
     table["other"] = [1, 2]
     with pytest.raises(rvmon.errors.MissingNameError) as error:
@@ -134,7 +131,6 @@ def test_unknown_names_are_refused(spec):
 
 
 def test_many_traces_are_read_alike(spec):
-    """Also in other processes."""
     renamed = {"at": [0, 1000], "v": [0.0, 2.0], "gap": [2.0, 2.0]}
     options = {"time": "at:ms", "columns": {"speed": "v"}, "allow_missing": ["pick"]}
     for jobs in (1, 2):
@@ -143,7 +139,6 @@ def test_many_traces_are_read_alike(spec):
 
 
 def test_a_column_is_mapped_through_every_door(spec, tmp_path):
-    """What it is called before does not matter, and a column of the old name is passed over."""
     columns = {**COLUMNS, "v": COLUMNS["speed"], "speed": [0.0, 0.0]}
     for trace in doors(tmp_path, columns):
         assert spec.evaluate(trace).verdicts["R1"] == "P"
@@ -154,7 +149,6 @@ def test_a_column_is_mapped_through_every_door(spec, tmp_path):
 
 
 def test_a_mapped_column_that_is_not_there_is_told(spec):
-    """With the name that was given for it."""
     with pytest.raises(rvmon.errors.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
         spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
 
@@ -189,6 +183,5 @@ def test_the_command_line_refuses_and_maps(folder, capsys):
 
 @pytest.mark.parametrize("words", [["--map", "speed"], ["--map", "=x"], ["--map", "speed="]])
 def test_a_map_has_two_sides(folder, words, capsys):
-    """What it lacks is told."""
     assert main(["run", "base.rv", "a.csv", *words]) == 2
     assert "expected NAME=COLUMN" in capsys.readouterr().err

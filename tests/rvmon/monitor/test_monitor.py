@@ -59,7 +59,6 @@ def test_what_each_tick_starts_again_is_not_due():
 
 
 def test_next_due_says_when_to_call_advance(monitor):
-    """Advancing to it decides; advancing to the tick before does not."""
     assert monitor.next_due is None
     monitor.step(0, {"ready": True, "distance": 1.0})
     monitor.step(1, {"sensed": True, "distance": 1.0})
@@ -73,7 +72,6 @@ def test_next_due_says_when_to_call_advance(monitor):
 
 
 def test_open_attempts_say_what_they_wait_for(monitor):
-    """An open attempt shows its obligation and deadline."""
     monitor.step(0, {"ready": True})
     monitor.step(1, {"sensed": True})
     [attempt] = monitor.open
@@ -94,7 +92,6 @@ def test_an_impossible_time_is_an_error(monitor, t):
 
 
 def test_time_never_goes_back(monitor):
-    """Equal and earlier samples, and those before an advance, raise and change nothing."""
     monitor.step(1, {"ready": True})
     for t in (1, 0.5):
         with pytest.raises(TimeOrderError):
@@ -107,7 +104,6 @@ def test_time_never_goes_back(monitor):
 
 
 def test_a_name_without_source_is_unknown_and_must_not_arrive():
-    """What cannot arrive is unknown throughout, and is an error if it does."""
     monitor = rvmon.loads(SPEC).monitor(sources=["sensed", "ready"])
     monitor.step(0, {"ready": True, "sensed": True})
     with pytest.raises(TraceError, match="not among the sources"):
@@ -138,7 +134,6 @@ requirement K
 
 @pytest.mark.parametrize("keep", [None, 3])
 def test_what_is_decided_together_is_made_as_it_is_read(keep):
-    """More attempts than a call makes itself: all are told once, as few would be."""
     spec = rvmon.loads(MANY)
     count = 2_500
     monitor, heard = spec.monitor(keep=keep), []

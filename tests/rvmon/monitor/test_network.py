@@ -42,7 +42,6 @@ def outcomes(spec, samples, end=None):
     ],
 )
 def test_the_compiler_picks_it_where_no_automaton_closes(requirement, judge):
-    """What has an automaton is judged by it, the rest by the network, and the report says why."""
     [compiled] = compile_spec(spec_of(requirement).checked).requirements.values()
     assert facts_of(compiled)["judged by"].startswith(judge)
 

@@ -91,7 +91,6 @@ def test_engine_and_oracle_agree(time):
 @pytest.mark.parametrize("compare", ["<=", "<", ">=", ">", "==", "!="])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 def test_equal_infinities_are_nothing_apart(time, compare, value):
-    """In rows, in steps and in the oracle."""
     text = f"time {time}\nsignal x, y : real\nevent q\nrequirement Q\n"
     spec = loads(f"{text}  upon q then immediately x {compare} y\n")
     values = {"x": value, "y": value, "q": True}

@@ -64,7 +64,6 @@ def judged(text=TEXT, **how):
 
 
 def test_the_second_time_it_is_read(folder, packs_nothing):
-    """Nothing is compiled or packed then, for streams and for recordings, and the same is said."""
     decided, report, spec = judged()
     evaluated = spec.evaluate(SAMPLES).verdicts
     assert [path.stat().st_mode & 0o077 for path in kept_in(folder)] == [0]
@@ -79,7 +78,6 @@ def test_the_second_time_it_is_read(folder, packs_nothing):
 
 
 def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
-    """The requirements once more, with what attempts do in automata, and their variants."""
     first = rvmon.loads(TEXT).coverage(SAMPLES)
     rvmon.loads(TEXT).evaluate(SAMPLES)
     assert len(kept_in(folder)) == 3
@@ -91,7 +89,6 @@ def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
 
 
 def test_other_plans_are_told_apart(folder):
-    """Other requirements, constants or texts are other plans."""
     judged()
     judged(only=["R"])
     judged(TEXT.replace("T = 2 s", "T = 3 s"))
@@ -125,7 +122,6 @@ def damages(path, other):
 
 @pytest.mark.slow
 def test_a_damaged_file_is_of_no_account(folder):
-    """Whatever stands there, with a right checksum or without, the plan is made anew."""
     decided, report, _ = judged()
     [path] = kept_in(folder)
     judged(TEXT.replace("x > 1\n", "x > 2\n").replace("requirement S", "requirement Q"))
@@ -138,7 +134,6 @@ def test_a_damaged_file_is_of_no_account(folder):
 
 
 def test_what_is_refused_is_not_kept(folder):
-    """It is told anew each time."""
     deep = "(x - " * 40 + "x" + ")" * 40
     for _ in range(2):
         with pytest.raises(rvmon.RvmonError, match="deep"):

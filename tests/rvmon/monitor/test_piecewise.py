@@ -43,7 +43,6 @@ def at(pieces, position):
 
 
 def test_points():
-    """Minima, maxima, shifts and limits are what they are at each position."""
     for seed in CASES:
         rng = random.Random(seed)
         one, other = random_known(rng)[0], random_known(rng)[0]
@@ -58,7 +57,6 @@ def test_points():
 
 
 def test_windows():
-    """A window knows of some as of the first, of all as of the last."""
     for seed in CASES:
         rng = random.Random(seed)
         pieces = random_known(rng)[0]
@@ -72,7 +70,6 @@ def test_windows():
 
 
 def test_an_empty_window():
-    """Of nothing, none is known and all are."""
     assert some_of_window(((0, 5, PAST, 0),), 3, 2) == ()
     assert at(all_of_window((), 3, 2), -FAR) == PAST
 

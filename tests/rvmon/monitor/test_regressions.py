@@ -232,7 +232,6 @@ def test_forms_agree_with_the_law(name, form):
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("count", [0, 65])
 def test_no_source_and_many(form, count):
-    """What no source feeds is unknown; samples may hold more names than are looked at in a row."""
     names = [f"p{index}" for index in range(65)]
     spec = rvmon.loads(
         f"spec s\nsignal {', '.join(names)} : bool\n"

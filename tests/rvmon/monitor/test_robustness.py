@@ -83,7 +83,6 @@ def test_an_instance_is_measured_with_what_was_before_it():
 
 
 def test_what_is_held_to_the_end_is_measured_to_the_end():
-    """`always` that nothing broke has the least distance of the run."""
     spec = rvmon.loads(HEAD + "always x < 10 cm\n")
     samples = [(0, {"x": 3}), (1, {"x": 8}), (2, {"x": 5})]
     [attempt] = spec.evaluate(samples).attempts
@@ -93,7 +92,6 @@ def test_what_is_held_to_the_end_is_measured_to_the_end():
 
 
 def test_a_stream_has_a_figure_per_sample():
-    """What is required is measured at each instant of a sample."""
     samples = [(0, {"x": 3}), (1, {"x": 12}), (2, {"x": 5})]
     stream = margins("always x < 10 cm", samples).streams["R1"]
     assert [(t, found.kept) for t, found in stream] == [
@@ -118,7 +116,6 @@ def online(requirement, **options):
 
 
 def test_a_figure_is_given_as_soon_as_its_window_is_over():
-    """What is known of an open attempt draws closer, until nothing can change it."""
     monitor = online("upon e then within 3 s x > 10 cm")
     assert not monitor.step(0, {"x": 2, "e": True})
     assert not monitor.step(1, {"x": 12})
@@ -142,7 +139,6 @@ def test_time_alone_settles_a_figure():
 
 
 def test_a_stream_is_given_as_it_goes():
-    """Each position of a stream is settled when its own window is over."""
     monitor = online("always within 1 s x > 10 cm", streams=True)
     found = [one for t in range(4) for one in monitor.step(t, {"x": 10 + t})]
     ends = monitor.finish()
@@ -169,7 +165,6 @@ def test_a_stream_is_given_as_it_goes():
     ],
 )
 def test_memory_does_not_grow_with_the_run(time, requirement):
-    """What is kept for one open attempt after a long run is what was kept after a short one."""
     text = HEAD.replace("spec s\n", f"spec s\ntime {time}\n") + requirement + "\n"
     monitor = rvmon.loads(text).robustness_monitor()
     sizes = []
@@ -186,14 +181,12 @@ def test_a_way_to_settle_that_there_is_not_is_refused():
 
 
 def test_the_page_about_it_is_true():
-    """What the reference shows of the online monitor is what it gives."""
     page = Path(__file__).parents[3] / "docs" / "reference" / "robustness.md"
     failures, tried = doctest.testfile(str(page), module_relative=False)
     assert (failures, tried > 4) == (0, True)
 
 
 def test_a_number_that_no_double_holds_is_refused():
-    """The sample is not taken, and the monitor goes on without it."""
     spec = rvmon.loads(
         "spec s\nsignal x : real\nevent e\nrequirement R1\n  upon e\n  then within 3 s x > 1\n"
     )
@@ -223,7 +216,6 @@ def test_whole_numbers_are_subtracted_exactly(x, y, low):
 
 
 def test_what_captures_values_and_what_does_not_is_given_in_order():
-    """Requirements of one file have the figures that each has alone, at the same samples."""
     head = "spec s\nsignal x : real\nsignal p : bool\nevent e\n"
     texts = [
         "requirement R1\n  upon rise(p)\n  then within 2 s x > 5\n",
@@ -247,7 +239,6 @@ def test_what_captures_values_and_what_does_not_is_given_in_order():
 
 
 def test_a_sample_of_plain_numbers_goes_on_from_one_that_was_not():
-    """What is unknown is measured in between."""
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R1\n  always within 2 s x > 1\n")
     monitor = spec.robustness_monitor(streams=True)
     values = [2.0, INFINITE, None, 3.0, 0.0, 0.0, 0.5, 4.0]

@@ -55,7 +55,6 @@ def opened(spec, samples):
 
 @pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
 def test_samples_held_back_are_kept(text):
-    """What waits to be sorted or merged is in the snapshot, and so is what came too late."""
     spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
     plain = spec.monitor(settle="next")
     other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
@@ -70,7 +69,6 @@ def test_samples_held_back_are_kept(text):
 
 
 def test_open_attempts_and_records_are_kept():
-    """The restored monitor shows the same open attempts and reports the same run."""
     spec = rvmon.loads(TEXT)
     monitor = spec.monitor()
     for t, values in SAMPLES[:4]:
@@ -84,7 +82,6 @@ def test_open_attempts_and_records_are_kept():
 
 
 def test_another_specification_is_refused():
-    """A snapshot names what it does not fit; layout and comments do not count."""
     monitor = rvmon.loads(TEXT).monitor()
     monitor.step(0, {"closed": True})
     data = monitor.snapshot()
@@ -94,7 +91,6 @@ def test_another_specification_is_refused():
 
 
 def test_wrong_bytes_are_refused():
-    """Bytes that are cut, changed or something else are no snapshot, whatever is changed."""
     spec = rvmon.loads(TEXT)
     monitor = spec.monitor()
     monitor.step(0, {"closed": True})
@@ -105,7 +101,6 @@ def test_wrong_bytes_are_refused():
 
 
 def test_forged_bytes_are_refused():
-    """Well-formed bytes with a right checksum that fit no monitor are an error of ours."""
     spec = rvmon.loads(TEXT)
     document, sealed = opened(spec, [(1, {"closed": True, "knock": {"force": 1.0}})])
     forged = [
@@ -125,7 +120,6 @@ def test_forged_bytes_are_refused():
 
 
 def test_a_finished_run_has_a_report_and_no_snapshot():
-    """After the end there is nothing to go on with."""
     monitor = rvmon.loads(TEXT).monitor()
     monitor.finish()
     with pytest.raises(SnapshotError, match="finished"):
@@ -143,7 +137,6 @@ def places_in(value, path=()):
 
 @pytest.mark.slow
 def test_most_hostile_snapshots_are_refused_at_once():
-    """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
     spec = rvmon.loads(TEXT)
     document, sealed = opened(spec, SAMPLES[:5])
     places = list(places_in(document))

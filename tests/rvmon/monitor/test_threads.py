@@ -65,7 +65,6 @@ def _stepped_by_two(
 @pytest.mark.usefixtures("quick_turns")
 @pytest.mark.parametrize("odd", [False, True])
 def test_two_threads_break_nothing_but_their_own_calls(odd: bool) -> None:
-    """Every call is taken whole, or refused for its time or for the call under way."""
     monitor = _monitor()
     clock = count(1)
     found = _stepped_by_two(monitor, 600, clock, odd=odd)
@@ -77,7 +76,6 @@ def test_two_threads_break_nothing_but_their_own_calls(odd: bool) -> None:
 
 
 def test_a_call_within_another_is_refused() -> None:
-    """Whatever is called while a step is under way is refused; the step itself is taken."""
     monitor = _monitor()
     refused = []
 
@@ -107,7 +105,6 @@ def test_a_call_within_another_is_refused() -> None:
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no signal.setitimer")
 def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -> None:
-    """A handler comes in between anywhere: what it calls is refused or done, never half done."""
     monitor = _monitor()
     clock = count(1)
     found: list[str] = []  # an item comes whole; a count might be interrupted
@@ -137,7 +134,6 @@ def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -
 
 
 def test_callbacks_may_call_their_monitor() -> None:
-    """The call that decided is over when it is told: callbacks look, and even step."""
     monitor = _monitor()
     looked = []
 
@@ -156,7 +152,6 @@ def test_callbacks_may_call_their_monitor() -> None:
 
 
 def test_a_call_that_fails_leaves_the_monitor_open() -> None:
-    """What is wrong with a sample, or with a callback, closes nothing."""
     monitor = _monitor()
     monitor.step_ns(1, {"x": 1.0})
 
@@ -177,7 +172,6 @@ def test_a_call_that_fails_leaves_the_monitor_open() -> None:
 
 
 def test_a_monitor_is_handed_from_thread_to_thread() -> None:
-    """One call after the other is right, whichever threads make them."""
     monitor = _monitor()
     turns: queue.SimpleQueue[int] = queue.SimpleQueue()
     turns.put(1)

@@ -73,7 +73,6 @@ def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec):
 
 
 def test_what_is_undecided_does_not_count_so_far(spec):
-    """An open attempt leaves the verdict; what `finish` makes of it is the report's."""
     monitor = spec.monitor(only=["U1"])
     monitor.step(0, {"e": True})
     assert monitor.verdicts == {"U1": "NT"}
@@ -89,7 +88,6 @@ def test_what_is_undecided_does_not_count_so_far(spec):
 
 @pytest.mark.parametrize("settle", ["now", "next"])
 def test_callbacks_hear_of_each_decision_once_in_order(spec, settle):
-    """They hear what the calls return and what finish decides, failures alone if asked."""
     monitor = spec.monitor(settle=settle)
     heard, failed, returned = [], [], []
     monitor.on_decided(heard.append)
@@ -109,7 +107,6 @@ def test_callbacks_hear_of_each_decision_once_in_order(spec, settle):
 
 
 def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec):
-    """It hears nothing after it was taken away, twice does no harm; until then every run."""
     monitor = spec.monitor(only=["L1"])
     heard = []
     stop = monitor.on_failure(heard.append)
@@ -129,7 +126,6 @@ def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec):
 
 
 def test_what_a_callback_raises_leaves_the_monitor_in_order(spec):
-    """The sample counts, the other callbacks hear, and the run goes on as without it."""
     plain, monitor = spec.monitor(), spec.monitor()
     heard = []
 
@@ -199,7 +195,6 @@ UNDECIDED = {
 
 @pytest.mark.parametrize("name", UNDECIDED)
 def test_what_is_undecided_for_good_is_bounded(name):
-    """Of each requirement the newest are kept, and all are counted."""
     text, rows, all_open, most = UNDECIDED[name]
     spec = rvmon.loads(text)
     plain, monitor = spec.monitor(), spec.monitor(keep=4)
@@ -215,7 +210,6 @@ def test_what_is_undecided_for_good_is_bounded(name):
 
 
 def test_a_snapshot_carries_the_counts(spec):
-    """A run that is put away and taken up again drops and counts as if it had not been."""
     plain, monitor = spec.monitor(keep=3), spec.monitor(keep=3)
     sizes = []
     for index, (t, values) in enumerate(samples(400)):
@@ -252,7 +246,6 @@ def test_what_is_no_count_is_refused(spec, keep):
 
 
 def test_of_much_that_is_open_the_oldest_is_enough():
-    """All are counted; the records are those of `open`: of each requirement that began first."""
     text = SPEC.replace("within 3 s stop", "within 9 s stop")
     monitor = rvmon.loads(text).monitor(only=["U1", "L1"])
     for t in range(4):

@@ -79,7 +79,6 @@ def test_hash_sees_each_change(change, tmp_path):
 
 
 def test_hash_is_of_sources_alone(tmp_path):
-    """Other files, and when sources were written, do not matter; without sources it is empty."""
     assert rvmon.native.sources.source_hash(str(tmp_path)) == ""
     source = tmp_path / "a.c"
     source.write_bytes(b"int one;")
@@ -97,7 +96,6 @@ def reloading():
 
 
 def test_stale_core_is_refused(monkeypatch, reloading):
-    """Sources that are not those of the extension make an import error, which says what to run."""
     with monkeypatch.context() as patched:
         patched.setattr(rvmon.native.sources, "source_hash", lambda _: "0123abcd")
         with pytest.raises(
@@ -108,7 +106,6 @@ def test_stale_core_is_refused(monkeypatch, reloading):
 
 
 def test_missing_core_is_told(monkeypatch, reloading):
-    """Where nothing was built, the import says so, and what to run."""
     with monkeypatch.context() as patched:
         patched.setitem(sys.modules, "rvmon.native._core", None)
         with pytest.raises(CoreError, match=r"is not built .*pip install -e \."):
@@ -116,7 +113,6 @@ def test_missing_core_is_told(monkeypatch, reloading):
 
 
 def test_no_sources_no_check(monkeypatch, reloading):
-    """Where no sources lie beside the extension there is nothing to compare it with."""
     with monkeypatch.context() as patched:
         patched.setattr(rvmon.native.sources, "source_hash", lambda _: "")
         assert reloading()._core is rvmon.native._core
@@ -170,7 +166,6 @@ def test_builds_are_equal(hook, tmp_path):
 
 @pytest.mark.compiler
 def test_builds_without_headers(hook, monkeypatch, tmp_path):
-    """Where Python's headers are missing the core is built all the same, and can be imported."""
     monkeypatch.setattr(hook.sysconfig, "get_path", lambda _name: str(tmp_path))
     built = loaded(hook.build(tmp_path))
     assert built.source_hash == rvmon.native.sources.source_hash()
@@ -179,7 +174,6 @@ def test_builds_without_headers(hook, monkeypatch, tmp_path):
 
 @pytest.mark.compiler
 def test_changed_source_is_built_anew(copied, hook, tmp_path):
-    """A build from other sources carries another hash."""
     before = rvmon.native.sources.source_hash(str(copied))
     assert before.encode() in hook.build(tmp_path).read_bytes()
     with (copied / "python" / "module.c").open("ab") as file:
@@ -217,7 +211,6 @@ def compared(header: str, folder: Path) -> str:
 
 @pytest.mark.compiler
 def test_own_declarations_are_pythons(tmp_path):
-    """All that we declare of Python is as its own headers have it."""
     assert compared(HEADER.read_text(encoding="utf-8"), tmp_path) == ""
 
 
@@ -245,7 +238,6 @@ WRONG = [
 
 @pytest.mark.compiler
 def test_comparison_finds(monkeypatch, tmp_path):
-    """A wrong type, name, value, order or size among our declarations does not compile."""
     monkeypatch.setenv("LC_ALL", "C")
     header = HEADER.read_text(encoding="utf-8")
     for old, new, _named in WRONG:
@@ -256,7 +248,6 @@ def test_comparison_finds(monkeypatch, tmp_path):
 
 
 def test_python_has_what_is_declared():
-    """This Python exports each function and object that we declare, those without a header too."""
     import ctypes
 
     names = declared(HEADER.read_text(encoding="utf-8"))

@@ -28,13 +28,11 @@ def written(tmp_path, monkeypatch):
 
 
 def test_numbers_that_python_reads_are_read_ahead(written):
-    """Long numbers, for which threads take turns, are the nearest doubles."""
     samples = list(SPEC.recording(written))
     assert [one.values["x"] for one in samples] == [0.1] * 1000
 
 
 def test_what_is_no_text_is_told_in_its_turn(written):
-    """Rows above a byte that is no text are given out, though it was met before they were."""
     with open(written, "ab") as file:
         file.write(b"1000,\xff\n")
     found = deque()
@@ -44,7 +42,6 @@ def test_what_is_no_text_is_told_in_its_turn(written):
 
 
 def test_who_stops_reading_leaves_no_thread(written):
-    """No thread is left when a recording is read to its end, nor when it is not."""
     samples = iter(SPEC.recording(written))
     for _ in range(500):
         next(samples)
@@ -54,7 +51,6 @@ def test_who_stops_reading_leaves_no_thread(written):
 
 
 def test_faults_of_who_reads_are_raised_in_their_turn():
-    """What goes wrong in a thread is raised where its result is asked for, and not before."""
     found = read_ahead(iter([b"1\n", b"x\n", b"2"]), int)
     first, second, third = found
     assert first[1]() == 1

@@ -99,7 +99,6 @@ def of_pieces(path: Path):
 
 @pytest.mark.law
 def test_columns_say_what_rows_say(tmp_path, monkeypatch):
-    """Samples and faults are those of reading row by row, with few rooms, too."""
     for seed in range(100):
         rng = random.Random(seed)
         (tmp_path / "a.csv").write_text(csv_text(rng, rng.choice([0, 0.01, 0.1])), newline="")
@@ -126,14 +125,12 @@ CELLS = {
     "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
 )
 def test_a_cell_is_read_as_in_rows(text, tmp_path):
-    """Whatever is taken for a number, or is not: samples and errors are those of rows."""
     path = tmp_path / "a.csv"
     path.write_text(text)
     assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
 
 
 def test_numbers_are_the_nearest(tmp_path):
-    """Each decimal is read as Python reads it: short ones, long ones, and halves between two."""
     rng = random.Random(1)
     texts = [number(rng) for _ in range(20_000)]
     texts += [f"{2**53 + 1}.{'0' * n}{rest}" for n in range(12) for rest in ("", "1")]
@@ -149,7 +146,6 @@ def test_numbers_are_the_nearest(tmp_path):
 
 @pytest.mark.slow
 def test_dates_are_exact(tmp_path):
-    """Each date is read as one by one, whether it is written as most are or otherwise."""
     rng = random.Random(2)
     texts = []
     for _ in range(1500):

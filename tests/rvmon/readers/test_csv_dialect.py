@@ -1,6 +1,5 @@
 """CSV as other tools write it gives the records of plain CSV."""
 
-import gzip
 import random
 
 import pytest
@@ -102,7 +101,6 @@ def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, write, encod
 
 
 def test_plain_text_is_left_as_it_is(tmp_path):
-    """Whatever its cells, so that no file of before is read in another way."""
     for seed in range(8):
         assert dialect_of(plain(rows_at_random(seed)).encode()) == PLAIN
     for text in ("", "t", "t,a\n", "t,a\n1\n", 't,"a;b"\n0,1;5\n', "1,2\n3,4\n", "a b c\n"):
@@ -162,7 +160,6 @@ def test_faults_are_told_with_the_line_that_they_are_on(tmp_path):
 
 
 def test_a_unit_in_a_name_is_compared(tmp_path):
-    """By its own name, or by one that is mapped."""
     spec = rvmon.loads(SPEC)
     path = tmp_path / "a.csv"
     path.write_text("t,speed [km/h],mode,stop\n0,1,idle,\n")
@@ -173,18 +170,8 @@ def test_a_unit_in_a_name_is_compared(tmp_path):
         spec.evaluate(path, columns={"speed": "V (rad)"})
 
 
-def test_packed_text_has_dialects_too(tmp_path):
-    rows = rows_at_random(2)
-    (tmp_path / "plain.csv").write_text(plain(rows))
-    (tmp_path / "other.csv.gz").write_bytes(gzip.compress(semicolons(rows).encode()))
-    spec = rvmon.loads(SPEC)
-    found = spec.evaluate(tmp_path / "other.csv.gz")
-    assert found.attempts == spec.evaluate(tmp_path / "plain.csv").attempts
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_lines_that_are_taken_together_say_the_same(seed, tmp_path, monkeypatch):
-    """Whatever needs a closer look, wherever: samples, and the line of what is wrong."""
     rng = random.Random(seed)
     remark = rng.choice(["", "# by a tool\n"])
     lines = [f"{remark}t;speed;mode;stop\n"]

@@ -29,7 +29,6 @@ def pandas_frames(module):
 
 
 def test_dates_of_numpy_and_pandas():
-    """To the nanosecond, as if they were whole numbers."""
     assert decided({"t": NS.astype("datetime64[ns]"), "x": X}) == EXPECTED
     assert decided({"at": NS.astype("datetime64[ns]"), "x": X}, time="at") == EXPECTED
     for frame in pandas_frames(pytest.importorskip("pandas")):
@@ -37,7 +36,6 @@ def test_dates_of_numpy_and_pandas():
 
 
 def test_dates_of_polars_arrow_and_parquet(tmp_path):
-    """Whatever holds the table."""
     polars = pytest.importorskip("polars")
     arrow = pytest.importorskip("pyarrow")
     dates = NS.astype("datetime64[ns]")
@@ -49,16 +47,6 @@ def test_dates_of_polars_arrow_and_parquet(tmp_path):
     assert decided(path) == EXPECTED
 
 
-def test_durations_count_from_their_start():
-    """In a column, and as an index of pandas."""
-    since = (NS - START).astype("timedelta64[ns]")
-    expected = (EXPECTED[0] - START, EXPECTED[1] - START, EXPECTED[2])
-    assert decided({"t": since, "x": X}) == expected
-    pandas = pytest.importorskip("pandas")
-    assert decided(pandas.DataFrame({"t": pandas.to_timedelta(since), "x": X})) == expected
-    assert decided(pandas.DataFrame({"x": X}, index=pandas.to_timedelta(since))) == expected
-
-
 def test_a_date_that_is_none_is_told():
     with pytest.raises(rvmon.TraceError, match="row 1: time `NaT`"):
         decided({"t": np.array(["2024-05-01", "NaT"], "datetime64[ns]"), "x": [1.0, 2.0]})
@@ -66,7 +54,6 @@ def test_a_date_that_is_none_is_told():
 
 @pytest.mark.parametrize("name", ["none", "none.odd", "none/", "none.csv"])
 def test_a_path_that_is_not_there_is_said_not_to_be(tmp_path, name):
-    """Before anything is said of its ending."""
     with pytest.raises(rvmon.TraceError, match="No such file or directory"):
         rvmon.loads(SPEC).evaluate(f"{tmp_path}/{name}")
     (tmp_path / "there.odd").write_text("")

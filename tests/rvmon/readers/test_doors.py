@@ -72,7 +72,6 @@ def told(spec, trace, **arguments) -> str:
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(20))
 def test_every_door_is_judged_as_its_samples_are(seed, tmp_path):
-    """All a report says, byte by byte; the same of files that are read in pieces of few rows."""
     traces = TraceProfile(12, 48, advances=False)
     spec = None
     for part, case in enumerate(cases_of(f"doors/{seed}", Profile(), traces, 2)):
@@ -120,7 +119,6 @@ def test_payloads_come_as_columns(tmp_path):
     ],
 )
 def test_values_are_taken_as_declared(columns):
-    """0 and 1 are truth values, whole floats whole numbers, NumPy's texts labels."""
     plain = {"t": [0, 1, 2], "on": [True, True, False], "gear": [2, 3, 3]}
     modes = {"mode": np.array(["busy", "idle", "busy"])}
     assert told(base(), plain | columns | modes) == told(base(), plain | {"mode": [*modes["mode"]]})
@@ -129,7 +127,6 @@ def test_values_are_taken_as_declared(columns):
 
 @pytest.mark.parametrize(("name", "wrong"), [("on", 2), ("gear", 2.5), ("mode", "off")])
 def test_what_is_not_declared_so_is_refused(name, wrong):
-    """The sample, the name and what was expected are said."""
     with pytest.raises(TraceError, match=f"sample at 1 s: `{name}`: expected .*, found {wrong!r}"):
         judged(base(), {"t": [0, 1], name: [None, wrong]})
 
@@ -155,7 +152,6 @@ def doors_of(table, folder):
 
 @pytest.mark.slow
 def test_a_merge_of_topics_is_told(tmp_path):
-    """NaN in every other row is unknown, and how to say that it is not stands in the health."""
     for trace in doors_of(MERGED, tmp_path):
         report = judged(base(), trace, sources=["speed", "gear"])
         assert report.verdicts["R1"] == "I"
@@ -172,7 +168,6 @@ def test_a_merge_of_topics_is_told(tmp_path):
 
 
 def test_a_value_may_stand_for_no_update():
-    """A number, a text, NaN: the caller names it."""
     for gap in (-1, -1.0, np.float64(-1)):
         for column in ([1.0, -1.0, 2.0], np.array([1.0, -1.0, 2.0])):
             table = {"t": np.arange(3.0), "speed": column}
@@ -185,7 +180,6 @@ def test_a_value_may_stand_for_no_update():
 
 
 def test_sources_of_a_stream_can_be_named():
-    """An event that never comes is false, unless it has no source."""
     spec = rvmon.loads("spec s\nsignal p : bool\nevent e\nrequirement R1\n  always not e\n")
     pairs = [(0, {"p": True}), (1, {"p": True})]
     assert judged(spec, pairs).verdicts["R1"] == "P"
@@ -197,7 +191,6 @@ def test_sources_of_a_stream_can_be_named():
 
 
 def test_all_that_read_recordings_are_told_alike(tmp_path):
-    """One trace, many traces here or elsewhere, robustness, the bare recording."""
     spec = rvmon.loads("spec s\nsignal x : real\nsignal y : real\nrequirement R1\n  always x < 3\n")
     (tmp_path / "a.csv").write_text("ms,X\n0,1\n1,nan\n2,-1\n3,2\n")
     table = {"ms": [0, 1, 2, 3], "X": [1.0, NAN, -1.0, 2.0]}
@@ -220,7 +213,6 @@ def test_all_that_read_recordings_are_told_alike(tmp_path):
 
 
 def test_equal_stamps_are_merged_and_the_order_is_kept(tmp_path):
-    """The last of two values wins and is told; what goes backwards is an error."""
     table = {"t": [0.0, 1.0, 1.0], "speed": [1.0, 9.0, 2.0]}
     for trace in doors_of(table, tmp_path):
         report = judged(base(), trace)
@@ -232,14 +224,7 @@ def test_equal_stamps_are_merged_and_the_order_is_kept(tmp_path):
             judged(base(), trace)
 
 
-def test_ticks_are_found_by_the_name_of_their_column():
-    """As in files, `t_ns` is the time where there is no `t`."""
-    table = {"t_ns": np.array([0, 5]), "speed": np.array([1.0, 9.0])}
-    assert judged(base(), table).attempts[0].decided == 5
-
-
 def test_frames_of_pandas():
-    """An outer merge holds NaN; types with NA tell what is missing."""
     pandas = pytest.importorskip("pandas")
     left = pandas.DataFrame({"t": [0.0, 1.0, 2.0, 3.0], "speed": [1.0, 1.0, 9.0, 1.0]})
     right = pandas.DataFrame({"t": [0.5, 1.5, 2.5, 3.5], "gear": [1, 2, 3, 4]})
@@ -253,7 +238,6 @@ def test_frames_of_pandas():
 
 
 def test_frames_of_polars():
-    """Nulls are no updates, NaN is unknown."""
     polars = pytest.importorskip("polars")
     table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.0], "pick.id": [None, 3, None]}
     assert told(base(), polars.DataFrame(table)) == told(base(), table)

@@ -76,7 +76,6 @@ def test_joined_files_give_what_one_file_with_empty_cells_gives(tmp_path, monkey
 
 
 def test_late_rows_of_a_file_are_put_in_order_under_max_delay(tmp_path):
-    """As in one file; without it they are an error of their file."""
     text = "signal x, y : real\nrequirement R\n  always x <= y\n"
     (tmp_path / "a.csv").write_text("t,x\n0,1\n0.3,3\n0.2,2\n1,4\n")
     (tmp_path / "b.csv").write_text("t,y\n0,1\n0.2,2\n0.1,5\n0.3,3\n0.9,9\n")
@@ -90,7 +89,6 @@ def test_late_rows_of_a_file_are_put_in_order_under_max_delay(tmp_path):
 
 
 def test_a_file_says_where_its_error_is(tmp_path, capsys):
-    """By its own name and line."""
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n1,x\n")
     (tmp_path / "b.csv").write_text("t,mode\n0,idle\n")
     (tmp_path / "s.rv").write_text("signal speed : real\nrequirement R\n  always speed < 9\n")
@@ -106,7 +104,6 @@ def test_a_file_says_where_its_error_is(tmp_path, capsys):
 
 
 def test_a_name_of_two_files_is_asked_for(tmp_path):
-    """As `FILE.NAME`, also without what the names of all files begin with, or by a column."""
     for name, speed in (("run_left", 1), ("run_right", 3)):
         (tmp_path / f"{name}.csv").write_text(f"t,speed\n0,{speed}\n")
     files = [str(tmp_path / "run_left.csv"), str(tmp_path / "run_right.csv")]
@@ -145,7 +142,6 @@ def test_files_of_several_formats_are_joined(tmp_path):
 
 
 def test_tables_in_memory_are_joined():
-    """Each at its own instants, where an outer merge would make unknown what is not said."""
     pandas = pytest.importorskip("pandas")
     spec = rvmon.loads(
         "signal speed : real\nsignal armed : bool\nrequirement R\n  always (armed -> speed < 1)\n"
@@ -159,7 +155,6 @@ def test_tables_in_memory_are_joined():
 
 
 def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
-    """Each can be clipped."""
     for name in "ab":
         (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
     (tmp_path / "s.rv").write_text("signal a : real\nrequirement R\n  always a < 9\n")
@@ -175,7 +170,6 @@ def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
 
 
 def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypatch):
-    """It holds as long as none of them has changed."""
     monkeypatch.chdir(tmp_path)
     for name in "ab":
         (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
@@ -189,7 +183,6 @@ def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypat
 
 
 def test_a_specification_is_begun_from_several_files(tmp_path):
-    """It runs on them; what two files have is called after the file."""
     (tmp_path / "log_odom_0.csv").write_text("t,speed,mode\n0,1.5,fly\n1,2.5,idle\n")
     (tmp_path / "log_status_0.csv").write_text("t,armed,mode\n0,true,x\n2,false,y\n")
     both = f"{tmp_path / 'log_odom_0.csv'} + {tmp_path / 'log_status_0.csv'}"

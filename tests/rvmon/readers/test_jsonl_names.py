@@ -34,7 +34,6 @@ PLAIN = '{"t": %d, "s": 1, "a": {"b": 2}, "go": {"n": 3}, "u": [{"v": "w:x"}]}\n
     ],
 )
 def test_it_is_an_error_with_its_line(tmp_path, capsys, lines, line, name):
-    """By whichever way lines are read."""
     path = tmp_path / "a.jsonl"
     path.write_text("".join(PLAIN % t for t in range(lines)) + line + "\n")
     with pytest.raises(TraceError, match=rf"line {lines + 1}: .*`{name}`"):
@@ -42,7 +41,6 @@ def test_it_is_an_error_with_its_line(tmp_path, capsys, lines, line, name):
 
 
 def test_the_command_says_so(tmp_path, capsys):
-    """With place and name."""
     spec, path = tmp_path / "s.rv", tmp_path / "a.jsonl"
     spec.write_text("spec s\nsignal s : real\nrequirement R\n  always s < 10\n")
     path.write_text('{"t": 0, "s": 1, "s": 50}\n')
@@ -51,7 +49,6 @@ def test_the_command_says_so(tmp_path, capsys):
 
 
 def test_lines_that_have_each_name_once_are_read():
-    """Whatever texts look like names."""
     rng = random.Random(1)
     parts = ["a", '"', ":", '":', ' "x" : 1', "\\", "\n", "é", "{", "}"]
 

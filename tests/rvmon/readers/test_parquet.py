@@ -25,7 +25,6 @@ def judged(tmp_path, **columns) -> str:
 
 
 def test_an_event_of_which_nothing_is_said_does_not_occur(tmp_path):
-    """A column of nothing but nulls is the same with a type and without."""
     assert judged(tmp_path) == "P"
     assert judged(tmp_path, knock=pa.array([None] * 3, pa.bool_())) == "NT"
     assert judged(tmp_path, knock=pa.array([None] * 3)) == "NT"
@@ -48,7 +47,6 @@ def test_columns_of_another_type_are_refused(columns, message, tmp_path):
 
 @pytest.mark.parametrize("one", [1, 1.0])
 def test_numbers_are_truth_values_where_these_are_declared(one, tmp_path):
-    """0 and 1, which is how merges and exports leave them."""
     zero = type(one)(0)
     assert judged(tmp_path, knock=[zero, one, None], shut=[zero, one, one]) == "P"
     assert judged(tmp_path, knock=[zero, one, None], shut=[zero, None, one]) == "F"
@@ -56,7 +54,6 @@ def test_numbers_are_truth_values_where_these_are_declared(one, tmp_path):
 
 @pytest.mark.parametrize("part", ["page", "footer", "all"])
 def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
-    """One wrong byte, in a page or in the footer, or no such file at all: the file is named."""
     judged(tmp_path)
     path = tmp_path / "a.parquet"
     data = bytearray(path.read_bytes())
@@ -69,7 +66,6 @@ def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
 
 @pytest.mark.parametrize("most", [b"\xfe" + b"\xff" * 8 + b"\x01", b"\xfe\xff\xff\xff\x0f"])
 def test_sizes_and_offsets_that_overflow_are_refused(most, tmp_path):
-    """With the largest number at any place of the footer, a file is refused or judged as it was."""
     expected = judged(tmp_path)
     path = tmp_path / "a.parquet"
     data = path.read_bytes()

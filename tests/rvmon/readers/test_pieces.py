@@ -73,7 +73,6 @@ def cut_into(monkeypatch):
 )
 @pytest.mark.parametrize("end", [0.1, 31.4, 9999.0])
 def test_columns_say_what_rows_say(end, time, stale, tmp_path, cut_into):
-    """Up to an instant: verdicts, records, reasons and health, wherever a block ends."""
     cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(3).replace("\n", "\r\n"))
     spec = rvmon.loads(SPEC.format(time=time, stale=stale))

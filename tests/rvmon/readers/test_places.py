@@ -40,7 +40,6 @@ def spec():
 @pytest.mark.parametrize("ending", PACKERS)
 @pytest.mark.parametrize(("name", "text"), [("a.csv", CSV), ("a.jsonl", LINES)])
 def test_a_packed_recording_gives_the_records_of_the_plain_one(tmp_path, spec, name, text, ending):
-    """By columns and row by row."""
     plain, packed = tmp_path / name, tmp_path / (name + ending)
     plain.write_text(text)
     packed.write_bytes(PACKERS[ending](text.encode()))
@@ -52,7 +51,6 @@ def test_a_packed_recording_gives_the_records_of_the_plain_one(tmp_path, spec, n
 
 @pytest.mark.parametrize("ending", PACKERS)
 def test_a_packed_file_that_was_cut_off_is_told(tmp_path, capsys, ending):
-    """Nothing is judged as if it were whole, and the other recordings are judged."""
     good, bad = tmp_path / "good.csv", tmp_path / f"bad.csv{ending}"
     good.write_text(CSV)
     bad.write_bytes(PACKERS[ending](CSV.encode())[:-200])
@@ -76,7 +74,6 @@ def test_a_packed_file_that_is_not_what_its_checksum_says_is_told(tmp_path, spec
 
 @pytest.mark.parametrize("ending", PACKERS)
 def test_a_file_that_is_not_packed_as_its_ending_says_is_told(tmp_path, spec, ending):
-    """Place, cause, fix."""
     path = tmp_path / f"a.csv{ending}"
     path.write_text(CSV)
     with pytest.raises(TraceError, match=r"a\.csv\.\w+: cannot be unpacked .* as its ending says"):
@@ -84,13 +81,11 @@ def test_a_file_that_is_not_packed_as_its_ending_says_is_told(tmp_path, spec, en
 
 
 def test_only_text_is_read_packed(tmp_path, spec):
-    """Other formats pack themselves."""
     with pytest.raises(TraceError, match="unpack it first"):
         spec.evaluate(tmp_path / "a.parquet.gz")
 
 
 def test_a_starter_is_written_from_a_packed_recording(tmp_path, capsys):
-    """As `rvmon run` reads it."""
     path = tmp_path / "a.csv.gz"
     path.write_bytes(gzip.compress(CSV.encode()))
     assert main(["init", str(path), "-o", "-"]) == 0
@@ -98,7 +93,6 @@ def test_a_starter_is_written_from_a_packed_recording(tmp_path, capsys):
 
 
 def test_a_folder_stands_for_the_recordings_in_it(tmp_path):
-    """Sorted, those of its folders too; other files are passed over."""
     for name in ("b.csv", "a.jsonl.gz", "notes.txt", "more/c.csv"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()
@@ -109,7 +103,6 @@ def test_a_folder_stands_for_the_recordings_in_it(tmp_path):
 
 
 def test_a_folder_leaves_out_no_recording_in_silence(tmp_path, spec):
-    """One that is packed otherwise, or was not closed, is found, and refused when it is read."""
     for name in ("a.csv.xz", "b.bag.active", "c.csv"):
         (tmp_path / name).write_text("t,x\n0,1\n")
     found = list(found_recordings([str(tmp_path)]))
@@ -120,7 +113,6 @@ def test_a_folder_leaves_out_no_recording_in_silence(tmp_path, spec):
 
 
 def test_a_folder_that_links_to_one_above_is_looked_through_once(tmp_path):
-    """Each recording counts once; a link to another folder is followed."""
     for name in ("runs/a.csv", "more/b.csv"):
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).touch()
@@ -132,7 +124,6 @@ def test_a_folder_that_links_to_one_above_is_looked_through_once(tmp_path):
 
 @pytest.mark.parametrize("pattern", ["", "/*.csv"])
 def test_a_folder_without_recordings_is_told(tmp_path, pattern):
-    """What would have been one is told as well."""
     with pytest.raises(TraceError, match=r"there is no recording: one ends in \.csv"):
         list(found_recordings([f"{tmp_path}{pattern}"]))
 
@@ -157,7 +148,6 @@ def server(tmp_path):
 
 @pytest.mark.parametrize("name", ["a.csv", "a.csv.gz", "a.jsonl", "a.parquet"])
 def test_an_address_is_read_as_the_file_there(tmp_path, spec, server, name):
-    """Whatever the format."""
     path = tmp_path / name
     match name:
         case "a.csv.gz":
@@ -174,7 +164,6 @@ def test_an_address_is_read_as_the_file_there(tmp_path, spec, server, name):
 
 
 def test_what_is_put_at_an_address_anew_is_read_anew(tmp_path, spec, server):
-    """A copy does not outlive what it is of."""
     for text, verdict in ((CSV, "F"), ("t,width\n0,1\n1,1\n", "P")):
         (tmp_path / "a.csv").write_text(text)
         assert spec.evaluate(f"{server}/a.csv").verdicts["D1"] == verdict
@@ -199,7 +188,6 @@ def test_a_kind_of_address_that_is_not_known_is_told(spec):
 
 @pytest.mark.slow
 def test_a_bucket_is_read_by_names_and_by_patterns(tmp_path, monkeypatch, capsys):
-    """Of S3, as `moto` serves it."""
     pytest.importorskip("s3fs")
     server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0)
     server.start()

@@ -24,7 +24,6 @@ def read(tmp_path: Path, name: str, text: str | bytes, *, ordered: bool = True):
 
 
 def test_csv_gives_each_updated_cell_as_its_declared_kind(tmp_path):
-    """A cell is read as its column's kind; an empty one is no update."""
     _, samples = read(
         tmp_path,
         "a.csv",
@@ -38,7 +37,6 @@ def test_csv_gives_each_updated_cell_as_its_declared_kind(tmp_path):
 
 
 def test_undeclared_columns_are_ignored_and_counted(tmp_path):
-    """A column that the spec does not name is no error, and is not silent either."""
     recording, samples = read(tmp_path, "a.csv", "t,ok,battery\n0,1,7\n")
     assert samples == [(0, {"ok": True})]
     assert [(h.kind, h.name) for h in recording.health()] == [(HealthKind.IGNORED, "battery")]
@@ -89,7 +87,6 @@ def test_a_signal_that_ignores_nan_is_refused_where_a_last_line_has_no_end(tmp_p
 
 
 def test_decimal_seconds_are_exact(tmp_path):
-    """A CSV stamp is converted without going through a float."""
     _, samples = read(tmp_path, "a.csv", "t,ok\n1700000000.123456789,1\n")
     assert samples[0][0] == 1_700_000_000_123_456_789
 
@@ -159,7 +156,6 @@ BAD = {
 
 @pytest.mark.parametrize("name", BAD)
 def test_bad_input_is_named_with_file_and_line(tmp_path, name):
-    """Each kind of broken file gives one error that names its place."""
     file, text, message = BAD[name]
     with pytest.raises(TraceError) as caught:
         read(tmp_path, file, text)
@@ -178,7 +174,6 @@ def test_what_stands_before_a_broken_line_is_given_out(tmp_path):
 
 
 def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path, monkeypatch):
-    """They are put in order, as far as there is room; what comes later than that is told."""
     monkeypatch.setattr("rvmon.readers.rows.ROOM", 2)
     _, samples = read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n0.5,2\n", ordered=False)
     assert [(t, values["n"]) for t, values in samples] == [(5 * 10**8, 2), (10**9, 1)]
@@ -190,7 +185,6 @@ def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path, monkeypat
 
 @pytest.mark.parametrize("file", ["a.csv", "a.jsonl"])
 def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path, file):
-    """Files that some editors start with U+FEFF, lines ended with CR LF, read as any other."""
     text = "t,n\r\n1,4\r\n" if file == "a.csv" else '{"t": 1, "n": 4}\r\n'
     _, samples = read(tmp_path, file, "\ufeff" + text)
     assert samples == [(1_000_000_000, {"n": 4})]
@@ -215,7 +209,6 @@ def test_missing_file_is_named(tmp_path):
 @pytest.mark.parametrize("number", ["1e400", "-1e400", "9" * 400])
 @pytest.mark.parametrize("form", ["a.csv", "a.jsonl", "b.jsonl"])
 def test_a_number_too_large_for_a_double_is_refused(tmp_path, number, form):
-    """It is not taken for infinity, whatever holds it; NaN beside it changes nothing."""
     text = {
         "a.csv": f"t,x\n0,{number}\n",
         "a.jsonl": f'{{"t":0,"x":{number}}}\n',
@@ -228,7 +221,6 @@ def test_a_number_too_large_for_a_double_is_refused(tmp_path, number, form):
 
 @pytest.mark.parametrize(("cell", "word"), [("inf", "Infinity"), ("-inf", "-Infinity")])
 def test_what_is_called_infinite_is(tmp_path, cell, word):
-    """CSV and JSON lines agree."""
     (tmp_path / "a.csv").write_text(f"t,x\n0,{cell}\n")
     (tmp_path / "a.jsonl").write_text(f'{{"t":0,"x":{word}}}\n')
     for name in ("a.csv", "a.jsonl"):
@@ -237,7 +229,6 @@ def test_what_is_called_infinite_is(tmp_path, cell, word):
 
 
 def test_a_row_of_quoted_lines_is_bounded(tmp_path, monkeypatch):
-    """A row over many lines is refused like a line that is too long, where it begins."""
     monkeypatch.setattr("rvmon.readers.csv_rows.LONGEST_LINE", 1000)
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
     path = tmp_path / "a.csv"

@@ -45,16 +45,7 @@ def ends(spec, folder, stamps, time):
     ],
 )
 def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
-    """To the nanosecond, as integers."""
     assert ends(spec, tmp_path, stamps, f"at:{unit}") == {end}
-
-
-def test_dates_of_tables_are_read(spec):
-    """NumPy's and Arrow's, by name of the unit."""
-    stamps = np.array([0, EPOCH], "datetime64[ns]")
-    table = {"at": stamps, "x": np.array([1.0, 1.0])}
-    for trace in (table, pyarrow.table(table)):
-        assert spec.evaluate(trace, time="at:iso").end == EPOCH
 
 
 @pytest.mark.parametrize(
@@ -70,7 +61,6 @@ def test_dates_of_tables_are_read(spec):
     ],
 )
 def test_what_is_no_stamp_is_named_with_its_line(spec, tmp_path, stamp, unit, told):
-    """A wrong stamp is an error with file and line."""
     path = tmp_path / "a.csv"
     path.write_text(f"at,x\n{stamp},1\n")
     with pytest.raises(rvmon.TraceError, match=f"line 2: time .*{told}"):
@@ -87,7 +77,6 @@ def test_what_is_no_stamp_is_named_with_its_line(spec, tmp_path, stamp, unit, to
     ],
 )
 def test_the_unit_that_was_meant_is_told(spec, tmp_path, stamp, told):
-    """Where a stamp can be no seconds, the message says what it looks like."""
     path = tmp_path / "a.csv"
     path.write_text(f"t,x\n{stamp},1\n")
     with pytest.raises(rvmon.TraceError, match=told):
@@ -124,14 +113,12 @@ def test_steps_that_look_like_milliseconds_are_doubted(spec, tmp_path, stamps, d
 
 
 def test_nanoseconds_of_lines_are_not_doubted(spec, tmp_path):
-    """What `t_ns` holds needs no word."""
     path = tmp_path / "a.jsonl"
     path.write_text("".join(f'{{"t_ns": {20_000_000_000 * k}, "x": 1}}\n' for k in range(20)))
     assert not doubts(spec, path)
 
 
 def test_a_wrong_name_or_unit_is_told(spec, tmp_path):
-    """With the column that is most like it, and the units that there are."""
     path = tmp_path / "a.csv"
     path.write_text("stamp,x\n0,1\n")
     with pytest.raises(rvmon.TraceError, match="did you mean `stamp`"):
@@ -143,14 +130,12 @@ def test_a_wrong_name_or_unit_is_told(spec, tmp_path):
 
 
 def test_nested_stamps_of_lines_are_found(spec, tmp_path):
-    """`header.stamp` is the field of an object."""
     path = tmp_path / "a.jsonl"
     path.write_text('{"header": {"stamp": 5, "x": 9}, "x": 1}\n')
     assert spec.evaluate(path, time="header.stamp:ns").end == 5
 
 
 def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
-    """On standard error beside data, in the list of health for people."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text("t,x\n" + "".join(f"{20 * k},1\n" for k in range(50)))
@@ -190,7 +175,6 @@ def test_one_stamp_of_another_clock_is_a_finding(spec, tmp_path):
 
 
 def test_a_message_of_1970_in_a_bag_is_a_finding(spec, tmp_path):
-    """As the recorder stamped it."""
     bags = pytest.importorskip("tests.tools.bags")
     pytest.importorskip("rosbags")
     sent = [("/temp", t, {"data": 1.0}) for t in (7, bags.START, bags.START + 5)]

@@ -31,7 +31,6 @@ def kept_in(folder):
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("specs/*.rv")), ids=lambda path: path.name)
 def test_what_is_stored_is_restored(path):
-    """A specification and its warnings are equal to what is made of their data."""
     compiled = compile_text(path.read_text(), name=str(path), directory=path.parent)
     again = from_plain(to_plain(compiled))
     assert again == compiled
@@ -40,7 +39,6 @@ def test_what_is_stored_is_restored(path):
 
 
 def test_random_specifications_are_restored():
-    """All kinds of formulas, triggers, captures and instances."""
     for seed in range(200):
         spec = random_spec(random.Random(seed), Profile())
         assert from_plain(to_plain(spec)) == spec
@@ -58,7 +56,6 @@ def test_random_specifications_are_told_apart():
 
 
 def test_the_second_time_it_is_read(folder):
-    """The second time equals the first, warnings too, and only one file is written."""
     first = compile_cached(TEXT)
     assert first[1]  # `f` is never read
     assert compile_cached(TEXT) == first == compile_text(TEXT)
@@ -71,7 +68,6 @@ def test_the_second_time_it_is_read(folder):
 
 
 def test_all_that_counts_is_told_apart(folder):
-    """Another name or constant is another specification."""
     compile_cached(TEXT)
     compile_cached(TEXT, name="b.rv")
     five, _ = compile_cached(TEXT, constants={"T": "5 s"})
@@ -81,7 +77,6 @@ def test_all_that_counts_is_told_apart(folder):
 
 @pytest.mark.parametrize("damage", [b"", b"x", b"[]", b'["dict",5]', b'["os.system","ls"]'])
 def test_a_damaged_file_is_of_no_account(folder, damage):
-    """Whatever stands there, with a right checksum or without, the text is compiled anew."""
     import hashlib
 
     first = compile_cached(TEXT)
@@ -102,7 +97,6 @@ IMPORTING = 'import "names.rv"\nrequirement R\n  always p\n'
 
 
 def test_what_is_imported_is_looked_at_each_time(folder, tmp_path):
-    """What is kept is good as long as the imported files say the same; else it is replaced."""
     names = tmp_path / "names.rv"
     names.write_text("signal p : bool\n")
     first = compile_cached(IMPORTING, directory=tmp_path)
@@ -120,7 +114,6 @@ def test_what_is_imported_is_looked_at_each_time(folder, tmp_path):
 
 
 def test_of_imports_each_folder_has_its_own(folder, tmp_path):
-    """The same text means other files there."""
     for name, more in (("a", ""), ("b", "signal q : bool\n")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "names.rv").write_text(f"signal p : bool\n{more}")
@@ -131,7 +124,6 @@ def test_of_imports_each_folder_has_its_own(folder, tmp_path):
 
 @pytest.mark.parametrize("harm", ["gone", "outside"])
 def test_what_may_not_be_imported_any_more_is_refused(folder, tmp_path, harm):
-    """As ever, though it was compiled before."""
     names, elsewhere = tmp_path / "own" / "names.rv", tmp_path / "elsewhere.rv"
     names.parent.mkdir()
     elsewhere.write_text("signal p : bool\n")

@@ -26,24 +26,20 @@ def warned(text):
     ],
 )
 def test_unused(text, expected):
-    """Constants, macros, captured values, events; a comment does not use anything."""
     assert warned(text) == expected
 
 
 def test_a_file_that_only_declares_has_no_users_yet():
-    """Names that other files import are not said to be unused."""
     assert warned("event a\nconst T = 3 s\ndefine soon(p) = within T p\n") == []
 
 
 def test_imported_names_may_be_unused(tmp_path):
-    """A file need not use all that it imports."""
     (tmp_path / "names.rv").write_text("event a, b, c\nconst T = 3 s\nconst D = 1 s\n")
     text = 'import "names.rv"\nrequirement R\n  upon a\n  then within T b\n'
     assert compile_text(text, directory=tmp_path)[1] == ()
 
 
 def test_many_warnings_stop_nothing():
-    """A hundred of them are kept, and the rest is said to be left out; the file can be used."""
     names = ", ".join(f"s{number}" for number in range(300))
     spec, findings = compile_text(f"signal {names} : bool\nrequirement R always s0")
     assert len(spec.signals) == 300

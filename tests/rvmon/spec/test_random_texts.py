@@ -27,7 +27,6 @@ def test_most_texts_can_be_read_and_all_words_occur():
 
 @pytest.mark.slow
 def test_layout_keeps_what_a_text_says():
-    """Laid out, a text says the same, and a second time nothing changes."""
     for seed in range(60):
         text = random_text(random.Random(f"layout {seed}"), items=2)
         syntax = syntax_of(text)
@@ -36,6 +35,7 @@ def test_layout_keeps_what_a_text_says():
         once = format_text(text)
         assert syntax_of(once) == syntax
         assert format_text(once) == once
+        assert once.count("# note") == text.count("# note")
 
 
 def test_syntax_has_no_places():

@@ -23,7 +23,6 @@ EXAMPLES = re.findall(r"```rv\n(.*?)```", PAGE, re.DOTALL)
 
 @pytest.mark.parametrize("text", EXAMPLES)
 def test_example(text):
-    """An example has no errors; that a fragment reads little is no matter."""
     try:
         _, warnings = compile_text(text)
     except SpecError as error:
@@ -46,7 +45,6 @@ def grammar_words():
 
 
 def test_every_word_of_the_grammar_is_named():
-    """A word that is added to the language has to be added to its reference."""
     prose = re.sub(r"```.*?```|``.*?``", "", PAGE, flags=re.DOTALL)
     quoted = "\n".join([*re.findall(r"`([^`]+)`", prose), *EXAMPLES])
     assert {*grammar_words()} <= {*re.findall(r"\w+(?= |\b)", quoted)}
@@ -66,7 +64,6 @@ def test_every_unit_is_named():
 
 
 def test_reference_is_complete():
-    """Every item word, function and limit is named."""
     for word in (*ITEM_WORDS, *FUNCTIONS):
         assert re.search(rf"`[^`]*\b{word}\b", PAGE), word
     for limit in (DEEPEST, LARGEST, MOST, MOST_COMBINATIONS):

@@ -270,7 +270,6 @@ def test_several_payloads_need_for_each() -> None:
 
 
 def test_wrong_traces() -> None:
-    """Times that do not increase, endless traces and values from nowhere are refused."""
     spec = spec_of(requirement(p))
     with pytest.raises(TimeOrderError, match="3 ns after one at 3 ns"):
         evaluate(spec, [(3, {}), (3, {})])
@@ -281,7 +280,6 @@ def test_wrong_traces() -> None:
 
 
 def test_trace_brings_end_and_names() -> None:
-    """A `Trace` says itself when it ended and what has a source."""
     spec = spec_of(requirement(two(eventually(p, 0, 3), "and", no(e))))
     samples = (Sample(0, {"p": False}),)
     assert evaluate(spec, Trace(samples, end=4)).verdicts["R"] == "F"
@@ -291,8 +289,6 @@ def test_trace_brings_end_and_names() -> None:
 
 
 def test_accepts_a_public_spec() -> None:
-    """Whatever carries a checked spec may be given."""
-
     class Loaded:
         checked = spec_of(requirement(p))
 

@@ -43,13 +43,11 @@ def summary(found: Requirement) -> tuple[object, ...]:
 
 @pytest.mark.slow
 def test_specs_are_read_back() -> None:
-    """A random spec, shown and loaded, has the same attempts and verdicts."""
     read = sum(read_back(seed) for seed in range(120))
     assert read > 100
 
 
 def test_a_case_is_shown_with_its_calls() -> None:
-    """A case is shown as a specification and the calls that a monitor gets."""
     required = requirement(eventually(p, 0, 3), upon=e)
     case = Case(spec_of(required, stale={"x": 2}), (*timeline(p="0", e="1"), 4), 9, frozenset("pe"))
     text = show_case(case)

@@ -29,7 +29,6 @@ from rvmon.trace.time import (
     ],
 )
 def test_seconds_out_of_range_are_shown_as_a_number(seconds, shown):
-    """A fraction is shown as a number."""
     with pytest.raises(TraceError, match=shown + " out of range"):
         ticks_of_seconds(seconds)
 
@@ -77,7 +76,6 @@ requirement Told
     )
 )
 def test_a_stamp_of_few_digits_is_exact_by_all_doors(stamps):
-    """As text, as a float of a live stream, of a message or of a column, in each unit."""
     texts = [f"{s}.{part // 10 ** (9 - digits):0{digits}d}" for s, part, digits in sorted(stamps)]
     exact = [ticks_of_text(text.rstrip(".")) for text in texts]
     floats = [float(text) for text in texts]
@@ -102,7 +100,6 @@ def test_a_stamp_of_few_digits_is_exact_by_all_doors(stamps):
     st.sampled_from(["s", "ms", "us"]),
 )
 def test_texts_are_rounded_once(text, unit):
-    """Decimals, short or long, give the nearest tick, the even one of two, or are refused."""
     exact = round(Fraction(text) * TICKS_PER_UNIT[unit])
     if abs(exact) < TIME_LIMIT:
         assert ticks_of_text(text, unit) == exact

@@ -125,7 +125,6 @@ def test_a_name_may_be_mapped(tmp_path):
     ],
 )
 def test_texts_and_numbers_are_told_apart(tmp_path, bound, topic, value, message):
-    """Before a message is read."""
     bound.write_text(f'[bind.load]\ntopic = "{topic}"\nvalue = "{value}"\n')
     path = write_ros1(tmp_path / "a.bag", SENT, TYPES, OWN)
     with pytest.raises(rvmon.TraceError, match=message):
@@ -133,7 +132,6 @@ def test_texts_and_numbers_are_told_apart(tmp_path, bound, topic, value, message
 
 
 def test_what_has_no_names_is_told(tmp_path, bound):
-    """With the field that is no array."""
     bound.write_text('[bind.elbow]\ntopic = "/joints"\nvalue = "header[elbow].seq"\n')
     path = write_ros1(tmp_path / "a.bag", SENT[:1], TYPES, OWN)
     with pytest.raises(rvmon.TraceError, match="no field `header"):

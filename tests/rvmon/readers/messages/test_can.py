@@ -14,7 +14,6 @@ FRAMES = "(1.0) can0 064#0500\n(1.5) can0 0C8#1E00\n(2.0) can0 064#0700\n(2.5) c
 
 
 def test_messages_of_one_name_are_told_apart_by_their_identifiers(tmp_path):
-    """No frame is read as another message: each database speaks of its own."""
     for package in ("can", "cantools"):
         pytest.importorskip(package)
     (tmp_path / "a.dbc").write_text(DATABASE.format(number=100, signal="speed", scale=1))

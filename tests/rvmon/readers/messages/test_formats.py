@@ -47,7 +47,6 @@ FORMATS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
-    """Samples, attempts, decision instants and health, whatever holds the messages."""
     spec = rvmon.loads(SHOP)
     verdicts = set()
     for seed in range(8):
@@ -83,7 +82,6 @@ def test_a_deadline_runs_out_while_other_topics_go_on(tmp_path, name):
 
 
 def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
-    """What is not sent has its default; a table that is not sent is absent."""
     pose, later = {"x": 1.5, "frame": "map"}, {"x": 0.0, "frame": "odom"}
     sent = [
         ("/arm", START, {"pose": pose, "ranges": [3.0, 0.5], "on": True}),
@@ -114,7 +112,6 @@ def samples_of(spec, path, binding):
 
 
 def test_damaged_flatbuffers_are_told(tmp_path):
-    """Whatever a byte is changed to, it is another message, or an error with the reason."""
     rng = random.Random(5)
     fields = {"x": 1.5, "name": "map", "inner": {"y": 2.0, "on": True}, "all": [1.0, 2.0]}
     schema, message = schema_of("a.B", fields), packed(message_of(fields))
@@ -150,7 +147,6 @@ def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp
 
 
 def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
-    """Its first messages say what there is."""
     from mcap.writer import IndexType
 
     sent = [("/speed", START + t * 10**7, {"data": t / 10}) for t in range(9)]
@@ -164,7 +160,6 @@ def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
 
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
-    """Of a bag of ROS 2, also of one that was not closed; several recordings are not one."""
     sent = sent_at_random(random.Random(1), 60)
     (tmp_path / "shop.rv").write_text(SHOP)
     spec = rvmon.load(tmp_path / "shop.rv")
@@ -210,7 +205,6 @@ def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path
 
 
 def test_a_definition_that_lacks_a_part_is_a_fault_of_its_topic(tmp_path, capsys):
-    """The other topics of the file are read."""
     from mcap.writer import Writer
 
     path = tmp_path / "a.mcap"

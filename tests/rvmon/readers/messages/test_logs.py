@@ -99,7 +99,6 @@ def test_a_log_gives_the_records_that_csv_gives(tmp_path, name):
 
 @pytest.mark.parametrize("name", FORMS)
 def test_what_is_cut_off_is_never_green(tmp_path, name):
-    """Wherever it is cut: an error, or no requirement that goes on for ever is fulfilled."""
     rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     path, topic = written(tmp_path / "a", name, rows)
     spec, data = spec_of(topic, name), path.read_bytes()
@@ -126,7 +125,6 @@ def is_whole(cut, data, name, count):
 
 @pytest.mark.parametrize("name", ["a.bin", "a.tlog"])
 def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
-    """It says at which byte; what was required meanwhile is open, and what failed has failed."""
     rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     path, topic = written(tmp_path / "a", name, rows)
     spec, data = spec_of(topic, name), bytearray(path.read_bytes())
@@ -146,7 +144,6 @@ def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
 
 
 def test_what_the_logger_dropped_is_an_outage(tmp_path):
-    """Of PX4: from the message before, whose stamp it may have; also of robustness."""
     pytest.importorskip("pyulog")
     rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     spec = spec_of("drive", "a.ulg")
@@ -160,7 +157,6 @@ def test_what_the_logger_dropped_is_an_outage(tmp_path):
 
 @pytest.mark.parametrize("drops", [[], [(100, 30)]])
 def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, drops):
-    """Of the names that it has; what another one says stands."""
     pytest.importorskip("pyulog")
     rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
     files = [write_ulog(tmp_path / "a.ulg", rows, drops=drops), tmp_path / "b.csv"]
@@ -175,7 +171,6 @@ def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, dro
 
 @pytest.mark.parametrize("name", ["a.ulg", "a.mf4", "a.h5", "a.mat", "a.blf"])
 def test_a_log_whose_head_is_damaged_is_told(tmp_path, name):
-    """By its name; nothing is judged."""
     path, topic = written(tmp_path / "a", name, rows_at_random(1))
     data = path.read_bytes()
     path.write_bytes(bytes(64) + data[64:])
@@ -192,7 +187,6 @@ def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp
 
 
 def test_units_that_a_log_says_are_compared(tmp_path):
-    """`speed` is in m/s in the database; an angle is no speed, and km/h is another unit."""
     pytest.importorskip("can")
     path = write_can(tmp_path / "a.asc", rows_at_random(1))
     for unit, why in (("rad", "is in [m/s]"), ("km/h", "judged as it is")):
@@ -239,7 +233,6 @@ def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
 
 
 def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
-    """Packets of another dialect agree on a definition, of known numbers, too."""
     dialect = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
     rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
     path = write_tlog(tmp_path / "a.tlog", rows)

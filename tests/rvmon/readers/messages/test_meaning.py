@@ -86,7 +86,6 @@ def test_units_of_fields(type_name, leaf, units):
 
 
 def test_what_nobody_can_know_is_open():
-    """A number alone, and a type of the robot's own; not what a message of ROS in it says."""
     own = Topic("/own", "shop_msgs/msg/Own", {}, messages={"arm": "geometry_msgs/msg/Twist"})
     assert meaning_of("data", Topic("/t", "std_msgs/msg/Float64", {})).sort is Sort.OPEN
     assert meaning_of("x", own).sort is Sort.OPEN
@@ -113,7 +112,6 @@ def test_who_writes_a_unit_has_read_the_comment_that_says_another():
 
 
 def test_all_tables_can_be_read():
-    """Each entry is what it can be, and the messages that it names are listed."""
     folder = resources.files("rvmon.readers.messages") / "meanings"
     count = 0
     for table in folder.iterdir():

@@ -46,13 +46,11 @@ def doubts(path, tmp_path, **arguments):
 
 
 def test_clocks_that_agree_are_not_spoken_of(tmp_path):
-    """Messages that are under way for some milliseconds, now and then for long."""
     path = recording(tmp_path / "a.bag", lambda n: 3 + n % 40, lambda n: 900 if n % 50 == 7 else 1)
     assert doubts(path, tmp_path) == {}
 
 
 def test_a_clock_that_is_behind_another(tmp_path):
-    """Its headers are earlier at least by that, however long messages are under way."""
     path = recording(tmp_path / "a", lambda n: 1500 + n % 7, lambda n: 2 + n % 5, write=ros2)
     expected = (
         "headers are at least 1.5 s earlier than the log, those of another topic 0.002 s; "
@@ -67,7 +65,6 @@ def ros2(path, sent):
 
 
 def test_a_clock_that_is_ahead_of_the_log(tmp_path):
-    """Nothing can be stamped after it was recorded."""
     path = recording(tmp_path / "a.bag", lambda n: -20 + n % 3, lambda _: 1)
     found = doubts(path, tmp_path)
     assert found == {"/odom": "headers are up to 0.02 s later than the log; do the clocks agree?"}
@@ -75,7 +72,6 @@ def test_a_clock_that_is_ahead_of_the_log(tmp_path):
 
 @pytest.mark.parametrize(("sign", "word"), [(1, "further from"), (-1, "nearer to")])
 def test_a_clock_that_drifts(tmp_path, sign, word):
-    """By 40 ms from the first messages to the last."""
     path = recording(tmp_path / "a.bag", lambda n: 50 + sign * n / 10 + n % 2, lambda _: 1)
     found = doubts(path, tmp_path)
     assert list(found) == ["/odom"]
@@ -83,7 +79,6 @@ def test_a_clock_that_drifts(tmp_path, sign, word):
 
 
 def test_headers_that_nobody_filled_in_say_nothing(tmp_path):
-    """Nor do a few messages."""
     zero = {"stamp": {"sec": 0, "nanosec": 0}}
     sent = [("/odom", START + n, {"header": zero}) for n in range(300)]
     assert doubts(write_ros1(tmp_path / "a.bag", sent), tmp_path, allow_missing=True) == {}
@@ -92,7 +87,6 @@ def test_headers_that_nobody_filled_in_say_nothing(tmp_path):
 
 
 def test_the_command_says_it(tmp_path, capsys):
-    """Among the health of the input; with JSON on standard error as well."""
     path = recording(tmp_path / "a.bag", lambda _: 1500, lambda _: 1)
     (tmp_path / "s.rv").write_text(SPEC)
     (tmp_path / "b.toml").write_text(BINDING)

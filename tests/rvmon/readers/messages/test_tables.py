@@ -46,7 +46,6 @@ def samples(path, **columns):
 
 
 def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
-    """Empty cells are no update; 0 and 1 are truth values where one is declared."""
     place = folder(
         tmp_path / "a",
         {
@@ -73,7 +72,6 @@ def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
 
 
 def test_the_same_report_as_of_one_file_of_all(tmp_path):
-    """Rows at random, also at equal instants, as lines of JSON."""
     rng = random.Random(3)
     kinds = {
         "pose.x": lambda: rng.randrange(5),
@@ -112,7 +110,6 @@ def test_the_same_report_as_of_one_file_of_all(tmp_path):
 
 
 def test_a_file_says_which_is_which(tmp_path, capsys):
-    """The topic, its time, its type, by which units are compared; a packed file, too."""
     toml = (
         'time = "stamp:us"\n[topics]\nspeed = "log_speed_0.csv"\n'
         'mode = {file = "mode.csv.gz", time = "t"}\n'
@@ -155,14 +152,12 @@ def test_a_file_says_which_is_which(tmp_path, capsys):
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(tmp_path, files, toml, message):
-    """File and line, or key."""
     place = folder(tmp_path / "a", files, toml)
     with pytest.raises(RvmonError, match=message):
         rvmon.loads(SPEC).evaluate(place, allow_missing=True)
 
 
 def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, capsys):
-    """And a folder of them for several."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.rv").write_text(ONE)
     (tmp_path / "runs").mkdir()

@@ -73,7 +73,6 @@ def test_a_frame_is_found_in_another_by_all_that_lies_between(tmp_path):
 
 
 def test_the_way_there_and_back_is_none():
-    """Whatever the transforms."""
     rng = random.Random(4)
     for _ in range(200):
         turn = [rng.gauss(0, 1) for _ in range(4)]

@@ -15,7 +15,6 @@ ROOT = Path(__file__).parents[4]
 
 @pytest.mark.slow
 def test_the_example_sorts_bags_by_what_needs_a_look(tmp_path, monkeypatch, capsys):
-    """Failures first, then what cannot be read; the exit code says whether there is any."""
     write_ros1(tmp_path / "good.bag", drive(stops_in_s=0.4))
     (tmp_path / "late").mkdir()
     write_ros2(tmp_path / "late" / "monday", drive(stops_in_s=0.6), "mcap")

@@ -33,7 +33,6 @@ def loaded(text):
     ],
 )
 def test_they_are_made_of_what_has_passed(text, printed):
-    """Since an instant that is captured, or the first."""
     found = format_formula(loaded(text).checked.requirements["R"].consequent)
     assert found == printed
 
@@ -66,7 +65,6 @@ CASES = {
 
 @pytest.mark.parametrize("text", CASES)
 def test_they_are_missed_a_tick_late(text):
-    """Met at the deadline itself, missed behind it, by a timer."""
     values, after = CASES[text]
     spec = loaded(text)
     ticks = round(after * 1e9)
@@ -84,7 +82,6 @@ def test_they_are_missed_a_tick_late(text):
 
 
 def test_what_must_hold_until_then_is_excused_behind_it():
-    """`for` a time that the trigger brings."""
     spec = loaded("for (e.w) a")
     good = [(0.0, {"a": True, "e": {"w": 2.0}}), (2.1, {"a": False})]
     bad = [(0.0, {"a": True, "e": {"w": 2.0}}), (2.0, {"a": False})]
@@ -92,7 +89,6 @@ def test_what_must_hold_until_then_is_excused_behind_it():
 
 
 def test_a_deadline_that_is_not_known_leaves_the_attempt_open():
-    """Never green, never red."""
     spec = loaded("within (e.w) f")
     samples = [(0.0, {"e": {"w": None}}), (9.0, {})]
     assert spec.evaluate(samples).verdicts["R"].value == "I"

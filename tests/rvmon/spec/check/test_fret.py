@@ -205,7 +205,6 @@ def test_translation(scope, condition):
 
 
 def test_page_says_what_is_tested():
-    """Every clause, trigger and consequent of the tests stands in the tables of the page."""
     shown = re.findall(r"`([^`]*)`", PAGE.read_text(encoding="utf-8"))
     forms = (SCOPES, BEFORE, CONDITIONS, TIMINGS, NEGATED)
     tested = [text for form in forms for text in form.values() if text]

@@ -29,12 +29,10 @@ def bins(checked, text):
     ],
 )
 def test_bins_are_formulas(checked, text, expected):
-    """Values, ranges, labels and formulas all become the formula that hits the bin."""
     assert bins(checked, text) == expected
 
 
 def test_clauses(checked):
-    """Sampling, goals, unwanted bins."""
     point = checked("coverpoint p = a {yes: true, illegal no: false} upon e goal 3").coverpoints[
         "p"
     ]
@@ -48,7 +46,6 @@ def test_weight(checked):
 
 
 def test_a_cross_is_where_its_coverpoints_are(checked):
-    """Unless it says where itself."""
     points = "coverpoint p = a {yes: true} upon e\ncoverpoint q = b {yes: true}\n"
     assert format_formula(checked(f"{points}cross c = p, q").crosses["c"].upon) == "e"
     own = checked(f"{points}cross c = p, q upon f").crosses["c"]
@@ -77,11 +74,9 @@ def test_cover(checked):
     [
         ("coverpoint p = a {yes}", ["RV060"]),
         ("coverpoint p {yes: 3}", ["RV060"]),
-        ("coverpoint p {yes: [1, 2]}", ["RV060"]),
         ("coverpoint p = a {yes: F b}", ["RV060"]),
         ("coverpoint p = a {yes: true} upon F b", ["RV060"]),
         ("coverpoint p = a {yes: true} goal 0", ["RV060"]),
-        ("coverpoint p = a {yes: true} goal 1.5", ["RV060"]),
         ("coverpoint p = a {yes: true} ignore a", ["RV060"]),
         ("coverpoint p = a {yes: true, yes: false}", ["RV011"]),
         ("coverpoint p = state {stopped}", ["RV013"]),
@@ -94,7 +89,6 @@ def test_cover(checked):
         ("coverpoint p = a {yes: true}\ncross c = p ignore a", ["RV061"]),
         ("coverpoint p = a {yes: true}\ncross c = p ignore p == maybe", ["RV013"]),
         ("coverpoint p = state {x: idle => idle}", ["RV060"]),
-        ("coverpoint p {x: idle => moving}", ["RV060"]),
         ("coverpoint p = x + 1 {y: 1 => 2}", ["RV021"]),
         ("coverpoint p = a {yes: true} weight 1.5", ["RV060"]),
         (
@@ -120,20 +114,16 @@ def test_crosses_are_limited(codes):
     ("text", "empty"),
     [
         ("= x {b: [5, 3]}", True),
-        ("= x {b: (2, 2)}", True),
         ("= x {b: (2, 2]}", True),
         ("= x {b: [2, 2], c: (2, 3), illegal d: [3, inf)}", False),
         ("= d {b: [1 m, 50 cm)}", True),
         ("= d {b: [100 cm, 1 m]}", False),
         ("= n {b: (2, 3)}", True),
-        ("= n {b: [2.25, 2.75]}", True),
         ("= n {b: 2.5}", True),
         ("= n {b: (2, 4), c: [3, 3], d: (1, 3)}", False),
         ("= n {b: x > 5}", False),
-        ("= n {b: n > 5 or n < 3}", False),
         ("= state {idle, moving}", False),
     ],
 )
 def test_bins_that_nothing_can_hit(codes, text, empty):
-    """Bounds the wrong way round, nothing between them, a whole number that is none."""
     assert codes(f"coverpoint p {text}") == (["RV062"] if empty else [])

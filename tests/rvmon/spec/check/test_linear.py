@@ -47,7 +47,6 @@ LINEAR = {
 
 @pytest.mark.parametrize("text", LINEAR)
 def test_what_means_the_same_on_every_run_is_monitored(text):
-    """Trigger and consequent are those of the linear formula."""
     assert parts(text) == LINEAR[text]
 
 
@@ -74,7 +73,6 @@ def test_the_rest_is_refused_with_the_reason(text):
 
 @pytest.mark.parametrize("text", ["AF[2 s, 5 s] AG a", "AG EF[1 s, 2 s] a", "E<>[1 s, 2 s] AG a"])
 def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
-    """`rvmon verify` knows no windows that open later."""
     with pytest.raises(SpecError) as raised:
         parts(text)
     [finding] = raised.value.diagnostics
@@ -82,13 +80,11 @@ def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
 
 
 def test_there_has_to_be_a_property():
-    """`monitor as written` without one says what to add."""
     with pytest.raises(SpecError, match="add a clause `property"):
         loads(f"{HEAD}requirement R1\n  monitor as written")
 
 
 def test_next_has_no_meaning_in_held_time():
-    """The same refusal as for a plain formula."""
     with pytest.raises(SpecError, match="RV034"):
         parts("AG (a -> AX b)", HEAD.replace("sampled", "held"))
 
@@ -216,7 +212,6 @@ def random_structure(rng):
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(4))
 def test_a_structure_has_the_property_iff_all_its_runs_fulfil_the_formula(seed):
-    """On random structures CTL and its linear form agree wherever a form is given."""
     rng = random.Random(seed)
     linear = refused = 0
     while linear < 25:

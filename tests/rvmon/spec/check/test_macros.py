@@ -38,7 +38,6 @@ def test_macros_with_parameters(checked, defined, required, expected):
 
 
 def test_macro_does_not_see_names_of_its_use(codes):
-    """What `let` names is unknown inside a macro."""
     text = "define far = d > v\nrequirement R upon e then within 1 s far let v = d"
     assert codes(text) == ["RV012"]
 
@@ -49,13 +48,11 @@ def test_macro_does_not_see_names_of_its_use(codes):
      "define p(z) = q(z)\ndefine q(z) = p(z)", "define p = q\ndefine q = r\ndefine r = q"],
 )  # fmt: skip
 def test_recursion_is_an_error(codes, text):
-    """A circle is reported once, used or not."""
     assert codes(text) == ["RV015"]
     assert codes(f"{text}\nrequirement R always (a and b)") == ["RV015"]
 
 
 def test_wrong_macro_is_reported_once(codes):
-    """A mistake in a macro is one finding, however often it is used."""
     text = "define p = aa or b\nrequirement R1 always p\nrequirement R2 always not p"
     assert codes(text) == ["RV012"]
     assert codes("define p(z) = z or bb\nrequirement R always p(a)") == ["RV012"]
@@ -63,7 +60,6 @@ def test_wrong_macro_is_reported_once(codes):
 
 
 def test_number_of_arguments(codes):
-    """Too many, too few, or none at all."""
     macro = "define p(y, z) = y or z\nrequirement R always "
     assert codes(f"{macro} p(a)") == ["RV021"]
     assert codes(f"{macro} p(a, b, c)") == ["RV021"]
@@ -71,13 +67,11 @@ def test_number_of_arguments(codes):
 
 
 def test_constants_are_constant(codes):
-    """A constant is no signal and no formula."""
     assert codes("const T = x") == ["RV020"]
     assert codes("const T = a") == ["RV020"]
 
 
 def test_override():
-    """A constant takes its value from outside; the text is checked like any other."""
     text = "const T = 3 s\nevent a, b\nrequirement R upon a then within T b"
     spec, _ = compile_text(text, constants={"T": "2s"})
     assert printed(spec) == "within 2 s b"
@@ -90,7 +84,6 @@ def test_override():
 
 
 def test_expansion_is_limited(codes):
-    """Macros that double a formula again and again are refused, quickly."""
     doubling = "define m0 = a\n" + "".join(f"define m{i + 1} = m{i} and m{i}\n" for i in range(60))
     assert set(codes(f"{doubling}requirement R always m60")) == {"RV005"}
     doubling = "define m0(p) = p\n" + "".join(
@@ -100,7 +93,6 @@ def test_expansion_is_limited(codes):
 
 
 def test_double_names_show_both_places(codes):
-    """Signals, events, macros and constants share their names."""
     assert codes("event a") == ["RV011"]
     assert codes("define a = b") == ["RV011"]
     assert codes("const a = 3") == ["RV011"]

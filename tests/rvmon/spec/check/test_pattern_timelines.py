@@ -66,7 +66,6 @@ def test_timelines():
 
 
 def test_every_pattern_has_a_timeline_in_every_scope():
-    """No pattern and no scope goes untested."""
     patterns = {
         name
         for file in LIBRARY.iterdir()

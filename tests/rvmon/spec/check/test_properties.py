@@ -43,7 +43,6 @@ def test_reach(checked):
 
 
 def test_bounds_and_until(checked):
-    """Quantified untils and bounds."""
     formula = checked("property P: A[a U[0, 3 s] E[b W c]]").properties["P"].formula
     assert isinstance(formula, PathBinary)
     assert formula.interval == Interval(0, 3 * 10**9)
@@ -61,7 +60,6 @@ def test_leads_to(checked):
 
 
 def test_names_of_a_model(checked, codes):
-    """Clocks and locations are kept as written; what is like a signal is warned of."""
     found = checked("property P: E<> a and Robot.done and t < 5").properties["P"]
     left, right = found.formula.operand.left, found.formula.operand.right
     assert (left.left, right) == (
@@ -139,13 +137,11 @@ def test_response_monitor(checked, body, trigger, consequent):
     ],
 )
 def test_role_split_that_is_refused(codes, body):
-    """What cannot be split is refused with its place."""
     text = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property {body}"
     assert codes(text) == ["RV053"]
 
 
 def test_response_monitor_needs_a_property(codes):
-    """Without a property there is nothing to derive from."""
     assert codes("requirement R monitor as response within 3 s") == ["RV053"]
 
 

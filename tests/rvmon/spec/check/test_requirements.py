@@ -31,7 +31,6 @@ from rvmon.spec.print import format_formula
     ],
 )
 def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
-    """A bare formula is a requirement with trigger and consequent, by its syntax."""
     spec = checked(f"define m = always (a -> b)\nrequirement R {text}")
     found = spec.requirements["R"]
     parts = (found.mode, format_formula(found.trigger), format_formula(found.consequent))
@@ -62,7 +61,6 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
     ],
 )
 def test_requirements_that_are_refused_or_warned_of(codes, text, code):
-    """Each mistake is found by its rule."""
     found = codes(f"requirement R {text}")
     assert found == [code] or (found == ["RV060"] and "scope after (F b)" in text)
 
@@ -85,12 +83,10 @@ def test_requirements_that_are_refused_or_warned_of(codes, text, code):
     ],
 )
 def test_no_warning_where_it_is_meant(codes, text):
-    """What is said on purpose gives no warning."""
     assert codes(f"requirement R {text}") == []
 
 
 def test_clauses(requirement):
-    """Clauses come in any order and keep their texts."""
     found = requirement(
         '"A text with \\"quotes\\""\n  upon e then within 1 s d < v\n'
         '  tags safety, "near people"\n  let v = d + 1 cm\n  severity high\n'
@@ -119,7 +115,6 @@ def test_a_share_of_runs_is_kept(requirement, clause, share):
 
 @pytest.mark.parametrize("share", ["100 %", "0 %", "0.95", "95", "95 s", "1e999 %", "200 %"])
 def test_a_share_of_runs_is_a_percentage_between_0_and_100(codes, share):
-    """All runs, or none, need no such clause."""
     assert codes(f"requirement R always a in at least {share} of runs") == ["RV075"]
 
 
@@ -135,7 +130,6 @@ def test_let_is_of_the_trigger(codes, requirement):
 
 
 def test_let_keeps_type_and_unit(codes):
-    """Captured values have units, labels and truth."""
     assert codes("requirement R upon e then F d > v let v = d") == []
     assert codes("requirement R upon e then F x > v let v = d") == ["RV022"]
     assert codes("requirement R upon e then F state == v let v = state") == []
@@ -152,7 +146,6 @@ def test_for_each(requirement, codes):
 
 
 def test_unread_names_are_warned_of(checked):
-    """A signal that nothing reads is a warning with its place."""
     from rvmon.spec.compile import compile_text
 
     text = "signal a, b : bool\nevent e\nrequirement R upon a then eventually a"

@@ -92,7 +92,6 @@ def test_scope_is_the_published_formula(call, scope):
 
 
 def test_start_is_where_the_scope_opens():
-    """`upon start` in a scope starts an attempt at each opening."""
     spec, _ = compile_text(
         "time sampled\nsignal p, q, r : bool\n"
         "requirement R upon start then eventually p scope after (q) until (r)"
@@ -104,7 +103,6 @@ def test_start_is_where_the_scope_opens():
 
 
 def test_pulse_stays_a_pulse():
-    """An event that triggers inside a scope triggers at each occurrence."""
     spec, _ = compile_text(
         "event a, b\nsignal q : bool\nrequirement R upon a then within 3 s b scope after (q)"
     )

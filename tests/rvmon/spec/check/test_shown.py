@@ -39,7 +39,6 @@ def test_what_one_run_shows_is_a_goal(text):
     ],
 )
 def test_what_no_run_shows_is_refused(text, message):
-    """Universal properties, names of a model, and clauses about attempts."""
     with pytest.raises(SpecError, match=message):
         loads(f"{HEAD}  {text}")
 

@@ -16,18 +16,13 @@ from rvmon.spec.checked.specification import TimeModel
         ("within (1 s / 3) (a)", "RV031"),
         ("F[3 s, 2 s] a", "RV032"),
         ("F(3 ns, 4 ns) a", "RV032"),
-        ("F[1 s, 1 s) a", "RV032"),
         ("F[-1 s, 1 s] a", "RV032"),
         ("within 200000 h (a and b)", "RV032"),
-        ("within (1 s * 1e20) (a)", "RV032"),
         ("a unless[1 s, 2 s] b", "RV033"),
-        ("a M[1 s, 2 s] b", "RV033"),
         ("next a", "RV034"),
-        ("previous a", "RV034"),
     ],
 )
 def test_what_is_no_time_is_refused(codes, text, code):
-    """Each mistake is found by its rule."""
     found = codes(f"requirement R upon start then {text}")
     assert found in ([code], [] if "200000 h" in text else [code])
 
@@ -38,19 +33,16 @@ def test_what_is_no_time_is_refused(codes, text, code):
         ("F a", Interval(0, None)),
         ("F <= 3 s a", Interval(0, 3 * 10**9)),
         ("within 2 min a", Interval(0, 120 * 10**9)),
-        ("within 0.5 s a", Interval(0, 500_000_000)),
         ("within 1e-3 s a", Interval(0, 1_000_000)),
         ("F[0, 3 us] a", Interval(0, 3000)),
         ("F[3 ns, 4 ns) a", Interval(3, 3)),
         ("F(3 ns, 5 ns) a", Interval(4, 4)),
-        ("F(3 ns, inf) a", Interval(4, None)),
         ("F[0, 0] a", Interval(0, 0)),
         ("within T a", Interval(0, 3 * 10**9)),
         ("within (T + 2 * 500 ms) a", Interval(0, 4 * 10**9)),
     ],
 )
 def test_intervals_in_ticks(checked, text, interval):
-    """Durations are exact, open ends become closed ones."""
     spec = checked(f"const T = 3 s\nrequirement R upon start then {text}")
     assert spec.requirements["R"].consequent.interval == interval
 
@@ -60,9 +52,7 @@ def test_intervals_in_ticks(checked, text, interval):
     [
         ("age(d) > 200 ms", "not once[0, 200 ms] (updated(d) or start)", "age(d) > 200 ms"),
         ("age(d) >= 200 ms", "not once[0, 199999999 ns] (updated(d) or start)", "age(d) >= 200 ms"),
-        ("age(d) <= 200 ms", "once[0, 200 ms] (updated(d) or start)", "age(d) <= 200 ms"),
         ("age(d) < 200 ms", "once[0, 199999999 ns] (updated(d) or start)", "age(d) < 200 ms"),
-        ("200 ms < age(d)", "not once[0, 200 ms] (updated(d) or start)", "age(d) > 200 ms"),
         ("age(d) >= 0", "true", "true"),
         ("age(d) < 0", "false", "false"),
         ("age(e) > 1 s", "not once[0, 1 s] (updated(e) or start)", "age(e) > 1 s"),
@@ -74,7 +64,6 @@ def test_age(required, text, meaning, printed):
 
 
 def test_time_models(checked):
-    """The three models and their periods; `next` stands in sampled time only."""
     assert checked("").time is TimeModel.HELD
     assert checked("time held").time is TimeModel.HELD
     sampled = checked("time sampled\nrequirement R upon a then next b")
@@ -88,12 +77,10 @@ def test_time_models(checked):
 
 
 def test_no_period_or_staleness_of_nothing(codes):
-    """A period or limit of staleness is longer than 0."""
     assert codes("time sampled every 0 s") == ["RV032"]
     assert codes("signal z : bool stale after 0 s") == ["RV032"]
 
 
 def test_stale_after(checked):
-    """The limit may be a constant."""
     spec = checked("const T = 200 ms\nsignal z, w : bool input stale after T")
     assert spec.signals["w"].stale_after == 200_000_000

@@ -52,21 +52,18 @@ def test_false_at_its_own_trigger(body, codes):
     "body",
     [
         "upon e then not f unless e",
-        "upon e then (e or f) until f",
         "upon e then always[1 ns, 2 s] not e",
         "upon e then f R[1 ns, inf) (not e)",
         "upon e then within 3 s not e",
         "upon e or f then for 1 s not e",
         "upon a then (not b) until a",
         "upon once e then for 1 s not e",
-        "upon x > 3 then for 1 s x > 2",
         "upon not (pick.id == 3) then for 1 s pick.id != 3",
         "upon e then within 1 s (not e unless f)",
         "upon a xor b then for 1 s not a",
     ],
 )
 def test_not_false_at_its_trigger(body, codes):
-    """The trigger leaves it open, or it is required later."""
     assert "RV047" not in codes(f"requirement R {body}\n")
 
 
@@ -75,19 +72,16 @@ def test_not_false_at_its_trigger(body, codes):
     [
         "always held(a, 3 s)",
         "always once[1 s, 2 s] a",
-        "always (a and once[1 s, 2 s] b)",
         "always (a since[1 ns, 2 s] b)",
         "always ((once[1 s, 2 s] a) or held(b, 1 s))",
         "always not historically[1 s, 2 s] a",
         "always rise(a)",
-        "always fall(a)",
         "always (b and fall(e))",
         "upon start then held(a, 1 s)",
         "upon start then for 3 s fall(a)",
     ],
 )
 def test_false_at_the_first_instant(formula, codes):
-    """There is nothing before it."""
     assert codes(f"requirement R {formula}\n") == ["RV048"]
 
 
@@ -102,19 +96,16 @@ def test_the_position_before_the_first(codes):
     [
         "always[3 s, inf) held(a, 3 s)",
         "always once[0 s, 2 s] a",
-        "always historically[1 s, 2 s] a",
         "always (a -> held(a, 3 s))",
         "always (start or once[1 ns, 2 s] a)",
         "always (a or held(b, 1 s))",
         "always (a since b)",
         "always within 1 s rise(a)",
-        "always not fall(a)",
         "always held(a, 3 s)\n  scope after (b)",
         "upon a then held(b, 3 s) or c",
     ],
 )
 def test_not_false_at_the_first_instant(formula, codes):
-    """It is true there, depends on the input, or is not required there."""
     assert "RV048" not in codes(f"requirement R {formula}\n")
 
 
@@ -157,7 +148,6 @@ def test_a_pulse_in_sampled_time_makes_stretches(codes):
     ],
 )
 def test_the_fix_is_of_the_language(time, body, codes):
-    """What stands in the fix can be written, and is not found again."""
     head = f"time {time}\nsignal a, b, c : bool\nevent e, f\nrequirement R\n  "
     (finding,) = (f for f in compile_text(head + body)[1] if f.code in ("RV047", "RV048"))
     fixed = finding.help.split("`")[1]
@@ -187,7 +177,6 @@ def born(case):
 
 @pytest.mark.law
 def test_what_is_said_of_the_first_instant_holds_on_every_run():
-    """Where a warning says that it fails there, the law says so of random runs."""
     warned = 0
     for number, (time, period, required) in enumerate(required_first()):
         requirement = build.requirement(required, whenever=Constant(True))
@@ -211,7 +200,6 @@ def test_what_is_said_of_the_first_instant_holds_on_every_run():
 
 @pytest.mark.law
 def test_what_is_said_of_the_trigger_holds_on_every_run():
-    """Where a warning says that it fails each time, no attempt passes on random runs."""
     warned = attempts = 0
     for seed in range(1500):
         rng = random.Random(seed)

@@ -85,7 +85,6 @@ def test_constants_are_converted_once_to_the_nearest_float(requirement, text, va
 
 
 def test_comparison_is_made_in_the_unit_of_the_signal(required, checked):
-    """The constant takes the unit of the signal, wherever it stands; signals get a factor."""
     assert required("5 cm < d") == "0.05 m < d"
     spec = checked("signal z : real [cm]\nrequirement R always d < z")
     args = spec.requirements["R"].consequent.right.args
@@ -93,13 +92,11 @@ def test_comparison_is_made_in_the_unit_of_the_signal(required, checked):
 
 
 def test_degrees_and_radians_are_one_kind(checked):
-    """An angle in degrees is compared with one in radians; a plain number is no angle."""
     spec = checked("signal w : real [rad]\nrequirement R always w < 180 deg")
     assert spec.requirements["R"].consequent.right.value == 3.141592653589793
 
 
 def test_products_carry_units(codes):
-    """Units multiply, divide and take roots."""
     assert codes("requirement R always d * d < 4 m^2") == []
     assert codes("requirement R always sqrt(d * d) < 4 m") == []
     assert codes("requirement R always hypot(d, d) < 4 m") == []
@@ -114,7 +111,6 @@ def test_constant_comparison_is_settled(requirement):
 
 
 def test_bool_fields_are_propositions(required):
-    """A bool field or its last value stands as it is."""
     assert required("pick.ok or prev(a)") == "pick.ok or prev(a)"
 
 
@@ -128,7 +124,6 @@ def test_label_equals_its_own_signal_first(checked):
 
 @pytest.mark.parametrize("text", ["m/", "/s", "m//s", "m s", "furlong", "", "m^x", "m" * 100])
 def test_malformed_units_are_refused(text):
-    """What is no product of known parts is no unit; the empty one is a plain number."""
     if text:
         with pytest.raises(UnknownUnitError):
             parse_unit(text)
@@ -156,7 +151,6 @@ def test_unit_factors(text, base, factor):
 
 @pytest.mark.parametrize("type_", ["bool", "int", "{idle, moving}"])
 def test_only_real_signals_ignore_nan(type_, codes):
-    """Values of other types are never NaN."""
     assert codes(f"signal z : {type_} ignore NaN\n") == ["RV027"]
     assert codes("signal z : real ignore NaN stale after 1 s\n") == []
     assert codes("signal z : real [m] input ignore NaN\n") == []
@@ -164,5 +158,4 @@ def test_only_real_signals_ignore_nan(type_, codes):
 
 @pytest.mark.parametrize("text", ["stale after 1 s ignore NaN", "ignore nan", "ignore"])
 def test_where_what_is_ignored_stands(text, message):
-    """Elsewhere, or spelt otherwise, it is refused with the fix."""
     assert "write `ignore NaN` behind the type" in message(f"signal z : real {text}\n")

@@ -105,7 +105,6 @@ def test_what_no_function_takes_is_refused(call, message):
     ],
 )
 def test_functions_know_their_units(claim, values):
-    """Arguments are brought to the unit that the function takes, results come in their own."""
     head = "spec s\nsignal a : real [deg]\nsignal d : real [m]\nsignal n : int\n"
     spec = rvmon.loads(f"{head}requirement R\n  always ({claim})\n")
     report = spec.evaluate([(0, values)], allow_missing=True)

@@ -49,7 +49,6 @@ def test_operators_stand_in_the_reference():
 
 
 def test_functions_stand_in_the_reference():
-    """As do those that are called."""
     for function in FUNCTIONS.values():
         arguments = [LETTERS[argument] for argument in function.arguments]
         if arguments[:2] == ["x", "x"]:
@@ -81,7 +80,6 @@ def verdicts_of(formulas):
 @pytest.mark.law
 @pytest.mark.parametrize("op", OPERATORS, ids=lambda op: op.name)
 def test_what_an_operator_is_told_in_means_the_same(op):
-    """On every run, in all ways that an engine has for it; unknowns and births aside."""
     formula = formula_of(op)
     pair = [formula, rewritten(formula)]
     assert all(one == other for one, other in verdicts_of(pair))
@@ -90,7 +88,6 @@ def test_what_an_operator_is_told_in_means_the_same(op):
 @pytest.mark.law
 @pytest.mark.parametrize("op", DUALS, ids=lambda op: op.name)
 def test_duals_are_negations(op):
-    """The dual of the negations is the negation."""
     denied = tuple(Unary(UnaryOp.NOT, signal) for signal in SIGNALS)
     dual = type(op).of(op.entry.dual)
     pair = [Unary(UnaryOp.NOT, formula_of(op)), formula_of(dual, denied)]

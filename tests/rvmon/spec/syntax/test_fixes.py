@@ -24,15 +24,12 @@ def first_finding(text):
     ("required", "fix"),
     [
         ("within -1 s released", "write it without `-`"),
-        ("within -T released", "write it without `-`"),
         ("within 1,5 s released", "write `1.5`"),
         ("within .5 s released", "write `0.5`"),
-        ("within 1. s released", "write `1.0`"),
         ("within (3) released", "did you mean `3 s`?"),
         ("within 1.5 released", "`1.5 s released`"),
         ("within 3 s, released", "no comma stands behind a duration"),
         ("speed <= 40 A", "`A` is an operator here: write `40 ampere`"),
-        ("speed <= 40 W and gaze_ok", "`W` is an operator here: write `40 watt`"),
         ("speed in [-1 m/s, 2 m/s]", "write `(speed >= -1 m/s and speed <= 2 m/s)`"),
         ("delta(speed, 1 s) in [0, 2 m/s]", "write `(delta(speed, 1 s) >= 0 and delta(speed, 1 s)"),
         ("not gaze_ok for 1 s", "write `held(not gaze_ok, 1 s)` for what has held so long"),
@@ -41,7 +38,6 @@ def first_finding(text):
         ("eventually[3 s, 1 s] released", "did you mean `[1 s, 3 s]`?"),
         ("eventually(3 s, 3 s] released", "an open bound leaves its own instant out"),
         ("released within 3 s", "`within 3 s (…)`"),
-        ("always (speed < 1,5 m/s)", "write `1.5`"),
         ("within 3 s relesed", "did you mean `released`?"),
         ("within 3 s xyzzy", "declare it, as `signal xyzzy : bool` or `event xyzzy`"),
         ("within 3 s released asked", "an operator is missing before `asked`"),
@@ -49,7 +45,6 @@ def first_finding(text):
     ],
 )
 def test_what_is_owed(required, fix):
-    """Durations, numbers and names that are written as they are elsewhere."""
     assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
 
 
@@ -58,19 +53,15 @@ def test_what_is_owed(required, fix):
     [
         ("signal w : real [N m]", "parts of a unit are joined by `*` and `/`"),
         ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
-        ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
         ("requirement R upon asked, then released", "the consequent stands after `then`"),
         ('requirement "R" upon asked then released', "its name comes first"),
         ("signal x", "a signal has a type"),
         ("signal x : float", "write `real`"),
         ("signal x : string", "write `{one, another}`"),
         ("requirement R-16 always released", "`R-16` is no name: write `R_16`"),
-        ('requirement R-16 "text" upon asked then released', "`R-16` is no name"),
         ("requirement always released", "its name comes first: `requirement R1 always …`"),
-        ("requirement upon asked then released", "its name comes first"),
         ("requirement\n  released", "`released` is taken for its name"),
         ("requirement R let z = speed upon asked then released", "stands behind the trigger or"),
-        ("requirement R upon asked then let z = speed released", "stands behind the trigger or"),
         ("event e(x)", "a field has a type"),
         ('requirement R "t"\n severity high\n always released', "clause, as `severity …`, stands"),
         ('requirement R "t" source "a b" released', "a clause, as `source …`, stands behind"),
@@ -82,12 +73,10 @@ def test_what_is_owed(required, fix):
     ],
 )
 def test_items(item, fix):
-    """Items in the manner of other languages."""
     assert fix in first_finding(item + "\n").help
 
 
 def test_a_trigger_and_what_is_owed_are_both_looked_at():
-    """What looks ahead in a trigger is found beside errors in what is required, and in clauses."""
     with pytest.raises(SpecError) as caught:
         compile_text(
             HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
@@ -96,7 +85,6 @@ def test_a_trigger_and_what_is_owed_are_both_looked_at():
 
 
 def test_the_expected_is_said_in_words():
-    """No pattern of the grammar comes through."""
     found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
     assert found.message == "found `!`, expected a duration such as `3 s`"
 
@@ -122,14 +110,12 @@ def test_words_are_found_whole(word, fix):
     ],
 )
 def test_signs_of_other_languages(formula, fix, expected):
-    """Labels in quotes and other arrows; what could have stood there is said in words."""
     found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
     assert fix in found.help
     assert found.message.endswith(expected)
 
 
 def test_every_terminal_has_words():
-    """No pattern of the grammar comes through, whichever terminal is expected."""
     for terminal in grammar().terminals:
         if not terminal.name.startswith("__IGNORE"):
             assert not set(_word(terminal.name, grammar())) & set("\\?|^"), terminal.name
@@ -137,7 +123,6 @@ def test_every_terminal_has_words():
 
 @pytest.mark.parametrize("formula", ["never (asked)", "never(asked)", "never asked"])
 def test_never(formula):
-    """What shall never be is said by `always not`."""
     assert first_finding(f"requirement R\n  {formula}\n").help == (
         "for `never` write `always not (…)`"
     )
@@ -145,5 +130,4 @@ def test_never(formula):
 
 @pytest.mark.parametrize("item", ["signal x : real m\n", "event hit(force: real m)\n"])
 def test_a_unit_without_brackets(item):
-    """The unit of a type is told from its other parts by brackets."""
     assert "a unit stands in brackets: `[m]`" in first_finding(item).help

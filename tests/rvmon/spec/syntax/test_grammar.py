@@ -43,58 +43,41 @@ def test_grammar_has_no_conflicts():
         ("not a and b", "not a and b"),
         ("! a & b", "not a and b"),
         ("a && b || c", "a and b or c"),
-        ("a | b and c", "a or b and c"),
-        ("a xor b or c", "a xor b or c"),
         ("a or b xor c and a", "a or b xor c and a"),
         ("a -> b -> c", "a -> b -> c"),
         ("(a -> b) -> c", "(a -> b) -> c"),
         ("a implies b iff c", "a -> b <-> c"),
-        ("a <-> b <-> c", "a <-> b <-> c"),
         ("F a", "eventually a"),
         ("G[0, 3 s] a", "for 3 s a"),
-        ("within 200 ms a", "within 200 ms a"),
         ("eventually <= 3 s a", "within 3 s a"),
         ("F(1 s, 2 s] a", "eventually[1000000001 ns, 2 s] a"),
         ("F[1 s, 2 s) a", "eventually[1 s, 1999999999 ns] a"),
         ("F[1 s, inf) a", "eventually[1 s, inf) a"),
-        ("F[1 s, ∞) a", "eventually[1 s, inf) a"),
         ("F(a)", "eventually a"),
         ("within (2 * 3 s) (a or b)", "within 6 s (a or b)"),
         ("a U b", "a until b"),
         ("a U[1 s, 2 s] b", "a until[1 s, 2 s] b"),
         ("a until <= 1 s b", "a until[0, 1 s] b"),
         ("a weak until b", "a unless b"),
-        ("a W b", "a unless b"),
-        ("a unless b", "a unless b"),
         ("a R b", "a R b"),
         ("a M b", "a M b"),
         ("a S b", "a since b"),
         ("a U b U c", "a until b until c"),
         ("(a U b) U c", "(a until b) until c"),
-        ("a -> b U c", "a -> b until c"),
-        ("O a", "once a"),
         ("H[0, 1 s] a", "historically[0, 1 s] a"),
         ("rise(a) and fall(b and c)", "rise(a) and fall(b and c)"),
-        ("held(a, 3 s)", "held(a, 3 s)"),
         ("changed(x) or updated(e) or known(x)", "changed(x) or updated(e) or known(x)"),
-        ("x < 3 and y >= 2", "x < 3 and y >= 2"),
-        ("not x < 3", "not x < 3"),
         ("x = 3 or x == 4 or x != 5", "x == 3 or x == 4 or x != 5"),
         ("x + y * 2 < -x", "x + y * 2 < -x"),
         ("(x + y) * 2 < 1", "(x + y) * 2 < 1"),
         ("x - (y - 1) < 1", "x - (y - 1) < 1"),
         ("x / y / 2 < 1", "x / y / 2 < 1"),
         ("abs(x) < max(y, 1, 2)", "abs(x) < max(y, 1, 2)"),
-        ("hypot(x, y) < sqrt(x)", "hypot(x, y) < sqrt(x)"),
-        ("prev(x) < delta(y)", "prev(x) < delta(y)"),
         ("rate(d) < 5 m/s", "rate(d) < 5 m/s"),
-        ("state == moving", "state == moving"),
         ("moving != state", "moving != state"),
         ("state == S", "state == S"),
         ("pick.ok and pick.id = 3", "pick.ok and pick.id == 3"),
-        ("pick.kind == nut", "pick.kind == nut"),
         ("prev(state) == idle", "prev(state) == idle"),
-        ("true -> false", "true -> false"),
         ("immediately a and b", "a and b"),
         ("x < 1e3", "x < 1000"),
         ("a and always b", "a and always b"),
@@ -103,12 +86,10 @@ def test_grammar_has_no_conflicts():
         ("(a unless b) and c", "(a unless b) and c"),
         ("a -> b until c", "a -> b until c"),
         ("within 1 s a or within 2 s b", "(within 1 s a) or within 2 s b"),
-        ("always a and always b", "(always a) and always b"),
         ("within [1 s, 2 s] a", "eventually[1 s, 2 s] a"),
         ("for (1 s, 2 s] a", "always[1000000001 ns, 2 s] a"),
         ("a until[<= 2 s] b", "a until[0, 2 s] b"),
         # A name behind a number is its unit; a compound unit has known parts and no spaces.
-        ("speed < 5 m/s", "speed < 5 m/s"),
         ("speed < 5 mm/s", "speed < 0.005 m/s"),
         ("speed < 18 km/h", "speed < 5 m/s"),
         ("d < 5cm", "d < 0.05 m"),
@@ -116,7 +97,6 @@ def test_grammar_has_no_conflicts():
         ("5 m/s > speed", "5 m/s > speed"),
         ("d < 5 m and a", "d < 5 m and a"),
         ("d < 5 m until b", "d < 5 m until b"),
-        ("d < 5 m U b", "d < 5 m until b"),
         ("x < 5 U b", "x < 5 until b"),
         ("x < 50 %", "x < 0.5"),
         ("state == S S state != S", "state == S since state != S"),
@@ -131,7 +111,6 @@ def test_operators(required, text, printed):
     ("text", "help_"),
     [
         ("a unless b and c", "write `… unless (b and …)` or `(a unless b) and …`"),
-        ("a or b until c", "write `(… or b) until …` or `… or (b until c)`"),
         ("a and b xor b S c", "write `(… xor b) S …` or `… xor (b S c)`"),
     ],
 )
@@ -159,7 +138,6 @@ def test_a_connective_beside_until_needs_brackets(text, help_):
     ],
 )
 def test_sets_and_choices(text, same):
-    """They stand for what can be written out."""
     head = (
         "spec s\nsignal a, b, c : bool\nsignal x : real\nsignal mode : {red, blue, green}\n"
         "define define_d(y) = if a then y else 2\n"
@@ -172,7 +150,6 @@ def test_sets_and_choices(text, same):
 
 
 def test_clauses_between_trigger_and_consequent():
-    """`let` and `for each` stand before `then` as well as behind what is required."""
     head = "spec s\nsignal x : real\nevent e(k: int), f\n"
     texts = (
         "upon e for each n in e.k let v = x then within 1 s x > v + n",
@@ -198,7 +175,6 @@ def test_a_choice_is_laid_out_on_one_line():
 
 
 def test_a_choice_is_no_captured_value(codes):
-    """A value at the trigger is one number."""
     assert "RV020" in codes("requirement R upon a then b let v = if a then 1 else 2")
 
 
@@ -216,12 +192,10 @@ def test_a_choice_is_no_captured_value(codes):
     ],
 )
 def test_what_is_read_in_two_ways_needs_brackets(codes, text, code):
-    """A temporal prefix before a connective, different operators of the until family."""
     assert codes(f"requirement R upon start then {text}") == [code]
 
 
 def test_both_readings_are_shown(message):
-    """The message shows the two readings with their brackets."""
     text = message("requirement R always not a and speed < 1 m/s")
     assert "`always (not a and speed < 1 m/s)` or `(always not a) and speed < 1 m/s`" in text
 
@@ -244,7 +218,6 @@ def test_reserved_words_are_no_names_of_requirements(codes):
 
 @pytest.mark.parametrize("text", ["always a", "\n  upon\n  a then b", "not a"])
 def test_a_requirement_without_a_name_is_told_so(message, text):
-    """A word that begins what is demanded is not taken for a name."""
     assert "its name comes first" in message(f"requirement {text}")
 
 
@@ -264,26 +237,22 @@ def test_division_by_a_signal_called_like_a_unit(checked):
 
 @pytest.mark.parametrize("words", [RESERVED, INFIX_WORDS | CLAUSE_WORDS])
 def test_tables_of_words_and_grammar_agree(words):
-    """Every word of the tables stands in the grammar, so that neither is out of date."""
     single = {word for word in words if len(word) == 1} | {"AG", "AF", "AX", "EG", "EF", "EX"}
     assert {word for word in words - single if word not in grammar_text()} == set()
 
 
 def test_property_is_a_clause_or_an_item(checked):
-    """`property` with a name and a colon is an item, else a clause of the requirement above."""
     spec = checked("requirement R\n  always a\nproperty AG a\nproperty P: AG b")
     assert spec.requirements["R"].ctl.text == "AG a"
     assert spec.properties["P"].text == "AG b"
 
 
 def test_items_may_be_indented(checked):
-    """An item starts with its word at a line's start, whatever the indent."""
     spec = checked("    requirement R1 always a\n    requirement R2 always b")
     assert list(spec.requirements) == ["R1", "R2"]
 
 
 def test_all_errors_of_a_file_appear_at_once(codes):
-    """Each item is read alone."""
     text = (
         "requirement R1 always (\n"
         "requirement R2 always aa\n"
@@ -313,12 +282,10 @@ def test_all_errors_of_a_file_appear_at_once(codes):
     ],
 )
 def test_syntax_errors_speak_the_language(message, text, expected):
-    """A syntax error says what could have stood there, or how to fix it."""
     assert expected in message(text)
 
 
 def test_byte_order_mark_is_ignored():
-    """What some editors put at the start of a file does no harm."""
     spec, _ = compile_text("\ufeffspec demo\nsignal a : bool\nrequirement R always a")
     assert spec.name == "demo"
     assert compile_text("\ufeff# comment\r\nspec demo\r\n")[0].name == "demo"
@@ -326,7 +293,6 @@ def test_byte_order_mark_is_ignored():
 
 @pytest.mark.parametrize("sign", ["and", "or", "&&", "+"])
 def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
-    """One plain finding, however long the chain is."""
     chain = f" {sign} ".join(["p"] * 100_000)
     with pytest.raises(SpecError, match="more than 5,000 operators") as caught:
         compile_text(f"signal p : bool\nrequirement R\n  always ({chain})\n")
@@ -334,20 +300,17 @@ def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
 
 
 def test_words_in_texts_and_comments_are_no_operators():
-    """A long comment stands in no one's way."""
     text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
     compile_text(text)
 
 
 @pytest.mark.parametrize("many", [90, 99, 150])
 def test_brackets_that_only_enclose_are_no_levels(required, many):
-    """What is in them means the same with them."""
     assert required("(" * many + "a" + ")" * many) == "a"
 
 
 @pytest.mark.parametrize("opening", ["not (", "("])
 def test_what_is_nested_too_deeply_is_shown(opening):
-    """The place is that of what is too deep, not of the whole requirement."""
     text = f"signal a : bool\nrequirement R\n  always {opening * 300}a{')' * 300}\n"
     with pytest.raises(SpecError) as caught:
         compile_text(text)

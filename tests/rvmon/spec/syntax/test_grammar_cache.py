@@ -20,7 +20,6 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_a_parser_from_the_cache_is_the_same(folder):
-    """Trees, places, terminals and rules do not depend on where the tables come from."""
     made = parser_of(GRAMMAR, OPTIONS)
     [path] = folder.glob("grammar-*")
     written = path.stat().st_ino
@@ -33,7 +32,6 @@ def test_a_parser_from_the_cache_is_the_same(folder):
 
 
 def test_another_grammar_has_other_tables(folder):
-    """The key is the content: a changed grammar is never parsed with old tables."""
     parser_of(GRAMMAR, OPTIONS)
     other = parser_of(GRAMMAR.replace('"a"', '"b"'), OPTIONS)
     assert len(list(folder.glob("grammar-*"))) == 2
@@ -53,7 +51,6 @@ def test_what_is_wrong_is_passed_over(folder):
 
 
 def test_it_can_be_switched_off(folder, monkeypatch):
-    """With `RVMON_CACHE=off` nothing is read or written."""
     monkeypatch.setenv("RVMON_CACHE", "off")
     assert cache_folder() is None
     assert parser_of(GRAMMAR, OPTIONS).parse("a 7").children[0] == "7"

@@ -25,7 +25,6 @@ def compile_file(tmp_path):
 
 
 def test_import_brings_declarations_and_requirements(compile_file):
-    """Names of the imported file are known, its header and unread names do not matter."""
     spec, warnings = compile_file(
         main='spec main "M"\nimport "sub/signals.rv"\nrequirement R upon e then within 1 s a',
         sub__signals='spec other\nimport "more.rv"\nsignal a, b : bool\nrequirement R0 always b',
@@ -38,7 +37,6 @@ def test_import_brings_declarations_and_requirements(compile_file):
 
 
 def test_file_is_read_once(compile_file):
-    """Two ways to the same file are no double declaration."""
     spec, _ = compile_file(
         main='import "one.rv"\nimport "two.rv"\nimport "./one.rv"\nrequirement R always a',
         one='import "base.rv"\nsignal b : bool',
@@ -57,7 +55,6 @@ def test_file_is_read_once(compile_file):
     ],
 )
 def test_circle_is_an_error_with_both_places(compile_file, texts):
-    """Files that import each other are refused, with two places."""
     with pytest.raises(SpecError) as caught:
         compile_file(**texts)
     (finding,) = caught.value.diagnostics
@@ -74,7 +71,6 @@ def test_double_name_over_files_shows_both_files(compile_file):
 
 
 def test_error_in_imported_file_names_it(compile_file):
-    """A finding stands in the file that it is about, those of the main file come first."""
     with pytest.raises(SpecError) as caught:
         compile_file(main='import "one.rv"\nrequirement R always z', one="signal a boool")
     names = [f.spans[0].span.source.name.rpartition("/")[2] for f in caught.value.diagnostics]
@@ -83,7 +79,6 @@ def test_error_in_imported_file_names_it(compile_file):
 
 @pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
 def test_what_cannot_be_read_is_said(compile_file, target):
-    """A missing file, a folder, an unknown library."""
     with pytest.raises(SpecError) as caught:
         compile_file(main=f"import {target}")
     assert [finding.code for finding in caught.value.diagnostics] == ["RV016"]
@@ -105,7 +100,6 @@ def test_time_may_stand_in_an_imported_file_once(compile_file):
 
 @pytest.mark.parametrize("target", ["/dev/zero", "/etc/passwd", "../secret.rv", "link.rv"])
 def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
-    """What lies outside, or where a link leads outside, is refused; not a line of it is shown."""
     folder = tmp_path.parent / "secret.rv"
     folder.write_text("password")
     (tmp_path / "link.rv").symlink_to(folder)
@@ -118,7 +112,6 @@ def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
 
 @pytest.mark.parametrize("mark", [".git", "pyproject.toml"])
 def test_a_project_shares_its_specifications(tmp_path, mark):
-    """Imports may lead anywhere within the project's root."""
     (tmp_path / mark).touch()
     (tmp_path / "common").mkdir()
     (tmp_path / "robot").mkdir()
@@ -129,7 +122,6 @@ def test_a_project_shares_its_specifications(tmp_path, mark):
 
 
 def test_a_folder_that_is_named_may_be_imported_from(tmp_path, monkeypatch):
-    """RVMON_ALLOW_IMPORTS names folders outside the project."""
     (tmp_path / "common").mkdir()
     (tmp_path / "robot").mkdir()
     (tmp_path / "common" / "x.rv").write_text("signal a : bool")
@@ -140,7 +132,6 @@ def test_a_folder_that_is_named_may_be_imported_from(tmp_path, monkeypatch):
 
 
 def test_pipes_and_large_files_are_no_specifications(compile_file, tmp_path, monkeypatch):
-    """Only regular files of a bounded size are read; nobody waits for a pipe."""
     os.mkfifo(tmp_path / "pipe.rv")
     with pytest.raises(SpecError, match="a regular file is expected"):
         compile_file(main='import "pipe.rv"')

@@ -46,7 +46,6 @@ def test_verdicts_are_mixed(time: TimeModel) -> None:
 
 
 def test_everything_occurs() -> None:
-    """Pulses, levels, values that are lost or become stale, absent sources, calls of all kinds."""
     seen: Counter[str] = Counter()
     for time in TimeModel:
         for case in some_cases(time, 600):
@@ -62,7 +61,6 @@ def test_everything_occurs() -> None:
 
 
 def test_operators_meet_everything() -> None:
-    """Each operator with each kind of window meets every time, trigger, end, `let`, `for each`."""
     found: Counter[Feature] = Counter()
     for seed in range(11_000):
         found.update(features(random_spec(random.Random(f"met/{seed}"), Profile())))
@@ -76,7 +74,6 @@ def test_operators_meet_everything() -> None:
 
 
 def test_next_stays_outside_held_time() -> None:
-    """`X` and `Y` do not occur where they are refused; W and M start at zero."""
     for case in some_cases(TimeModel.HELD):
         for found in case.spec.requirements.values():
             for part in subformulas(found.consequent):
@@ -91,7 +88,6 @@ def test_next_stays_outside_held_time() -> None:
 
 
 def test_triggers_look_back() -> None:
-    """Triggers hold no future operator, and their class is their syntax's."""
     future = {UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL}
     future |= {BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE}
     for case in some_cases(TimeModel.SAMPLED):
@@ -102,7 +98,6 @@ def test_triggers_look_back() -> None:
 
 
 def test_known_traces() -> None:
-    """Without unknowns there is neither `None` nor NaN, and every name has a source."""
     for seed in range(200):
         case = case_of(seed, Profile(), TraceProfile(unknowns=False))
         assert case.names is None
@@ -111,7 +106,6 @@ def test_known_traces() -> None:
 
 
 def test_traces_for_other_specs() -> None:
-    """Gaps follow the bounds of a spec, numbers its thresholds."""
     spec = spec_of(requirement(eventually(compared(x, ">", 1000), 0, 500)))
     rng = random.Random(1)
     profile = TraceProfile(span=5_000)
@@ -126,7 +120,6 @@ def test_traces_for_other_specs() -> None:
 @settings(max_examples=30, deadline=None)
 @given(case=cases())
 def test_strategy_gives_sound_cases(case: Case) -> None:
-    """What Hypothesis draws can be judged; samples rise, none below an `advance` before it."""
     times = [sample.t for sample in case.samples]
     assert times == sorted(set(times))
     told = [one.t if isinstance(one, Sample) else one for one in case.actions]
@@ -135,7 +128,6 @@ def test_strategy_gives_sound_cases(case: Case) -> None:
 
 
 def test_features_can_be_left_out() -> None:
-    """A profile without a feature gives no spec that has it."""
     plain = Profile(past=False, numbers=False, captures=False, for_each=False, policies=False)
     plain = replace(plain, stale=False)
     for seed in range(200):

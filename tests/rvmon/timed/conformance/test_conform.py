@@ -51,7 +51,6 @@ def check(recorded, *, end, observed=("push", "opened", "closed"), tolerance=0.0
     ],
 )
 def test_runs_of_the_model_conform(recorded, end):
-    """Actions at instants that the model allows are all explained."""
     answer = check(recorded, end=end)
     assert answer.conforms is True
     assert answer.explained == len(recorded)
@@ -70,7 +69,6 @@ def test_runs_of_the_model_conform(recorded, end):
     ],
 )
 def test_the_first_divergence_is_told(recorded, end, explained, label):
-    """Too early, too late, not possible, or nothing at all: told with what was explained before."""
     answer = check(recorded, end=end)
     assert answer.conforms is False
     assert answer.explained == explained
@@ -78,7 +76,6 @@ def test_the_first_divergence_is_told(recorded, end, explained, label):
 
 
 def test_what_was_allowed_is_told():
-    """A divergence says what the model could have done, and when."""
     answer = check([(1, "push"), (2, "push")], end=9)
     second = TICKS_PER_SECOND
     assert set(answer.divergence.allowed) == {
@@ -90,7 +87,6 @@ def test_what_was_allowed_is_told():
 
 
 def test_unobserved_actions_happen_unseen():
-    """What a recording does not show may have happened in between."""
     assert check([(3, "opened")], end=3).conforms is False
     assert check([(3, "opened")], end=3, observed=("opened",)).conforms is True
     assert check([(1.9, "opened")], end=3, observed=("opened",)).conforms is False
@@ -132,7 +128,6 @@ def test_channels_are_labels_too():
 
 @pytest.mark.slow
 def test_every_run_of_a_network_conforms_to_it():
-    """Whatever the model checker shows as a run is accepted when it is recorded."""
     for seed in range(25):
         network = loads_network(_labelled(random_model(seed)))
         try:
@@ -190,7 +185,6 @@ automaton q { location a location b start a edge a -> b on c? as rcv }
     ],
 )
 def test_a_synchronised_move_has_the_labels_of_all_its_edges(names, observed, explained):
-    """It is recorded as all those of its names that the recording shows."""
     recorded = [(2, name) for name in names.split()]
     answer = check(recorded, end=3, observed=observed.split(), text=PAIR)
     assert answer.conforms is explained

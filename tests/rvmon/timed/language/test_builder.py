@@ -22,7 +22,6 @@ def lamp():
 
 
 def test_it_equals_its_text():
-    """Building and writing give the same network, names, numbers and all."""
     text = """
     network lamp "A lamp"
     unit 1 s
@@ -59,7 +58,6 @@ def test_it_equals_its_text():
     ],
 )
 def test_a_text_that_cannot_be_read_is_shown(change, line):
-    """The finding shows the line that the text became."""
     net = NetworkBuilder("n")
     change(net)
     assert line in net.text
@@ -69,7 +67,6 @@ def test_a_text_that_cannot_be_read_is_shown(change, line):
 
 
 def test_wrong_names_are_told_together():
-    """What does not fit together is found when the network is built."""
     net = NetworkBuilder("n")
     net.automaton("A").location("a", invariant="x <= 3").edge("a", "b", sync="c!")
     with pytest.raises(ModelError) as caught:

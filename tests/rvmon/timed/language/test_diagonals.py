@@ -49,7 +49,6 @@ query: {}
     ],
 )
 def test_answers_are_those_of_the_difference(query, expected):
-    """Reachability, deadlocks and liveness, with either clock set and both orders of writing."""
     network = loads_network(MODEL.format(query))
     assert verify(network, network.queries[0]).holds is expected
 
@@ -72,7 +71,6 @@ def with_differences(seed):
 
 @pytest.mark.law
 def test_what_edges_keep_up_is_the_truth():
-    """In each region of random networks each variable has the truth of its difference."""
     seen = 0
     for seed in range(40):
         text = with_differences(seed)
@@ -103,7 +101,6 @@ def test_what_edges_keep_up_is_the_truth():
 
 
 def test_an_edge_is_taken_apart_without_gap():
-    """Its two parts ask for a bound and for its opposite."""
     network = loads_network(MODEL.format("E<> A.a and y - x > 5"))
     parts = [e for e in network.automata[0].edges if e.text.startswith("a → a")]
     guards = {tuple(sorted((c.clock, str(c.op), c.bound.value) for c in e.guard.clocks))
@@ -139,13 +136,11 @@ automaton B {{ location b start b edge b -> b on c? do {} }}
     ],
 )  # fmt: skip
 def test_what_no_edge_can_keep_up_is_refused(text, message):
-    """With the reason: what is computed, what two edges set at once, what is no difference."""
     with pytest.raises(ModelError, match=message):
         loads_network(text)
 
 
 def test_clocks_under_or_make_edges_of_which_one_fits():
-    """Whoever reads one guard takes exactly one of its edges; in an invariant it is refused."""
     text = """
     clock x, y
     int[0,3] v
@@ -175,7 +170,6 @@ def test_clocks_under_or_make_edges_of_which_one_fits():
 
 
 def test_edges_that_set_the_same_clock_may_synchronise():
-    """The last one counts, as everywhere."""
     network = loads_network(SYNC.format("x - y < 1", "x = 1") + "query: E<> x - y >= 1 and y == 0")
     assert verify(network, network.queries[0]).holds
 
@@ -185,7 +179,6 @@ def test_edges_that_set_the_same_clock_may_synchronise():
     ["E<> x - y > 3", "A[] x - y <= 3", "E<> A.c and y - x == 2", "E<> x - y > 3 and y - x >= -4"],
 )
 def test_a_query_may_be_asked_when_the_model_is_read(query):
-    """It says what it says as a part of the model, and leaves the model as it was."""
     network = loads_network(MODEL.format("E<> A.c"))
     within = loads_network(MODEL.format(query))
     outcome = verify(network, query)
@@ -194,7 +187,6 @@ def test_a_query_may_be_asked_when_the_model_is_read(query):
 
 
 def test_figures_are_refused_where_edges_are_split():
-    """Nobody knows their odds; nor is a difference kept up for a network that is not changed."""
     network = loads_network(MODEL.format("E<> A.c"))
     with pytest.raises(ModelError, match="keep their difference up"):
         signal_on(network, "far", "x - y > 3")

@@ -34,7 +34,6 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
     ],
 )  # fmt: skip
 def test_what_is_not_supported_is_called_by_its_name(parts, message):
-    """One finding says what it is, where it stands and what to do instead."""
     with pytest.raises(ModelError) as caught:
         loads_network(model(**parts))
     (diagnostic,) = caught.value.diagnostics
@@ -67,7 +66,6 @@ def test_foreign_queries_are_called_by_their_name(formula, message):
 
 
 def test_what_changes_no_run_is_passed_over():
-    """Charts and progress measures behind the system line are no error."""
     charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
     assert loads_network(model(system=charts)).warnings == ()
 
@@ -89,7 +87,6 @@ def test_names_of_the_text_form_are_free(text):
 
 
 def test_constants_are_computed_and_copied():
-    """A constant may be what a function gives for constants, and an array or record another one."""
     network = loads_network("""<nta><declaration>
     int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
     const int N = half(7) + 1;
@@ -145,7 +142,6 @@ def test_the_price_of_a_run_changes_no_run():
 
 
 def test_what_uppaal_declares_is_known():
-    """Integers of a number of bits, and their least and largest values."""
     network = loads_network(model("int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c;"))
     ranges = [(v.low, v.high, v.initial) for v in network.variables]
     assert ranges == [(-128, 127, -128), (0, 65535, 65535), (-(1 << 31), (1 << 31) - 1, 0)]
@@ -154,21 +150,18 @@ def test_what_uppaal_declares_is_known():
 
 
 def test_a_function_sees_what_is_declared_before_it():
-    """A local name that comes later does not hide one from outside."""
     local = "int f() { return a; } int a = 2; int g() { return a; }"
     network = loads_network(model("const int a = 1;", local, guard="f() == 1 and g() == 2"))
     assert verify(network, "A[] not deadlock").holds
 
 
 def test_a_function_that_is_wrong_is_told_once():
-    """Calls of it are no mistakes of their own."""
     with pytest.raises(ModelError) as raised:
         loads_network(model("int f() { return missing; }", guard="f() == f()"))
     assert [one.code for one in raised.value.diagnostics] == ["TA002"]
 
 
 def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
-    """What a guard keeps runs from need not have a meaning."""
     declared = "int a[2]; const int b[2] = {1, 2}; const int N = -1;"
     network = loads_network(model(declared, guard="N &gt;= 0 and b[N] == a[N]"))
     assert verify(network, "E<> deadlock").holds
@@ -181,6 +174,5 @@ def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
 
 
 def test_a_query_that_is_a_comment_asks_nothing():
-    """It is no query that is left out."""
     queries = "<query><formula>// later: A[] true</formula></query>"
     assert not loads_network(model(queries=queries)).warnings

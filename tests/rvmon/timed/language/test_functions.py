@@ -48,7 +48,6 @@ EDGE = "automaton A {{ location l location m start l edge l -> m when x >= 1 do 
     ],
 )
 def test_what_functions_compute(functions, update, holds):
-    """The search and the plain rules agree; the model written and read again says the same."""
     network = loads_network(HEAD + functions + "\n" + EDGE.format(update, holds))
     outcome = verify(network, network.queries[0])
     assert outcome.holds
@@ -96,7 +95,6 @@ def test_what_has_no_meaning_is_refused(functions, update, code):
     ],
 )
 def test_what_a_run_cannot_compute_is_told(functions, update, message):
-    """It is an error of the model, not an answer."""
     network = loads_network(HEAD + functions + "\n" + EDGE.format(update, "A.m"))
     with pytest.raises(ModelError) as caught:
         verify(network, network.queries[0])
@@ -104,7 +102,6 @@ def test_what_a_run_cannot_compute_is_told(functions, update, message):
 
 
 def test_a_condition_changes_nothing():
-    """A guard that would set a variable is refused, whatever it calls on the way."""
     text = (
         HEAD
         + """bool f() { v = 1; return true; }

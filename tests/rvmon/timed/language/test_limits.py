@@ -69,7 +69,6 @@ def test_each_is_one_finding(text, code, message):
 
 
 def test_a_name_whose_declaration_is_wrong_is_told_once():
-    """Uses of a name that is declared wrongly do not repeat that it is not known."""
     with pytest.raises(ModelError) as caught:
         loads_network("int v automaton A { location a start a edge a -> a when v == 1 do v = 0 }")
     assert [d.code for d in caught.value.diagnostics] == ["TA005"]
@@ -77,21 +76,18 @@ def test_a_name_whose_declaration_is_wrong_is_told_once():
 
 @pytest.mark.slow
 def test_a_wide_quantifier_is_decided():
-    """Thousands of conditions are no deep formula."""
     network = loads_network("int[0,9] v " + A)
     assert verify(network, "A[] forall (i : int[0,9999]) v < i + 1").holds
     assert not verify(network, "E<> exists (i : int[1,9999]) v == i").holds
 
 
 def test_findings_end_at_a_hundred():
-    """Thousands of mistakes are not all told: the first hundred are."""
     with pytest.raises(ModelError) as caught:
         loads_network("clock " + ", ".join(f"x{i}, x{i}" for i in range(200)))
     assert len(caught.value.diagnostics) == 100
 
 
 def test_the_same_mistake_at_many_places_is_told_once():
-    """With their number, and the first few of them."""
     with pytest.raises(ModelError) as caught:
         loads_network("clock x, x, x, x, x, x " + A)
     (found,) = caught.value.diagnostics
@@ -101,7 +97,6 @@ def test_the_same_mistake_at_many_places_is_told_once():
 
 @pytest.mark.slow
 def test_xml_is_read_in_one_go():
-    """A text of many lines, and many tags behind a letter that is no ASCII, take no square time."""
     for text in ("<nta><declaration>" + "\n" * 300_000 + "</declaration></nta>",
                  "<nta><!-- ü -->" + "<a/>" * 50_000 + "</nta>"):  # fmt: skip
         with pytest.raises(ModelError, match="there is no automaton"):
@@ -116,7 +111,6 @@ def test_a_byte_order_mark_is_passed_over(tmp_path):
 
 
 def test_a_wide_range_is_warned_of():
-    """The model is read; why it may have too many states is said at the variable."""
     text = "int[0, 1000000000] n\nint[0, 10] m\nautomaton a { location l start l }"
     (warning,) = loads_network(text).warnings
     assert (warning.code, warning.severity) == ("TA005", "warning")

@@ -31,7 +31,6 @@ automaton A {{ location l location m invariant {invariant} start l edge l -> m {
     ],
 )
 def test_a_lower_bound_holds_on_entry(invariant, update, query, holds):
-    """The location is entered only where its invariant holds."""
     assert verify(loads_network(model(invariant, update)), query).holds is holds
 
 
@@ -52,7 +51,6 @@ def test_a_lower_bound_holds_on_entry(invariant, update, query, holds):
     ],
 )
 def test_what_cannot_be_moved_is_refused(parts, message):
-    """A bound that could be broken while the location is occupied, or that nobody knows."""
     with pytest.raises(ModelError, match=message) as caught:
         loads_network(model(**parts))
     assert caught.value.diagnostics[0].code == "TA009"

@@ -53,17 +53,14 @@ def lines_of(text):
 
 
 def test_every_part_of_a_text_tells_its_mistake():
-    """Declarations, functions, guards, updates, queries and signals: what is right is passed by."""
     assert lines_of(TEXT) == [3, 5, 9, 13, 14, 15, 18, 20]
 
 
 def test_every_part_of_declarations_tells_its_mistake():
-    """In UPPAAL's files too, where a text holds many declarations, as do templates and labels."""
     assert lines_of(XML) == [2, 4, 9, 10, 12, 12, 13, 14, 15, 16]
 
 
 def test_a_part_that_is_cut_short_hides_no_other():
-    """What it goes on with is a name there; the mistake is told once, and the next one too."""
     text = """automaton A {
   location a invariant
   location b
@@ -76,11 +73,9 @@ def test_a_part_that_is_cut_short_hides_no_other():
 
 
 def test_so_many_mistakes_are_not_all_told():
-    """A text that is wrong throughout gives a bounded list."""
     assert len(lines_of("int[0,5 n\n" * 100)) == MOST
 
 
 @pytest.mark.parametrize("text", ["}", "{", "automaton", "automaton A {", "query", "(" * 50, "x;"])
 def test_what_has_no_parts_tells_one_mistake(text):
-    """Where nothing can be left out, the first mistake is all that is known."""
     assert lines_of(text) == [1]

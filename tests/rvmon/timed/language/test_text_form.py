@@ -30,7 +30,6 @@ def one(text):
 
 
 def test_the_grammar_has_no_conflicts(caplog):
-    """The LALR table of every start rule is built without a conflict being resolved."""
     from importlib import resources
 
     grammar = resources.files("rvmon.timed.language").joinpath("ta.lark").read_text()
@@ -44,7 +43,6 @@ def test_the_grammar_has_no_conflicts(caplog):
 
 
 def test_all_parts_of_a_model_are_read():
-    """Header, unit, declarations, templates, instances, edges with all clauses, queries."""
     network = loads_network("""
     network demo "A demo"   // a comment
     unit 50 ms              /* another */
@@ -81,7 +79,6 @@ def test_all_parts_of_a_model_are_read():
 
 
 def test_templates_without_arguments_are_instantiated_for_all_values():
-    """Without a system line each template runs once for each choice of its parameters."""
     network = loads_network("""
     automaton T(const int[1,2] i, const bool b) { location a start a }
     """)
@@ -102,7 +99,6 @@ def test_partial_instances_keep_their_free_parameters():
 
 
 def test_reference_parameters_stand_for_the_thing():
-    """Clocks, channels, variables and arrays can be handed to a template."""
     network = loads_network("""
     clock x
     int[0,3] v, w[2]
@@ -119,7 +115,6 @@ def test_reference_parameters_stand_for_the_thing():
 
 
 def test_types_of_parameters_may_speak_of_earlier_ones():
-    """A size or range that another parameter gives is that of the instance."""
     text = """
     int[0,3] v[3]
     automaton T(const int n, const int[0,n] k, int[0,3] &w[n]) {
@@ -134,7 +129,6 @@ def test_types_of_parameters_may_speak_of_earlier_ones():
 
 
 def test_constants_can_be_set_from_outside():
-    """A constant's value can be replaced; one that does not exist is refused."""
     text = "const int N = 1 automaton T(const int[1,N] i) { location a start a }"
     assert len(loads_network(text, constants={"N": 3}).automata) == 3
     with pytest.raises(ModelError, match="no constant `M`"):
@@ -221,13 +215,11 @@ query Q3: E<> (A.c
     ],
 )
 def test_all_that_is_wrong_appears_at_once_in_order_of_place(text, found):
-    """Names, kinds and ranges, or what cannot be read; what is right is not blamed."""
     places = [tuple(map(int, one.split(":"))) for one in found.split()]
     assert findings(text) == [(f"TA{code:03}", line, column) for code, line, column in places]
 
 
 def test_what_is_damaged_is_told_and_nothing_else():
-    """Of a model with some edges damaged, each of these is told and no other."""
     for seed in range(15):
         rng = random.Random(seed)
         lines = ["clock x", "automaton A {", "  location a", "  start a"]
@@ -239,7 +231,6 @@ def test_what_is_damaged_is_told_and_nothing_else():
 
 
 def test_a_finding_says_what_was_probably_meant():
-    """A misspelt name is answered with the nearest known one."""
     diagnostic = one("clock speed automaton A { location a invariant spede <= 3 start a }")
     assert diagnostic.help == "did you mean `speed`?"
 
@@ -271,7 +262,6 @@ def test_a_channel_used_by_nobody_is_a_warning():
 
 
 def test_mistakes_of_a_template_are_told_once():
-    """Ten instances of one template do not repeat its mistake ten times."""
     assert findings("automaton T(const int[1,10] i) { location a start b }") == [("TA002", 1, 51)]
 
 
@@ -281,13 +271,11 @@ def test_mistakes_of_a_template_are_told_once():
     ["not " * 5000 + "true", " + ".join(["1"] * 5000) + " > 1", "f(" * 5000 + "1" + ")" * 5000],
 )
 def test_deep_nesting_is_refused_politely(text):
-    """Thousands of prefixes, terms or calls are a finding, not a crash."""
     guard = f"automaton A {{ location a start a edge a -> a when {text} }}"
     assert findings(guard) == [("TA019", 0, 0)]
 
 
 def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
-    """An update that leaves a variable's range is a finding with its place, if it can happen."""
     text = """
     clock x
     int[0,2] v
@@ -317,7 +305,6 @@ def test_files_that_cannot_be_read_are_findings(tmp_path):
 
 @pytest.mark.parametrize("guard", ["1 / v > 0", "1 % v > 0"])
 def test_a_division_by_zero_has_its_place(guard):
-    """What only a run shows is told at the expression that it comes from."""
     text = f"int[0,3] v automaton A {{ location a start a edge a -> a when {guard} }}"
     with pytest.raises(ModelError) as caught:
         verify(loads_network(text), "A[] A.a")
@@ -335,13 +322,11 @@ def test_a_division_by_zero_has_its_place(guard):
     ],
 )
 def test_what_is_no_name_is_fixed(text, name):
-    """Dashes and digits in front are no part of names; one that would do is given."""
     assert f"first a letter: `{name}`" in one(text).help
 
 
 @pytest.mark.parametrize("text", ["t,b", '"', "x", "=1"])
 def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
-    """It has a mistake at its first word that does not fit."""
     assert [code for code, *_ in findings(text)] == ["TA001"]
 
 
@@ -381,5 +366,4 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
     ],
 )
 def test_priorities_that_have_no_meaning_are_refused(text, message):
-    """Each channel has one place, and so has `default`."""
     assert message in one(f"{text} automaton A {{ location l start l }}").message

@@ -52,7 +52,6 @@ def finding(text):
     ],
 )
 def test_textbook_models_load_and_have_the_known_answers(model, constants):
-    """Fischer, train gate, bridge and CSMA/CD: all that their queries ask holds."""
     network = load_network(MODELS / f"{model}.xml", constants=constants)
     assert network.warnings == ()
     assert network.queries
@@ -61,13 +60,11 @@ def test_textbook_models_load_and_have_the_known_answers(model, constants):
 
 
 def test_ints_without_range_are_sixteen_bits():
-    """In UPPAAL's XML an int needs no range."""
     network = loads_network(wrap(ONE, declaration="int v = -5;"))
     assert (network.variables[0].low, network.variables[0].high) == (-32768, 32767)
 
 
 def test_names_ids_and_comments():
-    """Locations without name go by their id; comments and queries' texts are decoded."""
     body = '<location id="id7"/><init ref="id7"/>'
     query = (
         "<query><formula>A[] T.id7 &amp;&amp; x &gt;= 0</formula><comment>so  so</comment></query>"
@@ -92,7 +89,6 @@ def test_not_binds_as_tight_as_its_sign():
 
 
 def test_old_and_new_ways_to_write_instances():
-    """Instances may stand in `instantiation` or in the system text, with = or :=."""
     text = wrap(ONE, parameter="const int[0,3] n", system="A := T(1); B = T(2); system A, B, C;")
     text = text.replace("<system>", "<instantiation>C = T(3);</instantiation><system>")
     assert [a.name for a in loads_network(text).automata] == ["A", "B", "C"]
@@ -110,7 +106,6 @@ def test_arrays_may_be_indexed_by_a_type():
 
 
 def test_what_changes_no_run_is_passed_over():
-    """Rates of locations, colours, nails and test code are neither errors nor warnings."""
     body = ONE.replace("</location>", '<label kind="exponentialrate">1</label></location>') + edge(
         testcode="x"
     ).replace("</transition>", '<nail x="1" y="2"/></transition>')
@@ -147,12 +142,10 @@ def test_unit_weight_and_label_come_from_comments():
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_with_its_place(text, expected):
-    """Malformed XML, unknown names, unsupported parts: a code and the very characters."""
     assert finding(text) == expected
 
 
 def test_places_are_right_behind_entities_and_newlines():
-    """Line and column count characters of the file, whatever was decoded before them."""
     guard = "\n   x &lt;= 3 &amp;&amp;\r\n  ü == 1"
     text = wrap(ONE + edge(guard=guard.replace("ü", "nobody")), declaration="clock x; // äöü")
     with pytest.raises(ModelError) as caught:
@@ -173,14 +166,12 @@ def test_places_are_right_behind_entities_and_newlines():
     ],
 )
 def test_the_first_line_of_a_comment_may_be_an_id(comment, told):
-    """What our writer says of a query's id is read; what people write of it stays a remark."""
     queries = f"<query><formula>E&lt;&gt; T.a</formula><comment>{comment}</comment></query>"
     [query] = loads_network(wrap(ONE, queries=queries)).queries
     assert (query.id, query.remark) == told
 
 
 def test_a_query_that_cannot_be_read_is_a_warning():
-    """Foreign queries are left out, the model is still checked."""
     queries = "".join(
         f"<query><formula>{formula}</formula><comment/></query>"
         for formula in ("control: T.a", "E&lt;&gt; T.a", "")
@@ -233,7 +224,6 @@ def branching(*weights):
 
 
 def test_a_branch_point_is_a_choice_with_weights():
-    """One edge for each branch: guard of the edge, updates of both, its share of the weights."""
     network = loads_network(branching("N - 3", 3, 0))
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
     assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds

@@ -96,7 +96,6 @@ def judged(spec, observation, run):
     ],
 )
 def test_claims_on_all_runs(requirement, holds):
-    """Answers that can be read off the model; runs are judged alike by the monitoring engine."""
     ((one,), spec) = observed(f"requirement R\n  {requirement}")
     assert one.holds is holds
     assert (one.failing is None) is holds
@@ -107,7 +106,6 @@ def test_claims_on_all_runs(requirement, holds):
 
 
 def test_a_requirement_that_no_run_triggers_is_vacuous():
-    """A claim that holds because nothing triggers it is said to be vacuous."""
     ((one,), _) = observed("requirement R\n  upon raised and dark then within 1 s lit")
     assert one.holds is True
     assert one.triggered is None
@@ -127,7 +125,6 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
     ],
 )
 def test_what_has_no_deadline(requirement, holds, remark):
-    """A promise is refuted by a run that goes on for ever, and proved if there is none."""
     ((one,), _) = observed(f"requirement R\n  {requirement}")
     assert one.holds is holds
     assert remark in one.remark if remark else not one.remark
@@ -151,7 +148,6 @@ def test_the_loop_on_which_a_promise_waits():
 
 
 def test_an_attempt_may_begin_with_the_run():
-    """`upon start` follows the run from its first instant."""
     ((one,), spec) = observed("requirement R\n  upon start then for 1 s not lit")
     assert one.holds is False
     assert "F" in judged(spec, one, one.failing)
@@ -169,7 +165,6 @@ def test_an_attempt_may_begin_with_the_run():
     ],
 )
 def test_what_cannot_be_expressed_is_said(requirement, reason):
-    """Names that the model lacks, the past, and windows finer than the model are no answers."""
     spec = rvmon.loads(
         "spec s\ntime held\nsignal lit, hot : bool\nevent pressed, dark, broken\n"
         f"requirement R\n  {requirement}\n"
@@ -181,7 +176,6 @@ def test_what_cannot_be_expressed_is_said(requirement, reason):
 
 
 def test_signals_can_be_bound_from_outside():
-    """A signal may be any expression over locations and variables."""
     spec = rvmon.loads(
         "spec s\ntime held\nsignal bright : bool\nevent pressed\n"
         "requirement R\n  upon bright then within 6 s not bright\n"
@@ -221,7 +215,6 @@ signal level = v
     ],
 )
 def test_all_labels_of_a_synchronised_move_are_events(requirement, holds):
-    """They occur together, whichever automaton comes first."""
     (found,), spec = observed(f"requirement R\n  {requirement}", model=PAIR)
     assert found.triggered is not None
     assert found.holds is holds

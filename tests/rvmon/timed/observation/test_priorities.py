@@ -48,14 +48,12 @@ REVERSED = ["chan priority high < low < default", "system B < A"]
 
 @pytest.mark.parametrize("ranks", RANKED)
 def test_a_requirement_may_hold_by_priority_alone(ranks):
-    """What comes first takes from the other what it needs, at the same instant."""
     assert answer("upon start then for 3 s not slow", ranks).holds is True
     assert answer("upon start then within 2 s quick", ranks).holds is True
 
 
 @pytest.mark.parametrize("ranks", [*EQUAL, *REVERSED])
 def test_without_it_the_requirement_fails(ranks):
-    """And the run that shows it is refused where the priorities are the other way round."""
     one = answer("upon start then for 3 s not slow", ranks)
     assert one.holds is False
     network = loads_network(MODEL.format(stay=FORCED, ranks=RANKED[0]))
@@ -65,7 +63,6 @@ def test_without_it_the_requirement_fails(ranks):
 
 @pytest.mark.parametrize("ranks", [*EQUAL, *RANKED, *REVERSED])
 def test_no_priority_makes_time_wait(ranks):
-    """A step of any rank may be missed, and a deadline goes by beside it."""
     one = answer("upon start then within 2 s quick", ranks, stay="")
     assert one.holds is False
     assert one.failing.duration >= 2
@@ -74,7 +71,6 @@ def test_no_priority_makes_time_wait(ranks):
 
 @pytest.mark.parametrize("ranks", [*EQUAL, *RANKED, *REVERSED])
 def test_no_deadline_comes_before_a_step_at_its_instant(ranks):
-    """The step that is due at the very bound is in time, whatever its rank."""
     assert answer("upon start then within 2 s (quick or slow)", ranks).holds is True
     late = answer("upon start then within 1.5 s (quick or slow)", ranks)
     assert late.holds is False

@@ -48,7 +48,6 @@ def values(terms, text=MODEL, horizon=20):
 
 
 def test_a_run_computes_as_doubles_do():
-    """Rates, bounds, updates, arrays and functions: each value is that worked out by hand."""
     times, rows = values("last, warm, seen[1], x")
     assert [float(t) for t in times] == [0, 5, 5, 12.5, 12.5, pytest.approx(16.25, abs=1e-3),
                                          pytest.approx(16.25, abs=1e-3), 20]  # fmt: skip
@@ -60,7 +59,6 @@ def test_a_run_computes_as_doubles_do():
 
 
 def test_figures_of_such_runs():
-    """Probabilities, tests of one and expected values."""
     network = loads_network(MODEL)
     assert sample(network, asked_on(network, "Pr[<=30; 20](<> last >= 19.5)")[1]).value == 1
     assert sample(network, asked_on(network, "Pr[<=30; 20](<> last > 19.5 + 1)")[1]).value == 0
@@ -87,7 +85,6 @@ def test_figures_of_such_runs():
     ],
 )
 def test_operators(term, expected):
-    """As of C; an integer beside a number with a fraction becomes one."""
     _, rows = values(term)
     assert float(rows[0][0]) == pytest.approx(expected)
 
@@ -96,7 +93,6 @@ def test_operators(term, expected):
     "update", ["last = 1 / (last - last)", "last = sqrt(-last)", "last = exp(1000 * last)"]
 )
 def test_what_has_no_value_is_told_when_a_run_gets_there(update):
-    """A root, a quotient or a power that does not exist."""
     with pytest.raises(ModelError, match="has no value for"):
         values("last", MODEL.replace("rounds++", f"rounds++, {update}"))
 
@@ -118,7 +114,6 @@ def test_what_has_no_value_is_told_when_a_run_gets_there(update):
     ],
 )  # fmt: skip
 def test_what_needs_an_integer_refuses_a_fraction(declared, code):
-    """And where nothing is asked of it, nothing is refused."""
     text = MODEL + declared + "\n"
     if not code:
         loads_network(text)
@@ -129,7 +124,6 @@ def test_what_needs_an_integer_refuses_a_fraction(declared, code):
 
 
 def test_nothing_is_proved_of_them():
-    """Every search refuses, and says where the number stands and what can be asked."""
     network = loads_network(MODEL)
     spec = rvmon.loads("spec s\ntime held\nevent a\nrequirement R\n  upon a then within 1 s a\n")
     searches = [
@@ -163,7 +157,6 @@ def test_branches_may_share_out_runs_in_fractions():
 
 
 def test_a_model_with_fractions_is_read_back():
-    """UPPAAL's form says the same of runs."""
     network = loads_network(MODEL)
     again = loads_network(uppaal_xml(network))
     query = "simulate [<=20; 2] {last, warm, rounds}"
@@ -173,7 +166,6 @@ def test_a_model_with_fractions_is_read_back():
 
 
 def test_a_grid_step_does_not_stop_time():
-    """A bound that is met between two steps of the grid is met with the next one."""
     text = MODEL.replace("x >= 7.5", "x >= 2.1").replace("x <= 7.5", "x <= 2.1")
     times, rows = values("warm", text, horizon=20)
     assert times[-1] == Fraction(20)

@@ -54,7 +54,6 @@ def test_both_ways_say_the_same():
 
 
 def test_runs_of_a_thousand_steps_have_their_windows():
-    """A path is gone along twice, however long it is."""
     network = loads_network("""
     clock x, y
     int[0,1200] n

@@ -52,7 +52,6 @@ def test_estimates_have_bounds():
 
 
 def test_bounds_are_kept_about_as_often_as_they_say():
-    """Of 30 estimates with 95 % confidence few miss the truth."""
     missed = sum(
         not one.low <= 0.3 <= one.high
         for one in (sampled("Pr[<=2; 100](<> A.heads)", seed) for seed in range(30))
@@ -109,7 +108,6 @@ def test_a_run_in_which_no_time_passes_is_refused():
     ],
 )
 def test_tests_take_as_many_runs_as_they_need(query, expected):
-    """Far from the level few runs are enough."""
     one = sampled(query)
     assert one.holds is expected
     assert 5 < one.runs < 5_000
@@ -125,7 +123,6 @@ def test_tests_are_wrong_as_seldom_as_they_say():
 
 
 def test_a_test_that_is_cut_short_says_nothing():
-    """With few runs a probability near the level is not told from it."""
     one = sampled("Pr[<=2; 50](<> A.heads) >= 0.3")
     assert (one.runs, one.holds, one.margin) == (50, None, MARGIN)
 
@@ -158,13 +155,11 @@ def test_what_has_no_figure_is_refused(query):
 
 
 def test_statistics_are_no_decision():
-    """The search refuses them; the command simulates them, and its exit code is that of tests."""
     with pytest.raises(ModelError, match="no decision"):
         verify(loads_network(COIN), "Pr[<=2](<> A.heads)")
 
 
 def test_the_command_says_figures(tmp_path, capsys):
-    """With their errors, never as a proof."""
     model = tmp_path / "coin.ta"
     model.write_text(COIN, "utf-8")
     assert main(["verify", str(model), "--query", "Pr[<=2](<> A.heads)"]) == 0
@@ -192,7 +187,6 @@ query: simulate [<=5; 2] {n, x, cost, n > 1}
 
 
 def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
-    """At each move the values before and behind it; clocks run at their rates up to the horizon."""
     network = loads_network(TICKING)
     found = trajectories(network, network.queries[0])
     assert len(found) == 2
@@ -260,7 +254,6 @@ def test_a_wait_without_end_has_the_rate_of_its_location():
 
 
 def test_what_stop_watches_reach_is_not_decided():
-    """A clock that stops and is compared is refused with the reason; one that is not may stop."""
     network = loads_network(STOPPED)
     assert verify(network, "E<> A.c").holds
     for query in ("E<> used > 3", "A<> cost > 3", "G (cost < 9)"):
@@ -287,13 +280,11 @@ def test_rates_that_have_no_meaning_are_told(invariant, message):
 
 
 def test_rates_come_back_from_uppaal():
-    """Rates of clocks and of leaving are written and read."""
     network = loads_network(STOPPED)
     assert loads_network(uppaal_xml(network)).automata == network.automata
 
 
 def test_rates_may_be_told_for_all_elements():
-    """`forall` in an invariant tells the rate of each clock of an array."""
     text = """
     clock y[2]
     automaton A { location l invariant forall (i : int[0,1]) y[i]' == i and y[i] <= 9 start l }
@@ -315,7 +306,6 @@ def test_rates_may_be_told_for_all_elements():
     ],
 )
 def test_how_often_a_location_is_left_is_a_share(written, share):
-    """Whole numbers, constants, decimals, and one for another."""
     text = f"const int OFTEN = 10 automaton A {{ location l rate {written} start l }}"
     (place,) = loads_network(text).automata[0].locations
     assert tuple(number.value for number in place.leaving) == share

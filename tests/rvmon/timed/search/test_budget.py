@@ -21,7 +21,6 @@ MODEL = Path(__file__).parents[4] / "examples" / "models" / "train_gate.ta"
 )  # fmt: skip
 @pytest.mark.parametrize("budget", [Budget(states=100), Budget(seconds=0.0), Budget(megabytes=1)])
 def test_not_decided_is_said(query, budget):
-    """Whatever the limit and the kind of search, the answer is none and the reason is given."""
     network = load_network(MODEL, constants={"N": 4})
     outcome = verify(network, query, budget=budget)
     assert outcome.holds is None
@@ -30,7 +29,6 @@ def test_not_decided_is_said(query, budget):
 
 
 def test_a_run_found_in_time_decides():
-    """A budget that is not used up changes nothing."""
     network = load_network(MODEL, constants={"N": 4})
     assert verify(network, "E<> Train(3).cross", budget=Budget(states=200)).holds is True
 
@@ -47,7 +45,6 @@ def test_progress_is_told():
 
 @pytest.mark.parametrize("seed", [3, 18, 40])
 def test_no_budget_turns_an_answer_round(seed):
-    """Whatever was seen before the budget ended, the answer is the right one or none."""
     network = loads_network(random_model(seed))
     for query in network.queries:
         answer = verify(network, query).holds
@@ -56,7 +53,6 @@ def test_no_budget_turns_an_answer_round(seed):
 
 
 def test_what_is_reached_is_reached_though_no_fastest_run_was_found():
-    """A budget that ends while the fastest run is sought leaves the shortest one, and says so."""
     network = load_network(MODEL.with_name("bridge.ta"))
     query = network.queries[0]
     least = verify(network, query).statistics.visited

@@ -15,7 +15,6 @@ pytestmark = pytest.mark.law
 
 @pytest.mark.parametrize("first", range(0, 30, 6))
 def test_answers_agree_and_runs_are_runs(first):
-    """On random networks all answers agree, and every run shown is one and shows what it should."""
     for seed in range(first, first + 6):
         network = loads_network(random_model(seed))
         for query in network.queries:
@@ -29,7 +28,6 @@ def test_answers_agree_and_runs_are_runs(first):
 
 
 def test_all_kinds_of_parts_are_thrown():
-    """The random networks contain every part of the language that the checker treats apart."""
     text = "".join(map(random_model, range(100)))
     for part in ("urgent chan", "broadcast chan", "committed location", "urgent location",
                  "invariant x < ", "== ", " > ", "= 1", "v = ", "b = "):  # fmt: skip

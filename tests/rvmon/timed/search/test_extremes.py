@@ -49,14 +49,12 @@ def asked(text, query, **options):
     ],
 )
 def test_ends_are_exact(query, expected):
-    """The value is the last that some state has, or that states come near to."""
     found = asked(LAMP, query)
     assert [(one.value, one.attained) for one in found] == expected
     assert all(one.exact and one.run is not None for one in found)
 
 
 def test_a_clock_may_grow_without_bound():
-    """Where time may pass for ever that is said at once; in a loop only how far it comes."""
     (idle,) = asked(LAMP, "sup: x")
     assert (idle.value, idle.exact) == (None, True)
     assert "without bound" in idle.remark
@@ -66,7 +64,6 @@ def test_a_clock_may_grow_without_bound():
 
 
 def test_where_nothing_counts_there_is_no_value():
-    """An unreachable condition has no values; a search that is cut short says so."""
     (none,) = asked(LAMP, "sup{n == 3}: n")
     assert (none.value, none.exact, none.remark) == (None, True, "no state counts")
     (cut,) = asked(LAMP, "sup: n", budget=Budget(states=4))
@@ -77,7 +74,6 @@ def test_where_nothing_counts_there_is_no_value():
 @pytest.mark.parametrize("first", range(0, 20, 10))
 @pytest.mark.law
 def test_values_are_those_of_the_regions(first):
-    """On random networks each end is that of the region graph's states."""
     for seed in range(first, first + 10):
         network = loads_network(random_model(seed))
         clocks = range(len(network.clocks))
@@ -112,7 +108,6 @@ def test_values_are_those_of_the_regions(first):
     ],
 )
 def test_what_has_no_end_is_refused(query, message):
-    """Conditions on runs, and what is no number."""
     with pytest.raises(ModelError, match=message):
         asked(LAMP, query)
 
@@ -124,7 +119,6 @@ def test_a_value_is_no_decision():
 
 
 def test_the_command_answers(tmp_path, capsys):
-    """Its exit code is 0 where the ends are exact."""
     model = tmp_path / "lamp.ta"
     model.write_text(LAMP + 'query most "the count ends": sup: n\n', "utf-8")
     assert main(["verify", str(model)]) == 0

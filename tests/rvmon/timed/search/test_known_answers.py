@@ -24,13 +24,11 @@ def answers(network):
 
 @pytest.mark.parametrize("processes", [2, 3, 4, 5])
 def test_fischer_is_safe(processes):
-    """Fischer's protocol never lets two processes in, and never gets stuck."""
     network = load_network(MODELS / "fischer.ta", constants={"N": processes})
     assert verify(network, network.queries[0]).holds
 
 
 def test_fischer_stores_as_few_states_as_the_peer():
-    """Simulation drops states as well as TChecker's best algorithm does on this model."""
     stored = {}
     for processes in (4, 5):
         network = load_network(MODELS / "fischer.ta", constants={"N": processes})
@@ -48,7 +46,6 @@ def test_broken_fischer_is_caught():
 
 @pytest.mark.parametrize("trains", [2, 3, 4])
 def test_trains_never_meet_and_always_cross(trains):
-    """The gate keeps trains apart, each of them crosses, and nothing gets stuck."""
     network = load_network(MODELS / "train_gate.ta", constants={"N": trains})
     assert answers(network) == {"exclusion": True, "crossing": True, "alive": True}
 
@@ -62,7 +59,6 @@ def test_a_gate_without_urgency_may_dawdle():
 
 @pytest.mark.parametrize(("delays", "minutes"), [("5, 10, 20, 25", 60), ("1, 2, 5, 10", 17)])
 def test_bridge_is_crossed_in_the_known_time(delays, minutes):
-    """The fastest way over the bridge takes as long as the puzzle's answer says."""
     text = (MODELS / "bridge.ta").read_text().replace("5, 10, 20, 25", delays)
     network = loads_network(text)
     over = verify(network, network.queries[0], policy=Policy.FASTEST)

@@ -42,14 +42,12 @@ automaton A {
     ],
 )
 def test_known_answers(query, expected):
-    """Answers that can be read off the model; what decides them is shown by a run."""
     outcome = verify(loads_network(RETRY), query)
     assert outcome.holds is expected
     assert (outcome.run is not None) == (expected == query.startswith("E"))
 
 
 def test_a_loop_on_which_time_passes_is_preferred():
-    """A Zeno loop is shown only where there is no other, and then told as what it is."""
     lazy = "clock x automaton A { location a start a edge a -> a edge a -> a when x >= 1 do x = 0 }"
     assert verify(loads_network(lazy), "F x > 9").run.ending is Ending.LOOP
     hasty = "clock x automaton A { location a invariant x <= 1 start a edge a -> a }"
@@ -70,7 +68,6 @@ def test_a_loop_on_which_time_passes_is_preferred():
     ],
 )
 def test_what_is_not_decided_says_why(query, message):
-    """Next, deadlock, and formulas that speak of other runs inside a run are refused."""
     with pytest.raises(ModelError, match=message):
         verify(loads_network(RETRY), query)
 

@@ -47,7 +47,6 @@ def random_loop(random):
 
 @pytest.mark.slow
 def test_it_is_what_the_rounds_written_out_say():
-    """Random loops: relations put together say what one long path says."""
     random, seen = Random(1), []
     for _ in range(1500):
         loop = random_loop(random)

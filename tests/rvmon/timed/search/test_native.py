@@ -51,7 +51,6 @@ def in_units(formula, factor):
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [1 << 12, 1 << 29])
 def test_large_numbers_change_no_answer(factor):
-    """In units so small that times need 64 bits, each answer is the same by as many states."""
     for seed in range(12):
         network = loads_network(random_model(seed))
         large = finer(network, factor)
@@ -75,7 +74,6 @@ def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
 
 
 def test_a_damaged_plan_is_refused_or_does_no_harm():
-    """Whatever number of a plan is changed, the search refuses it or ends."""
     random, states = Random(5), set()
     for plan in search_plans(range(12)):
         for _ in range(20):
@@ -93,13 +91,11 @@ def test_a_damaged_plan_is_refused_or_does_no_harm():
 
 @pytest.mark.parametrize("numbers", [b"", b"\x00" * 4, b"\x31\x30\x4e\x5a", b"\x00" * 400])
 def test_what_is_no_plan_is_refused(numbers):
-    """Bytes that are no plan are none."""
     with pytest.raises(ValueError, match="damaged"):
         search(numbers, b"", lambda *_: True, lambda *_: True, -1, -1, False)
 
 
 def test_memory_that_ends_anywhere_is_an_answer():
-    """With any amount of memory the search says the same or that there is none."""
     random, without = Random(6), 0
     for plan in search_plans(range(12)):
         answer = asked(plan)
@@ -121,7 +117,6 @@ FAILS_IN_ITS_SECOND_STATE = zlib.decompress(
 
 
 def test_a_want_of_memory_is_no_failure():
-    """With any amount of memory the same state fails, or none is told."""
     told = set()
     for most_bytes in range(0, 20_000, 8):
         state, *_, visited = search(
@@ -138,8 +133,6 @@ def test_a_want_of_memory_is_no_failure():
 
 
 def test_a_query_without_memory_is_not_decided(monkeypatch):
-    """Memory that runs out is told as a budget that ended."""
-
     def poor(*arguments):
         return search(*arguments[:5], 20_000, arguments[6])
 
@@ -150,8 +143,6 @@ def test_a_query_without_memory_is_not_decided(monkeypatch):
 
 
 def test_an_exception_of_the_watcher_ends_the_search():
-    """What is raised while a search runs, as by Ctrl-C, comes out of it."""
-
     def watch(progress):
         raise KeyboardInterrupt
 
@@ -161,7 +152,6 @@ def test_an_exception_of_the_watcher_ends_the_search():
 
 
 def test_other_threads_run_meanwhile():
-    """A search that stops only when another thread has run ends."""
     heard = []
     thread = Thread(target=heard.append, args=(1,))
 

@@ -36,12 +36,10 @@ automaton A {
     ],
 )
 def test_nests_are_decided(query, expected):
-    """Answers that can be read off the model."""
     assert verify(loads_network(TRAP), query).holds is expected
 
 
 def test_the_run_leads_to_where_the_inner_formula_holds():
-    """A counterexample of A[] (E<> p) ends where p cannot be reached any more."""
     outcome = verify(loads_network(TRAP), "A[] (A.open imply EF A.start)")
     assert outcome.run.steps[-1].window.low == 4
     assert outcome.run.duration > 5
@@ -70,12 +68,10 @@ def test_the_run_leads_to_where_the_inner_formula_holds():
     ],
 )
 def test_all_of_ctl_is_decided(query, expected):
-    """Until, next, bounds and `deadlock` inside others, and conditions on whole formulas."""
     assert verify(loads_network(TRAP), query).holds is expected
 
 
 def test_a_formula_decided_backwards_meets_what_breaks_a_range():
-    """A variable that leaves its range is an error, whatever the query begins with."""
     network = loads_network(
         "int[0,1] v\nautomaton A { location a start a edge a -> a do v = v + 1 }"
     )
@@ -85,14 +81,12 @@ def test_a_formula_decided_backwards_meets_what_breaks_a_range():
 
 
 def test_what_speaks_of_no_run_is_refused():
-    """A state formula alone is no query."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(TRAP), "A.open")
     assert caught.value.diagnostics[0].code == "TA020"
 
 
 def test_a_nest_without_brackets_is_fixed():
-    """The message says that an inner operator of UPPAAL's kind takes brackets elsewhere."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(TRAP), "A[] (A.open or A<> A.trap)")
     assert "brackets: (A<> …)" in caught.value.diagnostics[0].help

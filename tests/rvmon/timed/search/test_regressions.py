@@ -20,7 +20,6 @@ from rvmon.timed.search.verify import verify
     ],
 )
 def test_it_is_right_now(seed, query):
-    """The answer is that of the region graph, and the run shows it."""
     network = loads_network(random_model(seed))
     asked = network.queries[query]
     outcome = verify(network, asked)

@@ -30,7 +30,6 @@ def items_of(network, run, criterion):
 @pytest.mark.parametrize("criterion", list(Criterion))
 @pytest.mark.parametrize("model", ["fischer", "train_gate", "bridge"])
 def test_what_is_said_to_be_covered_is(model, criterion):
-    """The runs of a suite contain all of its items; with the missing ones that is everything."""
     constants = {} if model == "bridge" else {"N": 2}
     network = load_network(MODELS / f"{model}.ta", constants=constants)
     suite = build_suite(network, criterion)
@@ -46,7 +45,6 @@ def test_what_is_said_to_be_covered_is(model, criterion):
 
 
 def test_missing_items_are_those_that_cannot_be_reached():
-    """An edge whose guard never holds, and what stands behind it, is missing and named."""
     network = loads_network("""
     clock x
     automaton A {
@@ -69,7 +67,6 @@ def test_missing_items_are_those_that_cannot_be_reached():
 
 
 def test_pairs_that_time_forbids_are_missing():
-    """Two edges may each be possible, but not one after the other."""
     network = loads_network("""
     clock x
     automaton A {

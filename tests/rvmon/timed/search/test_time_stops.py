@@ -105,7 +105,6 @@ def test_a_deadlock_in_part_of_a_zone_is_found():
     ],
 )
 def test_a_model_that_cannot_start_is_refused(text):
-    """A model without any run is a finding with place and fix, not an answer."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(text), "E<> A.a")
     (diagnostic,) = caught.value.diagnostics
@@ -122,7 +121,6 @@ def test_a_model_that_cannot_start_is_refused(text):
     ],
 )
 def test_a_time_lock_at_the_start_is_an_answer(text):
-    """Time stops where the run begins: there is that one run, and it is told."""
     network = loads_network(text)
     assert verify(network, "E<> deadlock").run.ending is Ending.TIME_LOCK
     assert not verify(network, "A[] not deadlock").holds

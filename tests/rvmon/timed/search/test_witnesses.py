@@ -43,7 +43,6 @@ def test_impossible_paths_have_no_timing():
 
 
 def test_earliest_is_the_least_of_all():
-    """No run along the path does any of its steps earlier."""
     steps = [
         TimedStep(True, ((1, 0, -2.0),), (), ()),
         TimedStep(True, ((1, 0, -3 - 2.0**-20),), (), ()),
@@ -67,7 +66,6 @@ def test_a_wrong_delay_is_no_run(position):
 
 
 def test_fastest_beats_shortest():
-    """The fastest run may take more steps than the shortest, and the reverse."""
     network = loads_network("""
     clock x
     automaton A {
@@ -86,7 +84,6 @@ def test_fastest_beats_shortest():
 
 
 def test_the_fastest_run_counts_the_goal_too():
-    """A goal that names a clock may be reached earlier on the way that seems slower."""
     network = loads_network("""
     clock x
     automaton A {
