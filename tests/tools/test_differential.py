@@ -128,7 +128,7 @@ class Gullible(Echo):
         return [] if t_ns < self.floor and not values else super().step_ns(t_ns, values)
 
 
-def found_in(make: type[Echo], pairs: int = 60) -> Sequence[str]:
+def found_in(make: type[Echo], pairs: int = 30) -> Sequence[str]:
     """The disagreements of a monitor with the oracle on random cases."""
     echo = {"echo": make}
     return campaign(

@@ -35,7 +35,10 @@ ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 def demo(tmp_path_factory):
     def make(folder):
         words = ["demo", "--tests", "3", "--conform", "1", "--jobs", "1", "--out", str(folder)]
-        assert main(words) == 0
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            assert main(words) == 0
+        (folder / "printed").write_text(printed.getvalue())
 
     return shared_folder(tmp_path_factory, "demo", make)
 
@@ -85,7 +88,7 @@ def test_the_demo_leaves_all_its_files(demo):
     names = {path.name for path in demo.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
     robots = {"correct", "legacy"}
-    assert names == {*tables, *robots, "report.html", "tests", "runs", "templates"}
+    assert names == {*tables, *robots, "report.html", "tests", "runs", "templates", "printed"}
     for robot in robots:
         covered = {"coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
         assert {path.name for path in (demo / robot).iterdir()} == covered
@@ -95,11 +98,9 @@ def test_the_demo_leaves_all_its_files(demo):
     assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
 
 
-def test_the_terminal_fits_two_screens(capsys):
+def test_the_terminal_fits_two_screens(demo):
     """The paper's requirements, and of the others those that nobody knew to fail; Table 1 last."""
-    words = ["demo", "--tests", "2", "--jobs", "1"]
-    assert main(words) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = (demo / "printed").read_text().splitlines()
     assert len(lines) <= 90
     rows = [line.split()[0] for line in lines if re.match(r"[RT]\d+ .*\d", line)]
     assert {"R1", "R5"} == {"R1", "R5"} & set(rows)
@@ -248,7 +249,7 @@ def test_a_campaign_says_why_it_is_not_as_expected(tmp_path, capsys):
 @pytest.mark.parametrize("robot", [[], ["--legacy"]])
 def test_the_unmodified_robot_passes_its_gates(robot, capsys):
     """Of what people have written and of what the model says, whatever the seed."""
-    strategies = "directed,model-based,model-based-shortest,model-based-fastest"
+    strategies = "model-based,model-based-shortest,model-based-fastest"
     assert main(["run", "--strict", "--strategy", strategies, "--seed", "5", *robot]) == 0
     assert not capsys.readouterr().err
 

@@ -1,10 +1,8 @@
 """Which statements of the robot's code ran, by state."""
 
-from itertools import pairwise
-
 import pytest
 
-from handover.collector.code import COMMON, TRANSITIONS, robot_code, state_of_functions
+from handover.collector.code import COMMON, robot_code, state_of_functions
 from handover.driver import run_test
 from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
@@ -66,13 +64,3 @@ def test_tests_are_kept_apart(measured):
 def test_measuring_changes_nothing(measured):
     runs, _ = measured
     assert runs["released"] == run_test(TESTS["released"])
-
-
-@pytest.mark.campaign
-def test_all_transitions_that_happen_are_known(measured):
-    seen = set()
-    for test in TESTS.values():
-        if test.mutation is None:
-            states = [state for _, state in run_test(test).states]
-            seen |= set(pairwise(states))
-    assert seen <= set(TRANSITIONS)

@@ -73,7 +73,7 @@ def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
 @pytest.mark.parametrize("robot", ["correct", "legacy"])
 def test_jumps_change_no_event(robot: str) -> None:
     gripped = 0
-    for test in pseudorandom(3, seed=5) + constrained(6, seed=5):
+    for test in pseudorandom(1, seed=5) + constrained(3, seed=5):
         jumped = run_test(test, robot=robot)
         stepped = run_test(test, robot=robot, jump=False)
         assert facts(jumped) == facts(stepped)
@@ -87,11 +87,11 @@ def test_jumps_change_no_event(robot: str) -> None:
         gripped += len(closings)
         for one, other in closings:
             assert one == pytest.approx(other, abs=1e-3)
-    assert gripped >= 4
+    assert gripped >= 2
 
 
 def test_jumps_change_no_event_where_the_scene_surprises() -> None:
-    for test in disturbed(5, seed=6):
+    for test in disturbed(3, seed=6):
         short = structs.replace(test, horizon_s=40.0)
         assert facts(run_test(short)) == facts(run_test(short, jump=False))
 
@@ -140,7 +140,7 @@ def test_samples_are_in_order_and_say_something() -> None:
     assert run.simulated_s == 200.0
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_correct_robot_keeps_its_bounds(seed: int) -> None:
     longest = {
         "reset": 4.5,

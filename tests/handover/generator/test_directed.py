@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 import rvmon
 from handover.checker import spec_path
+from handover.collector.code import TRANSITIONS
 from handover.driver import run_test
 from handover.generator import AbstractTest
 from handover.generator.abstract_test import directed
@@ -20,7 +23,7 @@ def test_each_says_which_situation_it_is_to_reach() -> None:
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
-    """Each directed test gives the verdicts that its file expects; else nothing fails."""
+    """Else nothing fails, and the robot goes from state to state as its protocol says."""
     assert test.robot is not None
     checker = Checker(rvmon.load(spec_path(test.robot)))
     checker.begin()
@@ -31,3 +34,5 @@ def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
     others = {name for name, verdict in verdicts.items() if verdict == "F"} - test.expected.keys()
     assert test.mutation is not None or others == set()
     assert (run.error is not None) == (test.mutation == "crashes")
+    transitions = set(pairwise(state for _, state in run.states))
+    assert test.mutation is not None or transitions <= set(TRANSITIONS)

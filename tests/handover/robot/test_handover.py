@@ -12,7 +12,6 @@ import pytest
 from handover.collector.code import TRANSITIONS
 from handover.robot.behaviour import CORRECT, LEGACY, Behaviour
 from handover.robot.handover import STATES, HandoverRobot
-from handover.robot.mutants import MUTATIONS
 
 
 @dataclass
@@ -223,33 +222,3 @@ def test_transitions_are_those_of_the_protocol() -> None:
         names = [str(value) for _, topic, value in bench.log if topic == "robot_state"]
         seen |= set(pairwise(names))
     assert seen == set(TRANSITIONS)
-
-
-@pytest.mark.parametrize("name", sorted(set(MUTATIONS) - {"crashes"}))
-def test_mutants_differ_from_the_robot(name: str) -> None:
-    """Each mutated robot does something else than the original in one of five situations."""
-    bad = [
-        Reading(gaze=False, pressure=True, location=True),
-        Reading(gaze=True, pressure=False, location=True),
-    ]
-    situations: list[Callable[[], AttemptJudge]] = [
-        lambda: AttemptJudge(protocol()),
-        lambda: AttemptJudge(protocol(), reading=lambda _: bad[0]),
-        lambda: AttemptJudge(protocol(), reading=lambda _: bad[1]),
-        lambda: AttemptJudge(protocol(), hand=0.01),
-        AttemptJudge,
-    ]
-    differs = False
-    for situation in situations:
-        original, mutated = situation(), situation()
-        original.play()
-        mutated.play(robot=MUTATIONS[name], until=100.0)
-        differs |= (original.log, original.commands) != (mutated.log, mutated.commands)
-    assert differs
-
-
-def test_crashing_mutant_crashes() -> None:
-    bench = AttemptJudge(protocol())
-    with pytest.raises(ZeroDivisionError):
-        bench.play(robot=MUTATIONS["crashes"])
-    assert bench.states()[-1] == "sense"

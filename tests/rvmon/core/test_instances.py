@@ -5,8 +5,10 @@ import re
 from collections import Counter
 
 import pytest
+from tests.tools.compare import outcomes
 from tests.tools.differential import disagreements
 from tests.tools.forms import Maker
+from tests.tools.law import judge
 
 import rvmon
 from rvmon.testing.generate.trace import Case
@@ -151,3 +153,23 @@ def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lowe
     found = {one.number: (one.triggered, one.captured["n"]) for one in attempts}
     assert found[4] == (27, 1)
     assert found[5] == (32, -1)
+
+
+@pytest.mark.parametrize("many", [2, 7, pytest.param(70, marks=pytest.mark.slow)])
+def test_those_that_become_sure_at_once_are_numbered_by_their_triggers(many):
+    """Whatever the order of their instances; it is that of what began in doubt, too."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled\nsignal x : real\nevent g(k: int)\nevent o(k: int)\n"
+        "requirement R\n  whenever x > 1 and once o.k == key\n  then x < 5\n"
+        "  for each key in g.k\n"
+    )
+    rng = random.Random(many)
+    keys = list(range(many))
+    asked = [{"g": {"k": key}} for key in keys]
+    rng.shuffle(keys)
+    found = [{"o": {"k": key}} for key in keys]
+    values = [{"x": 0.0}, {"x": None}, *asked, *found, {"x": 2.0}, {"x": 0.0}, {"x": None}, {}]
+    samples = tuple(Sample(t, values) for t, values in enumerate(values))
+    report = spec.evaluate([(one.t * 1e-9, one.values) for one in samples])
+    assert outcomes(report) == outcomes(judge(Case(spec.checked, samples, None)))
+    assert [one.in_doubt for one in report.attempts].count(False) == many

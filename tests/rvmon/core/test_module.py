@@ -14,7 +14,6 @@ import pytest
 import rvmon
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
-from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.native import Monitor as Run
 
 SPEC = """
@@ -199,17 +198,6 @@ def test_calls_of_another_form_are_left(run):
     assert run.step_ns(9, {}) == ()
 
 
-def test_several_payloads_where_they_can_be_told_apart():
-    text = "spec s\nevent e(k: int)\nrequirement R\n  upon e\n  then e.k > 9\n  for each i in e.k\n"
-    run = planned_of(text).monitor(frozenset(), closer, closer)
-    for t, count in enumerate((2, 1, 0, 3000, 5)):
-        payloads = tuple({"k": 8 + k % 5} for k in range(count))
-        decided = run.step_ns(t, {"e": payloads})
-        keys = {payload["k"] for payload in payloads}
-        assert sorted(one.captured["i"] for one in decided) == sorted(keys)
-        assert {str(one.verdict) for one in decided if one.captured["i"] > 9} <= {"P"}
-
-
 def test_a_row_that_is_before_the_one_above_is_not_taken(run):
     assert run.rows(np.array([1, 5, 5, 4, 9]), ()) == 3
     assert run.times() == (1, 5, 5)
@@ -307,21 +295,6 @@ def test_names_and_fields_of_wrong_numbers_are_left(planned):
     for values in ({"p": True}, {"q": True}, {"e": {"k": 1}}, {"e": {"where": "left"}}):
         with pytest.raises(LookupError):
             run.step_ns(1, values)
-
-
-def test_the_layout_of_records_is_that_of_numpy(planned):
-    run = planned.monitor(frozenset())
-    assert run.judge(0, {"x": 0.5, "e": ({"k": -3}, {"k": 2})}, True)
-    run.finish(5 * 10**9)
-    records, numbers, *_ = run.records()
-    made = np.frombuffer(records, RECORD)
-    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), 2)
-    own = made["requirement"] == 2
-    assert made["number"][own].tolist() == [1, 2]
-    assert made["decided"][own].tolist() == [10**9 + 1] * 2
-    assert captured["kind"][own].tolist() == [[1, 2], [1, 2]]
-    assert captured["bits"][own][:, 0].tolist() == [-3, 2]
-    assert captured["bits"][own][:, 1].tolist() == [np.float64(0.5).view(np.int64)] * 2
 
 
 def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:

@@ -59,9 +59,7 @@ def test_truths_reach_as_far_as_they_are_known(time, expected):
 
 def test_an_unknown_value_is_neither_true_nor_false():
     """It ends what is known, and parts the two readings."""
-    text = "signal p : bool\nrequirement R\n  always p\n".replace(
-        "always p", "upon start\n  then p"
-    )
+    text = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
     values = {0: {"p": True}, 4: {"p": None}, 6: {"p": False}}
     assert truths(text, values, 8) == (((0, 3),), ((6, 8),))
 

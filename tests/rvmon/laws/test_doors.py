@@ -8,7 +8,7 @@ from tests.tools.lossy_doors import DOORS
 from tests.tools.lost import outcomes, trials
 
 pytestmark = pytest.mark.law
-RUNS = 50
+RUNS = 30
 
 
 @pytest.mark.parametrize("door", DOORS)

@@ -189,7 +189,7 @@ def test_translation(scope, condition):
         spec, _ = compile_text(head + requirement.replace("D", "1 ns"))
         rng = random.Random(f"{scope} {condition} {timing}")
         seen = set()
-        for number in range(300):
+        for number in range(220):
             length = rng.randint(3, 8)
             likely = {name: rng.choice((0.1, 0.4, 0.8)) for name in "mcrs"}
             run = {name: [rng.random() < likely[name] for _ in range(length)] for name in "mcrs"}
