@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmarks.output import show
 
 from rvmon.readers.messages.columns import path_of
 from rvmon.readers.messages.file import MessageFile
@@ -353,7 +354,7 @@ def _as_ours(path: str) -> str:
     return f"{above}{dot}{_OF_ROS_1.get(last, last)}"
 
 
-def measured(path: Path, form: str) -> str:
+def measured(path: Path, form: str) -> Sequence[str]:
     digest = hashlib.sha256(path.read_bytes()).hexdigest()[:12]
     schema = Schema({}, {})
     start = time.process_time()
@@ -363,9 +364,8 @@ def measured(path: Path, form: str) -> str:
     seconds = time.process_time() - start
     with tempfile.TemporaryDirectory() as folder:
         found = Compared(ours, TOOLS[form](path, Path(folder), ours))
-    rate = f"{count / seconds:,.0f}"
-    told = f"{digest} | {count:,} | {found.equal:,} | {found.different:,} | {rate}"
-    return f"| {form} | {path.name} | {told} | {shorten(found.first, 200)} |"
+    figures = (f"{one:,.0f}" for one in (count, found.equal, found.different, count / seconds))
+    return form, path.name, digest, *figures, shorten(found.first, 200)
 
 
 def main(argv: list[str]) -> int:
@@ -374,11 +374,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
     options = parser.parse_args(argv)
     titles = "format", "file", "SHA-256", "messages", "equal", "different", "messages/s", "first"
-    print("", *titles, "", sep=" | ")
-    print("|---" * len(titles) + "|")
-    for path in options.files:
-        if (form := format_of(str(path))) in options.only:
-            print(measured(path, form), flush=True)
+    forms = {path: format_of(str(path)) for path in options.files}
+    show(titles, (measured(path, form) for path, form in forms.items() if form in options.only))
     return 0
 
 
