@@ -16,7 +16,6 @@ import argparse
 import itertools
 import random
 import re
-import resource
 import struct
 import subprocess
 import sys
@@ -26,13 +25,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from benchmarks.process import measured
 from tests.tools.differential import cases_of, disagreements
 from tests.tools.drive import Found, Lost, told
 from tests.tools.forms import Compiler, Maker
 
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.core import amalgamate
-from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
@@ -57,31 +56,19 @@ TRACES_EACH = 4
 
 def recorded(pairs: int, seed: object) -> bytes:
     """So many random cases, less those that the core does not judge, or judges otherwise."""
-    return written(
-        case
-        for number in range(pairs // TRACES_EACH)
-        for case in cases_of(
-            f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15, letters=8
-        )
-    )
-
-
-def written(cases: Iterable[Case]) -> bytes:
-    """Cases, less those that the core does not judge, or not as the law has it."""
     found: list[bytes] = []
     compiler = Compiler()
     make = Maker("c", compiler)
-    last: CompiledSpec | None = None
-    for number, case in enumerate(cases):
-        if make(case) is None or disagreements(case, make):
-            continue
-        compiled = compiler(case.spec)
-        planned = planned_core(compiled, measured=number // TRACES_EACH % 3 == 0)
-        words = [*_case(planned, case)]
-        plan = planned.packed.data if compiled is not last else b""
-        last = compiled
-        found.append(struct.pack("<q", len(plan)) + plan + struct.pack(f"<{len(words)}q", *words))
-    return struct.pack("<q", len(found)) + b"".join(found)
+    for number in range(pairs // TRACES_EACH):
+        place, plan = f"{seed}/{number}", None
+        for case in cases_of(place, PROFILE, TRACES, TRACES_EACH, windows=15, letters=8):
+            if make(case) is None or disagreements(case, make):
+                continue
+            planned = planned_core(compiler(case.spec), measured=number % 3 == 0)
+            plan = planned.packed.data if plan is None else b""  # once for all of its cases
+            words = [*_case(planned, case)]
+            found += [struct.pack("<q", len(plan)), plan, struct.pack(f"<{len(words)}q", *words)]
+    return struct.pack("<q", len(found) // 3) + b"".join(found)
 
 
 def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
@@ -161,10 +148,9 @@ class Trial:
         self._seconds = time.perf_counter() - began
         if self._expected is None:
             raise SystemExit("without a change, the core crashes or hangs")
-        for path in sources()[:1]:
-            whole = Mutant(path, 0, "", "", "", path.read_text(encoding="utf-8"))
-            if self.outcome(whole) != "same":
-                raise SystemExit(f"{path.name} without a change is not the same")
+        path = sources()[0]
+        if self.outcome(Mutant(path, 0, "", "", "", path.read_text("utf-8"))) != "same":
+            raise SystemExit(f"{path.name} without a change is not the same")
 
     def outcome(self, mutant: Mutant) -> str:
         """`killed`, `survived`, or why it does not count: `unbuilt`, `same`."""
@@ -183,20 +169,11 @@ class Trial:
         words = ["gcc", *FLAGS, f"-I{CORE}", "-c", str(source), "-o", str(made)]
         return subprocess.run(words, capture_output=True, check=False).returncode == 0
 
-    def _said(self, program: Path, objects: Sequence[Path], most: float) -> bytes | None:
+    def _said(self, program: Path, objects: Sequence[Path], most: float) -> str | None:
         words = ["gcc", *map(str, objects), "-lm", "-o", str(program)]
         subprocess.run(words, check=True, capture_output=True)
-        try:
-            done = subprocess.run(
-                [str(program), str(self._cases)],
-                capture_output=True,
-                timeout=most,
-                check=False,
-                preexec_fn=_bound_memory,
-            )
-        except subprocess.TimeoutExpired:
-            return None
-        return None if done.returncode else done.stdout
+        done = measured([str(program), str(self._cases)], most, memory=MOST_MEMORY)
+        return None if done.code else done.output
 
 
 def _code_of(made: Path) -> bytes:
@@ -204,11 +181,6 @@ def _code_of(made: Path) -> bytes:
     words = ["objdump", "-drs", "-j", ".text", "-j", ".rodata", str(made)]
     told = subprocess.run(words, capture_output=True, check=False).stdout
     return told.split(b"\n", 3)[-1]
-
-
-def _bound_memory() -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 _SWAPS = (

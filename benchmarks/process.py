@@ -45,6 +45,7 @@ def measured(
     """Run a program, at most so many seconds, in at most so many bytes."""
 
     def bounded() -> None:
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if memory is not None:
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
