@@ -130,8 +130,9 @@ def _fitting(cases: Sequence[_Case], bound: int, rows: int) -> Iterator[_Case]:
         taken = min(rows, case.question.ticks)
         if taken > bound:
             rows -= taken
-            parts = slice(taken), slice(-taken, None)
-            yield max((_Case(_part(case.question, one)) for one in parts), key=lambda c: c.falses)
+            ends = (slice(taken), slice(-taken, None)) if taken < case.question.ticks else ()
+            parts = [_Case(_part(case.question, one)) for one in ends] or [case]
+            yield max(parts, key=lambda part: part.falses)
 
 
 def _compared(about: Agreement, way: Way, peer: Peer, cases: Sequence[_Case]) -> Agreement:
