@@ -4,7 +4,7 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.plan import plan
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, UnknownNameError
 
 
 def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec):
@@ -32,6 +32,11 @@ def test_a_name_is_that_of_a_file_and_unique(campaign, names, told):
     """Or one test would be written over the other, or anywhere."""
     with pytest.raises(cdv.TestError, match=told):
         plan(campaign(*((name, {}) for name in names)))
+
+
+def test_an_unknown_strategy_is_told(campaign):
+    with pytest.raises(UnknownNameError, match="no strategy `luck`: there are climbs"):
+        plan(campaign(("a", {})), ["luck"])
 
 
 @pytest.mark.parametrize(

@@ -127,6 +127,11 @@ def test_bad_recordings_are_refused_with_their_place(name, text, said, tmp_path,
     assert not (tmp_path / "made.rv").exists()
 
 
+def test_a_binary_file_is_told(tmp_path, says):
+    (tmp_path / "a.csv").write_bytes(b"t,x\n\xff\xfe\x00")
+    assert "a.csv" in says(2, "init", tmp_path / "a.csv", "-o", "-").err
+
+
 def test_nothing_is_overwritten(tmp_path, monkeypatch, says):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2\n")

@@ -95,12 +95,12 @@ def test_wrong_words_are_answered_with_a_fix(door, says, words, said):
 def test_what_was_not_triggered_or_not_decided_says_what_lacked(tmp_path, says):
     """There is no attempt to show, but there is a nearest miss; `--until` is the end."""
     spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
-    head = "spec s\nsignal a, b : bool\nevent e\n"
+    head = "spec s\nsignal a, b : bool\nevent e, f\n"
     spec.write_text(f"{head}requirement R1\n  upon e and a then within 1 s b\n")
-    trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n3,,true,\n")
+    trace.write_text("t,a,b,e,f\n0,false,false,,\n1,,,1,\n3,,,,1\n")
     words = ["why", str(spec), str(trace), "R1"]
     assert "`a` was never true while `e` was (first at 1 s)" in says(2, *words).err
-    spec.write_text(f"{head}requirement R1\n  upon e then within 5 s b\n")
+    spec.write_text(f"{head}requirement R1\n  upon e then within 5 s f\n")
     told = " ".join(says(0, *words, "--until", "2").out.split())
     assert "a recording more than 4 s longer would have decided it" in told
 

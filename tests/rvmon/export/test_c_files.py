@@ -110,9 +110,9 @@ def test_notes_change_nothing_and_are_bounded(tmp_path):
 
 def test_short_memory_is_never_green(tmp_path):
     """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
-    exported = Exported(tmp_path, list(judged("memory", 60)), ["gcc", *STRICT, *SANITIZED])
+    exported = Exported(tmp_path, list(judged("memory", 40)), ["gcc", *STRICT, *SANITIZED])
     spoilt = 0
-    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(60)])):
+    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(40)])):
         enough = int(whole[-1].split()[-1])
         steps = {*range(0, enough, -(-enough // 40)), *range(enough - 400, enough, 16)}
         sizes = [*sorted(steps), enough, 2 * enough]
