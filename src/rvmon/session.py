@@ -16,7 +16,7 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
-    from rvmon.analysis.truths import Plans
+    from rvmon.analysis.subformulas import Looking
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
@@ -97,9 +97,11 @@ class Spec:
         return CompiledSpec(self.checked, is_kept=True)
 
     @cached_property
-    def plans_of_truths(self) -> Plans:
-        """What was made to look recordings through; see `rvmon.analysis.truths.look_through`."""
-        return {}
+    def looking(self) -> Looking:
+        """What was made to look recordings through, for all of them."""
+        from rvmon.analysis.subformulas import Looking
+
+        return Looking(self.checked)
 
     def monitor(
         self,

@@ -44,7 +44,7 @@ from rvmon.verdict.attempt import Attempt
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.analysis.truths import Positions
+    from rvmon.analysis.truths import Plans, Positions
 
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
@@ -211,23 +211,35 @@ def part_truths_of(
 
 
 @dataclass(frozen=True, slots=True)
+class _Part:
+    """An operand of a trigger.
+
+    Attributes:
+        formula: itself.
+        text: as in the specification.
+        place: its place among all operands of the trigger.
+        reads: the signals that it reads.
+    """
+
+    formula: Formula
+    text: str
+    place: int
+    reads: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
 class _Miss:
     """The moment at which most parts of a conjunction were true.
 
     Attributes:
-        parts: the operands of the conjunction.
         there: the operands that were true.
+        missing: those that were not.
         at: the first such instant, ticks; `None` if no operand was ever true.
     """
 
-    parts: tuple[Formula, ...]
-    there: tuple[Formula, ...]
+    there: tuple[_Part, ...]
+    missing: tuple[_Part, ...]
     at: int | None
-
-    @property
-    def missing(self) -> tuple[Formula, ...]:
-        """The operands that were not true."""
-        return tuple(part for part in self.parts if part not in self.there)
 
 
 def why_not_triggered(
@@ -246,36 +258,66 @@ def why_not_triggered(
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
     """
-    question = parts_asked(requirement)
-    return miss_in(spec, requirement, look_through(spec, [question], samples, end, names))
+    trigger = TriggerParts(spec, requirement)
+    return trigger.miss_in(look_through(spec, [trigger.question], samples, end, names))
 
 
-def parts_asked(requirement: Requirement) -> Question:
-    """The operands of a trigger as a question; none for `for each`, which is not explained."""
-    if requirement.for_each is not None:
-        return Question(())
-    return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
+class TriggerParts:
+    """The parts of a trigger, by which it is said why it did not come; of any recording.
+
+    Args:
+        spec: the specification.
+        requirement: whose trigger it is.
+
+    Attributes:
+        question: asks for the operands; for none of `for each`, which is not explained.
+    """
+
+    def __init__(self, spec: CheckedSpec, requirement: Requirement) -> None:
+        options = [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
+        if requirement.for_each is not None:
+            options = []
+        self.question = Question(tuple(dict.fromkeys(chain(*options))))
+        parts = {}
+        asked = zip(self.question.formulas, self.question.texts, strict=True)
+        for place, (formula, text) in enumerate(asked):
+            reads = frozenset(spec.signals.keys() & {*names_read(formula)})
+            parts[formula] = _Part(formula, text, place, reads)
+        self._options = [tuple(parts[one] for one in own) for own in options]
+        self._is_told = requirement.for_each is None and not is_end(requirement.trigger)
+
+    def miss_in(self, seen: RecordedTruths) -> str:
+        """As `why_not_triggered`, from the truths of the question over a recording."""
+        if seen.begin is None:
+            return "the recording has no sample"
+        if not self._is_told:
+            return ""
+        truths = seen.truths(self.question)
+        misses = [_miss(parts, truths) for parts in self._options]
+        best = min(misses, key=lambda miss: len(miss.missing))
+        if best.missing and best.at is None:
+            return "; ".join(_apart(best.missing, truths, seen, seen.begin))
+        return _sentence(best, truths, seen.begin)
 
 
-def miss_in(spec: CheckedSpec, requirement: Requirement, seen: RecordedTruths) -> str:
-    """As `why_not_triggered`, from the truths of its `parts_asked` over a recording."""
-    if seen.begin is None:
-        return "the recording has no sample"
-    if requirement.for_each is not None or is_end(requirement.trigger):
-        return ""
-    question = parts_asked(requirement)
-    truths = dict(zip(question.formulas, seen.truths(question), strict=True))
-    misses = [_miss(parts, truths) for parts in _options(requirement)]
-    best = min(misses, key=lambda miss: len(miss.missing))
-    if best.missing and best.at is None:
-        valueless = _without_values(spec, best.parts, seen)
-        return "; ".join(_apart(best.parts, truths, valueless, seen.begin, seen.end))
-    return _sentence(best, truths, seen.begin)
+class Looking:
+    """What recordings of a specification are looked through with, made once for all of them.
 
+    Attributes:
+        plans: for `look_through`.
+    """
 
-def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
-    """The disjuncts of a trigger, each as the operands of its conjunction."""
-    return [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
+    def __init__(self, spec: CheckedSpec) -> None:
+        self._spec = spec
+        self._triggers: dict[str, TriggerParts] = {}
+        self.plans: Plans = {}
+
+    def trigger(self, requirement: str) -> TriggerParts:
+        """The parts of the trigger of a requirement, given by its id."""
+        if requirement not in self._triggers:
+            own = self._spec.requirements[requirement]
+            self._triggers[requirement] = TriggerParts(self._spec, own)
+        return self._triggers[requirement]
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
@@ -286,72 +328,71 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
             return (formula,)
 
 
-def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
+def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:
     """The instant with the most true operands; ties go to more events, then to the first."""
-    instants = distinct([seen[part].sure[:, 0] for part in parts])
-    if not len(instants):
-        return _Miss(parts, (), None)
-    true = np.array([hold(seen[part].sure, instants) for part in parts])
-    events = true[[isinstance(part, EventAtom) for part in parts]].sum(axis=0)
+    sure = [truths[part.place].sure for part in parts]
+    if not any(map(len, sure)):
+        return _Miss((), parts, None)
+    instants = distinct([spans[:, 0] for spans in sure])
+    true = np.array([hold(spans, instants) for spans in sure])
+    events = true[[isinstance(part.formula, EventAtom) for part in parts]].sum(axis=0)
     best = int(np.argmax(true.sum(axis=0) * (len(parts) + 1) + events))
-    there = tuple(part for part, is_true in zip(parts, true[:, best], strict=True) if is_true)
-    return _Miss(parts, there, int(instants[best]))
+    is_there = true[:, best].tolist()
+    there = tuple(part for part, is_true in zip(parts, is_there, strict=True) if is_true)
+    missing = tuple(part for part, is_true in zip(parts, is_there, strict=True) if not is_true)
+    return _Miss(there, missing, int(instants[best]))
 
 
-def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], origin: int) -> str:
+def _sentence(miss: _Miss, truths: Sequence[Truth], origin: int) -> str:
     """The sentence if some operand was true, or none is missing."""
     at = miss.at
     if at is None or not miss.missing:
         when = "" if at is None else f" at {format_instant(at, origin)}"
         return f"its trigger was true{when}, but not known to be false before: no edge was seen"
-    rest = miss.there[0]
+    rest = miss.there[0].formula
     for part in miss.there[1:]:
-        rest = Binary(BinaryOp.AND, rest, part)
-    unknown = any(hold(seen[part].may, at) for part in miss.missing)
+        rest = Binary(BinaryOp.AND, rest, part.formula)
+    unknown = any(hold(truths[part.place].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
     return f"{_either(miss.missing)} {lacking} {while_}"
 
 
 def _apart(
-    parts: tuple[Formula, ...],
-    seen: Mapping[Formula, Truth],
-    valueless: Mapping[str, str],
-    start: int,
-    end: int,
+    parts: tuple[_Part, ...], truths: Sequence[Truth], seen: RecordedTruths, start: int
 ) -> Iterator[str]:
     """The clauses if no operand was ever true, with those on signals without a value."""
-    groups: dict[str, list[Formula]] = {}
+    valueless = _without_values(parts, seen)
+    groups: dict[str, list[_Part]] = {}
     for part in parts:
         word = "was never true"
-        low, high = seen[part].may[0].tolist()
-        if isinstance(part, SignalAtom) and part.name in valueless:
-            word = valueless[part.name]
-        elif low <= start and high >= end:
+        low, high = truths[part.place].may[0].tolist()
+        if isinstance(part.formula, SignalAtom) and part.formula.name in valueless:
+            word = valueless[part.formula.name]
+        elif low <= start and high >= seen.end:
             word = "was never known"
-        elif low <= end:
+        elif low <= seen.end:
             word = "was never known to be true"
-        elif isinstance(part, EventAtom):
+        elif isinstance(part.formula, EventAtom):
             word = "never occurred"
         groups.setdefault(word, []).append(part)
     for word, own in groups.items():
         yield f"{_either(own)} {word}"
-    signals = {part.name for part in parts if isinstance(part, SignalAtom)}
+    signals = {part.formula.name for part in parts if isinstance(part.formula, SignalAtom)}
     for name in sorted(valueless.keys() - signals):
         yield f"`{name}` {valueless[name]}"
 
 
-def _without_values(
-    spec: CheckedSpec, parts: Sequence[Formula], seen: RecordedTruths
-) -> Mapping[str, str]:
+def _without_values(parts: Sequence[_Part], seen: RecordedTruths) -> Mapping[str, str]:
     """The signals without any value that the operands read, each with the clause for it."""
-    read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
-    lacking = read & seen.valueless
+    if not seen.valueless:
+        return {}
+    lacking = {name for part in parts for name in part.reads} & seen.valueless
     absent = set() if seen.names is None else lacking - seen.names
     return dict.fromkeys(absent, "has no source") | dict.fromkeys(
         lacking - absent, "never had a value"
     )
 
 
-def _either(parts: Sequence[Formula]) -> str:
-    return listed([f"`{format_formula(part)}`" for part in parts], "or")
+def _either(parts: Sequence[_Part]) -> str:
+    return listed([f"`{part.text}`" for part in parts], "or")

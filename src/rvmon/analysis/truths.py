@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -53,7 +54,7 @@ class Truth:
     may: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Question:
     """Formulas to be evaluated, with their captured values.
 
@@ -71,6 +72,11 @@ class Question:
     def whose(self) -> tuple[object, ...]:
         """The key of questions that can be evaluated in one run."""
         return self.for_each, *self.captured.items()
+
+    @cached_property
+    def texts(self) -> tuple[str, ...]:
+        """The formulas in words of the language: those of one text are evaluated once."""
+        return tuple(map(format_formula, self.formulas))
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +103,7 @@ class RecordedTruths:
     def truths(self, question: Question) -> list[Truth]:
         """The truths of the formulas of a question, in order."""
         own = self._truths[question.whose]
-        return [own[format_formula(one)] for one in question.formulas]
+        return [own[text] for text in question.texts]
 
 
 def look_through(
@@ -127,7 +133,7 @@ def look_through(
     for question in questions:
         if question.whose not in groups:
             groups[question.whose] = _Group(spec, question)
-        groups[question.whose].add(question.formulas)
+        groups[question.whose].add(question)
     if isinstance(pieces, HeldRecording):
         outages, pieces = pieces.outages, pieces.pieces
     source = Trace((), names, end, outages)
@@ -188,9 +194,9 @@ class _Group:
         self._made: _Plan | None = None
         self._run: TruthsRun | None = None
 
-    def add(self, formulas: Iterable[Formula]) -> None:
-        """Add formulas."""
-        self._formulas |= {format_formula(formula): formula for formula in formulas}
+    def add(self, question: Question) -> None:
+        """Add the formulas of a question."""
+        self._formulas.update(zip(question.texts, question.formulas, strict=True))
 
     def begin(self, source: Trace, plans: Plans | None) -> bool:
         """Start the run; returns whether there is anything to evaluate."""
@@ -268,6 +274,8 @@ class _Ticks:
 
     def spans(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
         """The ticks of ranges of positions, each up to the tick before the next position."""
+        if not len(ranges):
+            return ranges
         if self._positions is not None:
             ranges = self._lasting(ranges - self._first, self._positions)
         return within(joined(ranges), self._begin, self.end)

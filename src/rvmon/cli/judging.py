@@ -232,8 +232,6 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     remembered = Remembered()
     began = time.monotonic()
     try:
-        if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
-            raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         recording = opened(spec, trace)
         missing = expect_names(
             spec.checked,
@@ -264,11 +262,11 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         is_named = any(one in message for one in filter(None, trace.split(JOINT)))
         place = "" if is_named else f"{trace}: "
         return Judged(shown_path(trace), None, tuple(before), place + message)
-    report = post_analysis(
+    found = post_analysis(
         spec, recording, remembered, report, goals=options.only is None, explains=options.explains
     )
     trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
-    report = replace(report, trace=trace, health=health)
+    report = replace(report, trace=trace, health=health, **found)
     seconds = time.monotonic() - began
     return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)

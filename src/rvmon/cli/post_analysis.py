@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.reading import opened
-from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source, pieces_up_to
 from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
@@ -74,32 +72,31 @@ def post_analysis(
     *,
     goals: bool,
     explains: bool = True,
-) -> Report:
-    """The report with the cover goals, and with what only the whole recording shows, if asked.
+) -> dict[str, Any]:
+    """What to add to a report: the cover goals, and what only the whole recording shows, if asked.
 
     That is what the triggers lacked that never came true, and what came after its deadline.
 
     Streams cannot be read again.
     """
     trace, names, end = recording.path, recording.names, report.end
-    if end is None or not can_be_read_again(trace):
-        return report
-
+    if end is None or not recording.can_be_read_again:
+        return {}
+    found: dict[str, Any] = {}
     if goals and spec.checked.covers:
-        report = replace(report, goals=_goals(spec, trace, end))
-
+        found["goals"] = _goals(spec, trace, end)
     if not explains:
-        return report
+        return found
     failures = list(_first_failures(report))
     values, windows = _Values(spec, failures), _Windows(spec, failures, report.origin)
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent and not values.names and not windows.names:
-        return report
-    from rvmon.analysis.subformulas import miss_in, parts_asked
+        return found
     from rvmon.analysis.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]
-    questions += [parts_asked(spec.requirements[name]) for name in silent]
+    triggers = {name: spec.looking.trigger(name) for name in silent}
+    questions += [trigger.question for trigger in triggers.values()]
     until = end if questions else max(values.until, windows.until)
     pieces: Iterable[Batch | Sample] | None = remembered.until(until)
     if pieces is None:
@@ -108,19 +105,17 @@ def post_analysis(
         pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
     noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
     seen = look_through(
-        spec.checked, questions, noted, end, names, spec.plans_of_truths, recording.outages
+        spec.checked, questions, noted, end, names, spec.looking.plans, recording.outages
     )
-    misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
+    misses = {name: trigger.miss_in(seen) for name, trigger in triggers.items()}
     shown: dict[str, dict[int, dict[str, str]]] = {}
     for requirement, number, own in (*values.of_attempts(), *windows.of_attempts()):
         if own:
             shown.setdefault(requirement, {}).setdefault(number, {}).update(own)
-    return replace(
-        report,
-        values=shown,
-        late=_arrived(late, seen) if late else {},
-        misses={name: miss for name, miss in misses.items() if miss},
-    )
+    found["values"] = shown
+    found["late"] = _arrived(late, seen) if late else {}
+    found["misses"] = {name: miss for name, miss in misses.items() if miss}
+    return found
 
 
 class _Values:
@@ -140,6 +135,9 @@ class _Values:
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
         """The pieces, unchanged; nothing is kept of one that was passed."""
+        if not self._asked:
+            yield from pieces
+            return
         from rvmon.report.changes import RunChanges
 
         changes = RunChanges(self._spec.checked, self.names)
@@ -254,8 +252,9 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
 
 def _first_failures(report: Report) -> Iterator[Attempt]:
     """The failures that are shown, if it is known what was to blame."""
-    for name in report.verdicts:
-        for attempt in islice(report.of(name, Verdict.FAIL), SHOWN_PER_REQUIREMENT):
+    for name, verdict in report.verdicts.items():
+        failed = report.of(name, Verdict.FAIL) if verdict is Verdict.FAIL else iter(())
+        for attempt in islice(failed, SHOWN_PER_REQUIREMENT):
             if attempt.blame is not None:
                 yield attempt
 

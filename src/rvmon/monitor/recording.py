@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -76,10 +76,8 @@ class RecordingRun:
         declared = frozenset((*checked.signals, *checked.events))
         names = source.names
         absent = frozenset() if names is None else declared - names
+        self._checked = checked
         self._planned = planned
-        self._validator = Validator(
-            checked, None if names is None else names & declared, planned.single_payloads
-        )
         self._expected = declared - absent
         self._findings = Findings(checked, planned, absent) if finds else None
         self.core = planned.monitor(absent & planned.numbers.keys())
@@ -92,6 +90,11 @@ class RecordingRun:
         ]
         turns = [(_turns_at(turn, own[0].t), turn) for own in stretches for turn in own]
         self._turns = [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
+
+    @cached_property
+    def _validator(self) -> Validator:
+        """Checks what the core does not take as it is, of which most recordings have nothing."""
+        return Validator(self._checked, self._expected, self._planned.single_payloads)
 
     def take(self, piece: Batch | Sample) -> None:
         """Judge the next piece of the recording."""
@@ -194,10 +197,10 @@ class RecordingRun:
     def report(self) -> Report:
         """End the run; returns its report."""
         origin, _, _ = self.core.times()
-        report = report_of_run(self._planned, self.core, origin or 0, self.finish())
-        if self._findings is None:
-            return report
-        return replace(report, health=(*self._findings.found(self.core), *self._losses.health()))
+        end = self.finish()
+        found = () if self._findings is None else self._findings.found(self.core)
+        health = (*found, *self._losses.health())
+        return report_of_run(self._planned, self.core, origin or 0, end, health)
 
 
 def _turns_at(turn: Turn, since: int) -> tuple[int, int]:

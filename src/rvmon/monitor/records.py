@@ -11,6 +11,7 @@ import numpy as np
 
 from rvmon import native
 from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore
+from rvmon.trace.sample import Health
 from rvmon.verdict import Verdict, fold
 from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
 from rvmon.verdict.report import Report
@@ -188,7 +189,11 @@ def with_plan(report: Report, planned: PlannedCore | None) -> Report:
 
 
 def report_of_run(
-    planned: PlannedCore, run: native.Monitor, origin: int, end: int | None
+    planned: PlannedCore,
+    run: native.Monitor,
+    origin: int,
+    end: int | None,
+    health: tuple[Health, ...] = (),
 ) -> Report:
     """Sort and fold the records of a run, as `rvmon.verdict.report.report_of` does attempts.
 
@@ -197,6 +202,7 @@ def report_of_run(
         run: finished.
         origin: the instant that reports show as 0 s, ticks.
         end: the last instant of the trace, ticks.
+        health: findings about the input.
 
     Source: SEMANTICS, section 3.
     """
@@ -224,6 +230,7 @@ def report_of_run(
             origin,
         ),
         counts=counts,
+        health=health,
         dropped=_dropped(ids, counts, made),
         origin=origin,
         end=end,
@@ -259,6 +266,8 @@ def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:
 
     Keys: decision instant (undecided last), requirement, in doubt, number.
     """
+    if len(records) < 2:
+        return None
     undecided = records["decision"] == _OPEN
     decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])
     if (decided[1:] > decided[:-1]).all():

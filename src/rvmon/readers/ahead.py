@@ -19,24 +19,33 @@ MOST_THREADS = 4
 """That read; who looks at what they have read is slower than these."""
 
 
-def stretches(file: BinaryIO) -> Iterator[bytes]:
+def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
     r"""A text in stretches that end with a line, but the last one; a line may be in several.
+
+    Args:
+        first: its first `places.BLOCK` bytes; where there are fewer, `file` is not read.
+        file: gives what follows; each call as many bytes as are asked for, but at its end.
 
     Raises:
         UnicodeDecodeError: it is no text.
 
     >>> import io
-    >>> list(stretches(io.BytesIO(b"t,p\n0,1\n1,")))
-    [b't,p\n0,1\n', b'1,']
+    >>> list(stretches(b"t,p\n0,1\n1,", io.BytesIO()))
+    [b't,p\n0,1\n1,']
     """
     decoder = getincrementaldecoder("utf-8")()
-    tail = b""
-    while piece := file.read(places.BLOCK):
+    tail, piece = b"", first
+    while piece:
         if decoder.getstate()[0] or not piece.isascii():
             decoder.decode(piece)
+        is_last = len(piece) < places.BLOCK
+        if is_last and not decoder.getstate()[0]:
+            yield tail + piece
+            return
         whole = piece.rfind(b"\n") + 1 or len(piece)
         yield b"".join((tail, memoryview(piece)[:whole]))
         tail = piece[whole:]
+        piece = b"" if is_last else file.read(places.BLOCK)
     decoder.decode(b"", final=True)
     yield tail
 

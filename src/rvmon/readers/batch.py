@@ -56,7 +56,7 @@ class Cells:
     def cut(self, start: int, stop: int) -> Cells:
         """Some of the rows."""
         says = None if self.says is None else self.says[start:stop]
-        return replace(self, values=self.values[start:stop], says=says)
+        return Cells(self.values[start:stop], says, self.labels)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Cells:
         """The same at some of more rows; the others say nothing."""
@@ -139,6 +139,7 @@ class Batch:
         events: by name.
         first: number of the first row, or of its line.
         lines: int64[n], of each row; `None`: they follow each other.
+        is_last: whether it is known that no row follows.
     """
 
     times: NDArray[np.int64]
@@ -146,6 +147,7 @@ class Batch:
     events: Mapping[str, Occurrences]
     first: int = 0
     lines: NDArray[np.int64] | None = None
+    is_last: bool = False
 
     def number_of(self, row: int) -> int:
         """The number of a row, or of its line."""
@@ -252,9 +254,7 @@ def holds_nan(values: NDArray[Any]) -> bool:
     """Whether some number is NaN."""
     if values.dtype.kind != "f":
         return False
-    # Mostly one sum shows that there is none; that of infinities may be NaN, too.
-    with np.errstate(invalid="ignore", over="ignore"):
-        return bool(np.isnan(np.add.reduce(values)) and np.isnan(values).any())
+    return bool(np.isnan(np.minimum.reduce(values, initial=np.inf)))  # NaN is less than all
 
 
 def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -> None:

@@ -34,8 +34,19 @@ _WIDEST = 8
 _TYPES = {Kind.BOOL: np.bool_, Kind.INT: np.int64, Kind.REAL: np.float64, Kind.LABEL: np.int32}
 
 
-def batch_of(times: NDArray[np.int64], layout: Layout, columns: Mapping[Column, Cells]) -> Batch:
-    """Rows of columns, read as rows are: see `rvmon.readers.csv_rows.row_values`."""
+def batch_of(
+    times: NDArray[np.int64],
+    layout: Layout,
+    columns: Mapping[Column, Cells],
+    first: int = 0,
+    lines: NDArray[np.int64] | None = None,
+    *,
+    is_last: bool = False,
+) -> Batch:
+    """Rows of columns, read as rows are: see `rvmon.readers.csv_rows.row_values`.
+
+    `first`, `lines` and `is_last` are those of `Batch`.
+    """
     signals = {one.name: columns[one] for one in layout.signals}
     payloads: dict[str, dict[str, Cells]] = {}
     own: dict[str, Cells] = {}
@@ -50,7 +61,7 @@ def batch_of(times: NDArray[np.int64], layout: Layout, columns: Mapping[Column, 
         says = _occurrences(own.get(name), fields.values(), len(times))
         heard = {field: _where(one, says != NO) for field, one in fields.items()}
         events[name] = Occurrences(says, heard)
-    return Batch(times, signals, events)
+    return Batch(times, signals, events, first, lines, is_last)
 
 
 def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:

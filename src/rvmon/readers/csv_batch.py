@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, BinaryIO
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.native import extension
 from rvmon.native.sources import CSV_FOLDER
-from rvmon.readers.ahead import read_ahead, stretches
 from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.readers.cells import batch_of, cells_of_labels, kept
 from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines, unended
-from rvmon.readers.places import LONGEST_LINE, bounded_lines, is_short_of_memory
+from rvmon.readers.csv_text import CsvText
+from rvmon.readers.places import bounded_lines, is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.values import as_declared, scalar_of_text
 from rvmon.trace.schema import Kind
@@ -32,9 +31,6 @@ if TYPE_CHECKING:
     read = _csv.read
 else:
     read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
-
-_MARK = b"\xef\xbb\xbf"
-"""That some editors begin a text with."""
 
 _ALL, _ROW = 0, 2
 """That a call ended with the text, or at a row that is odd; else with its room."""
@@ -53,20 +49,18 @@ _LABELS = 2048
 _MOST_LABELS = 1 << 16
 """From here on not."""
 
-_LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r(?!\Z))")
-
 
 def csv_batches(
-    file: BinaryIO,
-    layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout],
+    text: CsvText[Found],
+    layout: Layout,
     ignoring: frozenset[str],
     lose: Callable[[frozenset[str]], object],
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order.
 
     Args:
-        file: is read from its start.
-        layout_of: reads the header off the rows.
+        text: of which the header was taken.
+        layout: what that says.
         ignoring: the signals that take no unknown value.
         lose: is told the names that are unknown as the last line has no end.
 
@@ -74,9 +68,8 @@ def csv_batches(
         TraceError: with the line's number; the rows above it have been given out.
         UnicodeDecodeError: it is no text.
     """
-    text = _Text(file)
-    reader = _Reader(layout_of(split_lines(text.lines())))
-    if not is_short_of_memory():  # each thread reserves some
+    reader = _Reader(layout)
+    if not (text.is_whole or is_short_of_memory()):  # each thread reserves some
         text.read_ahead(reader.read)
     try:
         while True:
@@ -84,7 +77,7 @@ def csv_batches(
             if ended == _ROW:
                 before = text.line
                 row = bounded_lines(io.StringIO(text.cut(end), newline=""))
-                yield csv_samples(split_lines(row, before), reader.layout)
+                yield csv_samples(split_lines(row, before), layout)
             elif ended == _ALL and not text.read_on():
                 break
     finally:
@@ -92,13 +85,13 @@ def csv_batches(
     if text.start < len(text.rest):
         before = text.line
         tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
-        for line, t, values, lost in unended(split_lines(tail, before), reader.layout, ignoring):
+        for line, t, values, lost in unended(split_lines(tail, before), layout, ignoring):
             lose(lost)
             yield iter([(line, t, values)])
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class Found:
     """What a call found in a text: as `csv.h` says, in arrays with room for more.
 
     Attributes:
@@ -114,82 +107,14 @@ class _Found:
     counts: tuple[int, ...]
 
 
-class _Text:
-    """A text that is taken in stretches, and what of one is not taken yet.
-
-    Mostly the end of a line is that of a row. Where it is not, what lies behind it is read again.
-
-    Attributes:
-        found: gives what was found in all of `rest`, if that was read ahead.
-    """
-
-    def __init__(self, file: BinaryIO) -> None:
-        self._stretches = stretches(file)
-        self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
-        self._read = ((one, None) for one in self._stretches)
-        self.rest, self.found = next(self._read)
-        self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
-        self.line = 0
-        self.is_last = False
-
-    def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
-        """Have further stretches read by other threads."""
-        self._read = read_ahead(self._stretches, read)
-
-    def close(self) -> None:
-        """Read no further."""
-        self._read.close()
-
-    def read_on(self) -> bool:
-        """Go on to a further stretch; false: there was none before, either."""
-        if self.is_last:
-            return False
-        if len(self.rest) - self.start > LONGEST_LINE:
-            self._refuse_long()
-        further = next(self._read, None)
-        self.is_last = further is None
-        stretch, self.found = further or (b"", None)
-        if self.start < len(self.rest):
-            stretch, self.found = self.rest[self.start :] + stretch, None
-        self.rest = stretch
-        self.start = 0
-        return True
-
-    @property
-    def is_ended(self) -> bool:
-        """Whether it is read to its end, and its last line has one."""
-        return self.is_last and self.rest[-1:] in (b"\n", b"\r", b"")
-
-    def _refuse_long(self) -> None:
-        rest = self.rest[self.start :].decode(errors="ignore")
-        if len(rest) > LONGEST_LINE:
-            for _ in split_lines(bounded_lines(io.StringIO(rest, newline="")), self.line):
-                pass
-
-    def lines(self) -> Iterator[str]:
-        """The next lines, each taken as it is given out."""
-        while self.start < len(self.rest) or not self.is_last:
-            found = _LINE.match(self.rest, self.start)
-            if found is not None or self.is_last:
-                yield self.cut(len(self.rest) if found is None else found.end())
-            else:
-                self.read_on()
-
-    def cut(self, end: int) -> str:
-        """Take what lies before a place."""
-        taken = self.rest[self.start : end].decode()
-        self.line += max(1, taken.count("\n") + taken.count("\r") - taken.count("\r\n"))
-        self.start = end
-        return taken
-
-
 class _Reader:
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
-        self._slots = np.full(len(layout.header), -1, np.int32)
-        self._slots[layout.time] = 0
+        slots = [-1] * len(layout.header)
+        slots[layout.time] = 0
         for place, column in enumerate(layout.columns, 1):
-            self._slots[column.index] = place
+            slots[column.index] = place
+        self._slots = np.array(slots, np.int32)
         kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[one.kind] for one in layout.columns)]
         self._kinds = np.array(kinds, np.int32)
         no_update = layout.gaps.no_update
@@ -197,7 +122,7 @@ class _Reader:
         self._row_bytes = 2.0 * len(layout.header)
         self._labels = max(_LABELS, len(kinds))
 
-    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> _Found:
+    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
         """Find rows in a text from a place on, as far as one call can."""
         room = self._room_for(len(text) - start)
         columns = len(self._kinds)
@@ -211,9 +136,9 @@ class _Reader:
             text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
             numbers, says, lines, odd, labels, table,
         )  # fmt: skip
-        return _Found(numbers, says, lines, odd, labels, counts)
+        return Found(numbers, says, lines, odd, labels, counts)
 
-    def batch(self, text: _Text) -> Generator[Batch, None, tuple[int, int]]:
+    def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
         """Take what can be read at once.
 
         Returns:
@@ -245,9 +170,11 @@ class _Reader:
                 column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
                 for place, column in enumerate(self.layout.columns, 1)
             }
-            batch = batch_of(numbers[0, :rows], self.layout, cells)
             is_plain = lines[rows - 1] - lines[0] == rows - 1
-            yield replace(batch, first=int(lines[0]), lines=None if is_plain else lines[:rows])
+            own = None if is_plain else lines[:rows]
+            times, line = numbers[0, :rows], int(lines[0])
+            is_last = text.is_whole and at == len(source) and fault is None
+            yield batch_of(times, self.layout, cells, line, own, is_last=is_last)
         if fault is not None:
             raise fault
         if rows:

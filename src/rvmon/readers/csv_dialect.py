@@ -123,7 +123,7 @@ def dialect_of(head: bytes) -> Dialect:
     if len(head) == _LOOKED_AT:
         lines = lines[:-1]
     if lines and any(cell.strip(' "') in DEFAULT_COLUMNS for cell in lines[0].split(",")[:-1]):
-        return replace(PLAIN, encoding=encoding)  # whatever is odd in its rows is told
+        return replace(PLAIN, encoding=encoding) if is_wide else PLAIN  # what is odd is told later
     above, separators = 0, _SEPARATORS
     if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
         above, separators = 1, (said[1],)

@@ -69,8 +69,9 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
         RvmonError: a package is not installed.
         OSError: a file cannot be opened.
     """
-    with open(local_path(str(path)), "rb") as raw:
-        packed = endings_of(str(path))[1]
+    path = str(path)
+    with open(local_path(path) if is_address(path) else path, "rb") as raw:
+        packed = endings_of(path)[1]
         if not packed:
             yield raw, raw
             return

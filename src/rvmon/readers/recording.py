@@ -9,7 +9,6 @@ from collections.abc import Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
 from errno import ENOENT
-from io import TextIOWrapper
 from itertools import islice
 from math import inf
 from pathlib import Path
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
+from rvmon.readers.csv_text import CsvText
 from rvmon.readers.found import files_of
 from rvmon.readers.joined import Joined, schemas_of
 from rvmon.readers.messages.forms import (
@@ -29,7 +29,6 @@ from rvmon.readers.messages.forms import (
 )
 from rvmon.readers.places import (
     JOINT,
-    bounded_lines,
     endings_of,
     is_address,
     local_path,
@@ -44,6 +43,7 @@ from rvmon.trace.stamps import stamps_of
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
+    from rvmon.readers.csv_batch import Found
     from rvmon.readers.messages.file import MessageFile
 
 JOINED = "joined"
@@ -59,6 +59,7 @@ class FileRecording:
         end: of messages the last instant of the recording, ticks; `None`: its last sample.
         ignored: the names that are not declared, counted as they are read; not of messages, which
             are recorded for more than one purpose.
+        can_be_read_again: whether it is no stream, which is gone when it was read.
         rows: what makes samples of it.
     """
 
@@ -86,6 +87,10 @@ class FileRecording:
         if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
             raise TraceError(f"{self.path}: {message}")
+        self.can_be_read_again = can_be_read_again(self.path)
+        if not self.can_be_read_again and self._format in ("csv", "parquet"):
+            message = "is a pipe: pipes hold JSON lines; keep other recordings in a file"
+            raise TraceError(f"{self.path}: {message}")
         unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
         self.rows = Rows(schema, unit, ordered=ordered)
         self._open_file: BinaryIO | None = None
@@ -94,16 +99,14 @@ class FileRecording:
         self.end: int | None = None
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
-        self._known: tuple[list[str], Layout] | None = None
+        self._begun: tuple[CsvText[Found], Layout] | None = None
         self._unended: frozenset[str] = frozenset()
         if self._format == "csv":
-            with (
-                named_errors(self.path),
-                opened_as_csv(self.path, schema.stamps) as (plain, _),
-                # The mark that some editors begin a text with would make its first cell odd.
-                TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
-            ):
-                self._take_names(self._layout(split_lines(bounded_lines(text))))
+            with named_errors(self.path), opened_as_csv(self.path, schema.stamps) as (plain, _):
+                text: CsvText[Found] = CsvText(plain)
+                layout = self._layout(text)
+            self._take_names(layout)
+            self._begun = (text, layout) if text.is_whole else None
         elif self._format == "parquet":
             from rvmon.readers.parquet import parquet_layout
 
@@ -187,7 +190,7 @@ class FileRecording:
         """The same, of which there may be none; its errors do not name the file."""
         if self._joined is not None:
             yield from self._joined.pieces()
-        elif self._messages is None and can_be_read_again(self.path) and self._ordered:
+        elif self._messages is None and self.can_be_read_again and self._ordered:
             with closing(self._batches()) as batches:
                 yield from self.rows.pieces(batches)
         else:
@@ -199,18 +202,25 @@ class FileRecording:
 
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
+        if self._begun is not None:
+            begun, self._begun = self._begun, None
+            yield from self._csv_batches(*begun)
+            return
         with self._opened() as (plain, raw):
-            self._open_file = raw if can_be_read_again(self.path) else None
+            self._open_file = raw if self.can_be_read_again else None
             if self._format == "csv":
-                from rvmon.readers.csv_batch import csv_batches
-
-                self._lose(frozenset())
-                ignoring = self._schema.ignoring
-                yield from csv_batches(plain, self._layout, ignoring, self._lose)
+                text: CsvText[Found] = CsvText(plain)
+                yield from self._csv_batches(text, self._layout(text))
             else:
                 from rvmon.readers.jsonl_batch import jsonl_batches
 
                 yield from jsonl_batches(plain, self._schema, self.ignored, self._take_stamps)
+
+    def _csv_batches(self, text: CsvText[Found], layout: Layout) -> Iterator[Batch | Iterator[Row]]:
+        from rvmon.readers.csv_batch import csv_batches
+
+        self._lose(frozenset())
+        yield from csv_batches(text, layout, self._schema.ignoring, self._lose)
 
     def _lose(self, names: frozenset[str]) -> None:
         self._unended = names
@@ -269,14 +279,18 @@ class FileRecording:
         )
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
-    def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
+    def _layout(self, text: CsvText[Found]) -> Layout:
         try:
-            _, header = next(rows)
+            _, header = next(split_lines(text.lines()))
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        if self._known is None or self._known[0] != header:
-            self._known = header, read_layout(*bare_names(header, self._schema))
-        return self._known[1]
+        known, key = self._schema.layouts, tuple(header)
+        if key not in known:
+            layout = read_layout(*bare_names(header, self._schema))
+            known.clear()
+            known[key] = layout
+        found: Layout = known[key]
+        return found
 
     def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
         """The text, and the file as it lies there."""

@@ -111,7 +111,7 @@ class Rows:
     def pieces(self, pieces: Iterable[Batch | Iterable[Row]]) -> Iterator[Batch | Sample]:
         """The same of a source of which some rows come as columns; so they are given out.
 
-        What ends a batch comes as a sample: rows of its instant may follow.
+        What ends a batch comes as a sample: rows of its instant may follow, but for the last batch.
 
         Raises:
             TimeOrderError: a row is before the one above it; those of columns are never sorted.
@@ -127,14 +127,16 @@ class Rows:
                 batch = self._note_times(whole)
                 times, count = batch.times, len(batch.times)
                 start = 0 if held is None else int(times.searchsorted(held.t, "right"))
-                stop = max(start, int(times.searchsorted(times[-1]))) if count else 0
+                stop = count
+                if count and not batch.is_last:
+                    stop = max(start, int(times.searchsorted(times[-1])))
                 for sample in batch.rows(0, start):
                     held = self._merged(held or sample, sample)
                 if start < stop:
                     if held is not None:
                         yield self._noted(held)
                         held = None
-                    middle = batch.cut(start, stop)
+                    middle = batch.cut(start, stop) if stop - start < count else batch
                     note_batch(middle, self.alternations, self._conflicts)
                     yield middle
                 rows = self._then_backwards(batch.rows(stop, count), whole, count)

@@ -9,10 +9,9 @@ from typing import TypeGuard
 
 from rvmon.analysis.subformulas import (
     PartTruth,
+    TriggerParts,
     late_in,
-    miss_in,
     part_truths_of,
-    parts_asked,
     waits_of,
 )
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
@@ -220,7 +219,7 @@ class _Panels:
             requirement = self._content.spec.requirements[name]
             yield from self._waits.get(name, {}).values()
             if not attempts and name not in self._content.run.report.misses:
-                yield parts_asked(requirement)
+                yield TriggerParts(self._content.spec, requirement).question
             if len(self._content.run.samples) <= MOST_DISSECTED:
                 yield from (parts_of(requirement, attempt) for attempt in attempts)
 
@@ -280,7 +279,8 @@ class _Panels:
         found = self._content.run.report.misses.get(name)
         if found is not None or self._truths is None:
             return found or ""
-        return miss_in(self._content.spec, self._content.spec.requirements[name], self._truths)
+        spec = self._content.spec
+        return TriggerParts(spec, spec.requirements[name]).miss_in(self._truths)
 
     def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
         """By number of the attempt, late responses, from the report or computed now."""

@@ -263,6 +263,7 @@ class Schema:
         gaps: values that mean "no update", for all names.
         binding: the topics and fields of messages by name.
         units: the unit of each declared name (`event.field` for a field) that has one.
+        layouts: what a reader made of it and of the last header: many recordings have the same.
     """
 
     signals: Mapping[str, Kind]
@@ -273,6 +274,9 @@ class Schema:
     gaps: Gaps = NO_GAPS
     binding: Binding = BY_NAME
     units: Mapping[str, str] = field(default_factory=dict)
+    layouts: dict[tuple[str, ...], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def named(self) -> Mapping[str, str]:

@@ -5,6 +5,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.readers import places
 from rvmon.readers.recording import FileRecording
 from rvmon.trace.sample import HealthKind, Sample
 from rvmon.trace.schema import Kind, Schema
@@ -238,3 +239,53 @@ def test_a_row_of_quoted_lines_is_bounded(tmp_path, monkeypatch):
     path.write_text("t,p\n0,1\n" + '1,"' + "\n" * 200_000)
     with pytest.raises(rvmon.TraceError, match=r"begins on line 3|begins here: close its quotes"):
         list(spec.recording(path))
+
+
+def test_a_small_text_is_read_once(tmp_path):
+    """What stood there when the header was read is judged; going through it again reads it."""
+    path = tmp_path / "a.csv"
+    path.write_text("t,ok\n0,1\n1,0\n")
+    recording = FileRecording(path, SCHEMA)
+    path.write_text("t,ok\n0,0\n")
+    first, second = list(recording), list(recording)
+    assert [dict(one.values) for one in first] == [{"ok": True}, {"ok": False}]
+    assert [dict(one.values) for one in second] == [{"ok": False}]
+
+
+def test_recordings_with_different_headers_are_read_by_their_own(tmp_path):
+    """What one header said of a schema is not taken for what another says."""
+    texts = ["t,ok,n\n0,1,3\n", "t,n,ok\n0,4,0\n", "t,ok,n\n0,0,5\n"]
+    found = [read(tmp_path, f"{place}.csv", text)[1] for place, text in enumerate(texts)]
+    assert [samples[0][1] for samples in found] == [
+        {"ok": True, "n": 3},
+        {"ok": False, "n": 4},
+        {"ok": False, "n": 5},
+    ]
+
+
+def test_rows_before_a_broken_end_of_a_text_are_given_out(tmp_path):
+    """A character that is cut off ends the text: the rows above it were said."""
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"t,ok\n0,1\n1,0\n2,\xc3")
+    samples = []
+    with pytest.raises(TraceError, match="not UTF-8 text"):
+        samples.extend(FileRecording(path, SCHEMA))
+    assert samples == [Sample(0, {"ok": True})]
+
+
+@pytest.mark.parametrize("rows", ["0,1\n1,0\n1,0\n", "0,1\n1,0\n1,1\n", "0,1\n", "0,1\n1,1\n0,1\n"])
+def test_the_last_instant_of_a_whole_text_is_merged_as_any_other(tmp_path, rows, monkeypatch):
+    """Columns end with the last instant where no row follows, and tell the same of it."""
+    spec = rvmon.loads("spec s\nsignal ok : bool\nrequirement R\n  always ok\n")
+    path = tmp_path / "a.csv"
+    path.write_text(f"t,ok\n{rows}")
+
+    def judged():
+        try:
+            return spec.evaluate(path).to_json()
+        except TimeOrderError as error:
+            return str(error)
+
+    whole = judged()
+    monkeypatch.setattr(places, "BLOCK", 9)
+    assert judged() == whole
