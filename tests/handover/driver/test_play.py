@@ -182,15 +182,6 @@ def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
         assert distance >= 0.5 or speed <= 0.25
 
 
-def test_crash_is_a_result() -> None:
-    run = run_test(protocol_test(1, mutation="crashes"))
-    assert run.error is not None
-    assert run.error.startswith("ZeroDivisionError")
-    assert instants(run, "informed")
-    assert not instants(run, "done")
-    assert run.mutation == "crashes"
-
-
 def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
     entered = 0
 

@@ -128,33 +128,6 @@ def test_handover_goes_through_all_states() -> None:
     assert bench.commands == ["open", "close", "open"]
 
 
-@pytest.mark.parametrize(
-    ("reading", "reason"),
-    [
-        (Reading(gaze=False, pressure=True, location=True), "looks_away"),
-        (Reading(gaze=True, pressure=False, location=True), "hand_empty"),
-        (Reading(gaze=True, pressure=True, location=False), "hand_away"),
-    ],
-)
-def test_one_bad_reading_withholds(reading: Reading, reason: str) -> None:
-    """One bad reading is enough not to release, and the robot says which."""
-    bench = AttemptJudge(protocol(), reading=lambda _: reading)
-    bench.play()
-    assert bench.times("withheld")
-    assert not bench.times("released")
-    assert bench.commands == ["open", "close"]
-    assert bench.times(reason)
-
-
-def test_correct_waits_for_all_readings() -> None:
-    """A sensor without a reading keeps the correct robot in `sense` until it has one."""
-    missing = Reading(gaze=True, pressure=None, location=True)
-    bench = AttemptJudge(protocol(), reading=lambda now: missing if now < 27.0 else ALL_OK)
-    bench.play()
-    assert bench.times("released")
-    assert bench.times("sensed")[0] >= 27.0
-
-
 def test_legacy_reads_missing_as_bad() -> None:
     """The legacy robot takes a sensor without a reading for a bad one, at once."""
     nothing = Reading(gaze=None, pressure=None, location=None)

@@ -79,16 +79,6 @@ def test_what_is_over_takes_no_room(name, time):
     assert max(sizes[15:]) <= 1.01 * max(sizes[:15])
 
 
-def test_a_value_that_comes_again_goes_on_being_numbered():
-    """A key that was let go of is ranked as it was, before those that came later."""
-    monitor = rvmon.loads(text_of(REQUIRED["a signal"])).monitor()
-    for t, key in enumerate([7, 8, 9]):
-        monitor.step(10 * t, {"order": {"id": key}})
-    monitor.step(100, {"order": ({"id": 9}, {"id": 7})})
-    report = monitor.finish(200)
-    assert [one.captured["k"] for one in report.attempts] == [7, 8, 9, 7, 9]
-
-
 def test_a_reason_says_from_when_on_it_knows():
     """What an instance saw before it was let go of is not told of as if it had not been."""
     monitor = rvmon.loads(text_of(REQUIRED["another event with the key"])).monitor()

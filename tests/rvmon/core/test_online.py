@@ -3,7 +3,6 @@
 import copy
 import gc
 import math
-import random
 import weakref
 from dataclasses import replace
 from enum import StrEnum
@@ -162,25 +161,6 @@ def test_names_of_an_enumeration(spec):
     assert both(spec, [(0, FIRST), *samples]) == [("R1", 1, S, 3 * S, "P")]
 
 
-def test_names_in_any_order(spec):
-    rng = random.Random(1)
-    samples = []
-    for t in range(200):
-        names = list(FIRST)
-        rng.shuffle(names)
-        row = {
-            "".join(name): rng.choice(
-                {"speed": [1.0, 3.0], "count": [1, 4], "mode": ["red", "green"]}.get(
-                    name, [True, False]
-                )
-            )
-            for name in names[: rng.randint(0, len(names))]
-        }
-        samples.append((t * S // 2, row))
-    both(spec, samples)
-    assert as_the_law_has_it(samples[:40])
-
-
 @pytest.mark.parametrize(
     ("t", "values", "error", "text"),
     [
@@ -266,13 +246,6 @@ def test_advance_finish_reset(spec):
             with pytest.raises(TraceError, match="finished"):
                 call()
         monitor.reset()
-
-
-def test_no_sample_at_all(spec):
-    report = spec.monitor().finish()
-    assert set(report.verdicts.values()) == {"I"}
-    assert report.end is None
-    assert list(report.attempts) == []
 
 
 def test_attempts_are_attempts(spec):

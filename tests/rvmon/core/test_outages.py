@@ -71,13 +71,6 @@ class Run:
         return found
 
 
-def test_what_is_lost_at_the_end_is_lost_up_to_there():
-    """Nobody has to say that it was found."""
-    run = Run("requirement R\n  always p").sample(0, p=True)
-    assert run.lose("p", 3)
-    assert run.said(7) == ["0 I"]
-
-
 @pytest.mark.parametrize("names", [[99], [-1]])
 def test_what_is_no_name_cannot_be_lost(names):
     """Names are told by their numbers in the plan."""

@@ -162,20 +162,6 @@ def test_forged_bytes_do_no_harm(time):
     assert min(outcomes.values()) > 15, outcomes
 
 
-def test_a_refused_snapshot_changes_nothing():
-    plan = planned(REQUIREMENTS)
-    run = run_of(plan, random.Random(1), 5).plain
-    before = run.save()
-    assert not run.load(before[:-1])
-    assert run.save() == before
-
-
-def test_another_plan_refuses_it():
-    """A snapshot is of one plan alone, even if the requirements have the same form."""
-    data = planned(REQUIREMENTS).monitor(frozenset()).save()
-    assert not planned(REQUIREMENTS.replace("7 ns", "8 ns")).monitor(frozenset()).load(data)
-
-
 def test_names_without_a_source_are_part_of_it():
     plan = planned("requirement R1\n  upon start\n  then eventually[2 ns, 2 ns] p")
     absent = plan.monitor(frozenset({"p"}))

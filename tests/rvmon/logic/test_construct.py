@@ -66,16 +66,6 @@ def test_respawned_windows_do_not_close():
         build(always(two(p, "->", eventually(q, 20, 50))))
 
 
-def test_construction_is_deterministic():
-    formula = two(eventually(p, 0, 5), "and", always(two(q, "->", eventually(r, 0, 3))))
-    first, second = build(formula), build(formula)
-    assert (first.edges, first.class_of, first.targets) == (
-        second.edges,
-        second.class_of,
-        second.targets,
-    )
-
-
 @pytest.mark.slow
 def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
     names = [SignalAtom(f"s{number}") for number in range(18)]

@@ -75,19 +75,6 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
 
 @settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
-def test_reduction_is_idempotent(formula):
-    try:
-        original, told = built(formula)
-    except DoesNotCloseError:
-        assume(False)
-    for label in (told, nothing):
-        once = reduce(original, label)
-        twice = reduce(once, label)
-        assert (once.edges, once.class_of, rows(once)) == (twice.edges, twice.class_of, rows(twice))
-
-
-@settings(max_examples=30, deadline=None)
-@given(formula=formulas(Shape(mixed=False)))
 def test_what_people_are_told_stays(formula):
     try:
         original, told = built(formula)

@@ -95,15 +95,6 @@ TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then imm
 INFINITE = float("inf")
 
 
-def test_what_is_not_known_is_measured_sample_by_sample():
-    spec = rvmon.loads(TEXT.format("sampled", ""))
-    stream = list(spec.robustness(arrays_of([0, 1], {"x": [3.0, float("nan")]})).streams["R"])
-    assert [(t, found.low, found.high) for t, found in stream] == [
-        (0, 2.0, 2.0),
-        (1, -INFINITE, INFINITE),
-    ]
-
-
 def test_what_becomes_stale_is_measured_sample_by_sample():
     spec = rvmon.loads(TEXT.format("held", " stale after 2 ns").replace("immed", "for 5 ns immed"))
     [figure] = spec.robustness(arrays_of([0, 9], {"x": [3.0, 4.0]})).attempts.values()

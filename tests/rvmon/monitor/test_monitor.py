@@ -5,7 +5,7 @@ import math
 import pytest
 
 import rvmon
-from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
+from rvmon.errors import TraceError, UnknownNameError
 from rvmon.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -71,15 +71,6 @@ def test_next_due_says_when_to_call_advance(monitor):
     assert monitor.next_due is None
 
 
-def test_open_attempts_say_what_they_wait_for(monitor):
-    monitor.step(0, {"ready": True})
-    monitor.step(1, {"sensed": True})
-    [attempt] = monitor.open
-    assert (attempt.requirement, attempt.number, attempt.triggered) == ("R1", 1, 10**9)
-    assert attempt.deadline == 4 * 10**9
-    assert "within 3 s released" in attempt.required
-
-
 @pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])
 def test_an_impossible_time_is_an_error(monitor, t):
     for call in (
@@ -89,18 +80,6 @@ def test_an_impossible_time_is_an_error(monitor, t):
     ):
         with pytest.raises(TraceError):
             call()
-
-
-def test_time_never_goes_back(monitor):
-    monitor.step(1, {"ready": True})
-    for t in (1, 0.5):
-        with pytest.raises(TimeOrderError):
-            monitor.step(t, {"sensed": True})
-    monitor.advance(3)
-    with pytest.raises(TimeOrderError):
-        monitor.step(2, {"sensed": True})
-    monitor.step(3, {"sensed": True})
-    assert brief(monitor.finish().attempts) == [("R1", 1, "I", None)]
 
 
 def test_a_name_without_source_is_unknown_and_must_not_arrive():

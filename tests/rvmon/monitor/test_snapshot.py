@@ -68,19 +68,6 @@ def test_samples_held_back_are_kept(text):
     assert {"late", "conflict"} & {one.kind.value for one in report.health}
 
 
-def test_open_attempts_and_records_are_kept():
-    spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
-    for t, values in SAMPLES[:4]:
-        monitor.step(t, values)
-    restored = spec.restore(monitor.snapshot())
-    assert list(restored.open) == list(monitor.open) != []
-    assert restored.next_due == monitor.next_due
-    for t, values in SAMPLES[4:]:
-        assert list(monitor.step(t, values)) == list(restored.step(t, values))
-    assert monitor.finish(20) == restored.finish(20)
-
-
 def test_another_specification_is_refused():
     monitor = rvmon.loads(TEXT).monitor()
     monitor.step(0, {"closed": True})

@@ -151,26 +151,6 @@ def test_callbacks_may_call_their_monitor() -> None:
     assert monitor.finish_ns(5).counts["R1"]["F"] == 2
 
 
-def test_a_call_that_fails_leaves_the_monitor_open() -> None:
-    monitor = _monitor()
-    monitor.step_ns(1, {"x": 1.0})
-
-    def fail(_: object) -> None:
-        raise LookupError("mine")
-
-    stop = monitor.on_failure(fail)
-    for wrong in ({"y": 1}, {"x": "high"}, None):
-        with pytest.raises(rvmon.TraceError):
-            monitor.step_ns(2, wrong)  # type: ignore[arg-type]
-    with pytest.raises(LookupError, match="mine"):
-        monitor.step_ns(2, {"x": 4.0})
-    with pytest.raises(rvmon.errors.TimeOrderError):
-        monitor.step_ns(2, {"x": 4.0})
-    stop()
-    monitor.step_ns(3, {"x": 1.0})
-    assert monitor.finish_ns(4).counts["R1"]["F"] == 1
-
-
 def test_a_monitor_is_handed_from_thread_to_thread() -> None:
     monitor = _monitor()
     turns: queue.SimpleQueue[int] = queue.SimpleQueue()
