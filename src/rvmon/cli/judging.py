@@ -163,6 +163,7 @@ class Judged:
         missing: the names that requirements read and that it lacks.
         hits: what it hit of the coverage model, where that was asked for.
         seconds: that it took.
+        text: the report as JSON, if the process that judged was asked for it.
     """
 
     trace: str
@@ -172,10 +173,16 @@ class Judged:
     missing: tuple[str, ...] = ()
     hits: Hits = field(default_factory=dict)
     seconds: float = 0.0
+    text: str = ""
 
 
 def judge_all(
-    spec: Spec, traces: Sequence[str], options: Options, jobs: int | str
+    spec: Spec,
+    traces: Sequence[str],
+    options: Options,
+    jobs: int | str,
+    *,
+    writes_json: bool = False,
 ) -> Iterator[Judged]:
     """Judge recordings, in their order.
 
@@ -186,14 +193,15 @@ def judge_all(
         jobs: processes, 1 judges here; or the address of a scheduler of Dask. If one of several is
             lost, so are the verdicts on what comes behind the last that was judged in order, and
             each of these says so.
+        writes_json: whether processes write the reports as JSON, too: this one alone would take a
+            tenth of the time for all of them, while the others rest.
     """
     done = 0
     is_alone = len(traces) == 1
     is_apart = jobs != 1 and not is_alone
-    begin = partial(
-        partial, _judge_apart if is_apart else judge, spec, options=options, is_alone=is_alone
-    )
+    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
     if is_apart:
+        begin = partial(partial, _judge_apart, spec, options=options, writes_json=writes_json)
         spec.planned(options.only)  # for all that go on from here
     try:
         with bar("recordings", len(traces)) as show:
@@ -212,10 +220,13 @@ def judge_all(
             )
 
 
-def _judge_apart(spec: Spec, trace: str, options: Options, *, is_alone: bool) -> Judged:
+def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool) -> Judged:
     """The same for another process, which has the plan."""
-    found = judge(spec, trace, options, is_alone=is_alone)
-    return found if found.report is None else replace(found, report=with_plan(found.report, None))
+    found = judge(spec, trace, options)
+    if found.report is None:
+        return found
+    text = found.report.to_json(spec.requirements) if writes_json else ""
+    return replace(found, report=with_plan(found.report, None), text=text)
 
 
 @without_copies()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -179,11 +180,15 @@ def _judged(
     case: Case | None,
 ) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
-    jobs = arguments.dask or arguments.jobs
+    judge = partial(
+        judge_all,
+        jobs=arguments.dask or arguments.jobs,
+        writes_json=arguments.format == "json",
+    )
     shards = _shards(arguments)
     begun = None
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
-        found = list(judge_all(spec, traces, options, jobs))  # there is nothing to go on with
+        found = list(judge(spec, traces, options))  # there is nothing to go on with
         if case is not None:
             found = [as_known(one, case) for one in found]
     else:
@@ -204,7 +209,7 @@ def _judged(
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were evaluated before")
-        found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
+        found = list(begun.judged(traces, judge(spec, left, options)))
     if arguments.out is not None:
         write_results(arguments.out, spec, found)
     if arguments.shard is not None:
@@ -323,7 +328,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
 
 def _json(one: Judged, spec: Spec) -> str:
     if one.report is not None:
-        return one.report.to_json(spec.requirements)
+        return one.text or one.report.to_json(spec.requirements)
     from rvmon.verdict.report_json import encode_broken
 
     return encode_broken(one.trace, one.error, one.before)

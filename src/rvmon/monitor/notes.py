@@ -91,13 +91,13 @@ def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -
     )
 
 
-def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Note:
+def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes, int]]) -> Note:
     """A note from the notes of all records of a run.
 
     Args:
         notes: the notes of the run.
         place: the index of the note's first word.
-        spans: the letters that notes refer to by number.
+        spans: the letters that notes refer to by number, as the core gives them.
     """
     (head,) = _words(1)(notes, 8 * place)
     words = _words(head >> 40)(notes, 8 * place)
@@ -107,8 +107,8 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
         state = _words(count)(notes, 8 * words[1])
     letters = None
     if head >> 8 & _NETWORK and words[3] >= 0:
-        pieces, last = spans[words[3] & _SPAN]
-        letters = Letters((*pieces, last))
+        pieces, last, count = spans[words[3] & _SPAN]
+        letters = Letters((*pieces, last[: 8 * count]))
     return Note(words, state, letters)
 
 

@@ -59,7 +59,7 @@ class RecordedAttempts(LazyAttempts):
         planned: PlannedCore | None,
         records: NDArray[Any],
         numbers: NDArray[Any],
-        notes: tuple[bytes, Sequence[tuple[Any, bytes]]],
+        notes: tuple[bytes, Sequence[tuple[Any, bytes, int]]],
         origin: int,
     ) -> None:
         self._given = planned

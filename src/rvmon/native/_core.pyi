@@ -128,10 +128,11 @@ class Monitor:
     def open(self) -> tuple[Attempt, ...]:
         """The attempts that are undecided now, and those that will stay so."""
 
-    def records(self) -> tuple[bytes, bytes, bytes, list[tuple[tuple[bytes, ...], bytes]]]:
+    def records(self) -> tuple[bytes, bytes, bytes, list[tuple[tuple[bytes, ...], bytes, int]]]:
         """All records as `rv_record`, and as many `rv_number` for each as any captures.
 
-        Then the words of notes, and the letters that these refer to: pieces, and the last one.
+        Then the words of notes, and the letters that these refer to: pieces, and bytes that begin
+        with the last piece, which has so many words.
         """
 
     def counts(self) -> list[tuple[int, int, int, int]]:

@@ -114,6 +114,14 @@ def test_many_recordings_are_counted_in_text_and_junit(files, says):
     assert says(1, *words, "--jobs", "2").out == alone
 
 
+def test_two_processes_print_the_same_json(files, says):
+    """Each writes the reports of what it judged: they are those of one process, in their order."""
+    words = ["run", "door.rv", "P.csv", "F.csv", "NT.csv", "I.csv", "--format", "json"]
+    alone = says(1, *words).out
+    assert [len(one["requirements"]) for one in json.loads(alone)] == [1, 1, 1, 1]
+    assert says(1, *words, "--jobs", "2").out == alone
+
+
 @pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )

@@ -356,3 +356,22 @@ def test_other_threads_run_while_rows_are_judged(planned):
     with ThreadPoolExecutor(3) as pool:
         found = set(pool.map(judged, range(6)))
     assert len(found) == 1
+
+
+def test_records_share_the_letters_of_their_notes():
+    """Failures of a network refer to letters that stand once, each to as many as it was told by."""
+    spec = rvmon.loads(
+        "spec s\nsignal p, q : bool\nevent e\nrequirement R\n"
+        "  upon e\n  then within 25 ns for 15 ns (p and q)\n"
+    )
+    rows = 1000
+    run = spec.planned().monitor(frozenset())
+    for t in range(rows):
+        run.judge(10 * t, {"p": t % 2 == 0, "q": True, "e": t % 2 == 1}, False)
+    run.finish(None)
+    *_, letters = run.records()
+    counts = [count for _, _, count in letters]
+    assert len(letters) > rows // 4
+    assert all(8 * count <= len(last) for _, last, count in letters)
+    assert len({id(last) for _, last, _ in letters}) < len(letters) // 4
+    assert len(set(counts)) > 1

@@ -1,4 +1,5 @@
 import gzip
+import os
 from pathlib import Path
 
 import pytest
@@ -289,3 +290,11 @@ def test_the_last_instant_of_a_whole_text_is_merged_as_any_other(tmp_path, rows,
     whole = judged()
     monkeypatch.setattr(places, "BLOCK", 9)
     assert judged() == whole
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.parquet"])
+def test_a_pipe_of_columns_is_refused(tmp_path, name):
+    """A table is looked at before it is read, for which a pipe would be gone."""
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(TraceError, match=f"{name}: is a pipe: pipes hold JSON lines"):
+        FileRecording(tmp_path / name, SCHEMA)

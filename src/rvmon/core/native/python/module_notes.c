@@ -126,27 +126,29 @@ static PyObject *pieces_of(const rv_note *note)
     return made;
 }
 
-/* The letters of a note: the tuple of full pieces, and the last piece; None twice if it has none. */
+/* The letters of a note: the tuple of full pieces, bytes that begin with the last piece, which notes
+ * share, and the number of its words; None twice and 0 if it has none. */
 PyObject *letters_of(const rv_note *note)
 {
     PyObject *pieces;
-    PyObject *all;
-    PyObject *last = NULL;
+    PyObject *last;
+    PyObject *count;
     PyObject *made = NULL;
     if (note->first == NULL) {
-        return PyTuple_Pack(2, Py_None, Py_None);
+        pieces = Py_NewRef(Py_None);
+        last = Py_NewRef(Py_None);
+        count = PyLong_FromLong(0);
+    } else {
+        pieces = pieces_of(note);
+        last = bytes_from(note->last, note->last_count);
+        count = PyLong_FromLong((long)note->last_count);
     }
-    pieces = pieces_of(note);
-    all = bytes_from(note->last, note->last_count);
-    if (all != NULL) {
-        last = first_words(all, note->last_count);
-    }
-    if ((pieces != NULL) && (last != NULL)) {
-        made = PyTuple_Pack(2, pieces, last);
+    if ((pieces != NULL) && (last != NULL) && (count != NULL)) {
+        made = PyTuple_Pack(3, pieces, last, count);
     }
     Py_XDECREF(pieces);
-    Py_XDECREF(all);
     Py_XDECREF(last);
+    Py_XDECREF(count);
     return made;
 }
 
