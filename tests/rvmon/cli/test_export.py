@@ -27,6 +27,12 @@ def spec(tmp_path):
     return str(path)
 
 
+def test_dot(spec, says):
+    shown = says(0, "export", spec, "--to", "dot").out
+    assert shown.count("digraph") == 2
+    assert "within 2 s not closed" in shown
+
+
 def test_json(spec, tmp_path):
     path = tmp_path / "door.json"
     assert main(["export", spec, "--to", "json", "-o", str(path)]) == 0
