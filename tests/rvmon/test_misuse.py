@@ -137,6 +137,12 @@ def test_one_text_is_no_list_of_names(spec, wrong):
         wrong(spec)
 
 
+def test_columns_are_named_by_what_they_feed(spec):
+    """A text as on the command line is none."""
+    with pytest.raises(RvmonError, match="columns='gap=g': expected columns by name"):
+        spec.evaluate({"t": [0], "g": [1.0]}, columns="gap=g")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -235,7 +235,10 @@ def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaAr
     bound = schema.binding if path is None else load_binding(path, spec)
     fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
     declared = [*schema.signals, *schema.events, *fields]
-    given = dict(options.get("columns") or {})
+    columns = options.get("columns") or {}
+    if not isinstance(columns, Mapping):
+        raise RvmonError(f"columns={columns!r}: expected columns by name, such as {{'speed': 'v'}}")
+    given = dict(columns)
     for name, column in given.items():
         if name not in declared:
             meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")

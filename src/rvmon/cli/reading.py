@@ -114,6 +114,17 @@ def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
     return spec if all(one in (None, {}) for one in given.values()) else spec.reading(**given)
 
 
+def refuse_empty(spec: Spec) -> None:
+    """Refuse a specification by which everything is fine, such as one that was cut off or emptied.
+
+    Raises:
+        RvmonError: there is no requirement, no goal and no coverpoint.
+    """
+    checked = spec.checked
+    if not (spec.requirements or checked.covers or checked.coverpoints):
+        raise RvmonError(f"{checked.name} has no requirement: there is nothing to check")
+
+
 def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:
     """The recording at a path, for a specification that knows how to read it.
 

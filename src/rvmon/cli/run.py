@@ -13,7 +13,7 @@ from rvmon.cli.judging import Judged, Options, judge_all, spec_and_options
 from rvmon.cli.options import EVALUATED, ONLY, declare, ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.parser import positive, shard
-from rvmon.cli.reading import reading_words
+from rvmon.cli.reading import reading_words, refuse_empty
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
@@ -131,6 +131,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
+    refuse_empty(spec)
     traces = list(found_recordings(arguments.traces))
     if arguments.join:  # a folder goes by its own name, and not by those of all that is in it
         given = arguments.traces
@@ -279,8 +280,6 @@ def _show_warnings(spec: Spec) -> None:
     if spec.warnings:
         warn(rendered(spec.warnings))
     checked = spec.checked
-    if not (spec.requirements or checked.covers or checked.coverpoints):
-        warn(f"{spec.checked.name} has no requirement: there is nothing to check")
     alone = [f"`{name}`" for name in checked.properties
              if name not in spec.requirements and name not in checked.covers]  # fmt: skip
     if alone:

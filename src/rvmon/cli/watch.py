@@ -16,7 +16,7 @@ from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_
 from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import warn
 from rvmon.cli.parser import positive, span
-from rvmon.cli.reading import mapped_names
+from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
@@ -291,6 +291,7 @@ def _live(
 
 def _loaded(arguments: argparse.Namespace) -> Spec:
     spec = load(arguments.spec, const=constants_of(arguments.const))
+    refuse_empty(spec)
     columns = mapped_names(arguments.map)
     return spec.reading(time=arguments.time, columns=columns, binding=arguments.binding)
 

@@ -97,6 +97,7 @@ def named_errors(path: str | Path) -> Iterator[None]:
     except UnicodeDecodeError as error:
         raise TraceError(
             f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
+            " A text in another encoding has to be translated: `iconv -f latin1 -t utf-8`"
         ) from None
     except TraceError as error:
         message = str(error)

@@ -16,6 +16,9 @@ from rvmon.trace.stamps import is_whole
 TRUE_WORDS = frozenset({"true", "True", "TRUE", "1"})
 FALSE_WORDS = frozenset({"false", "False", "FALSE", "0"})
 
+_ABSENT = frozenset({"na", "n/a", "<na>", "none", "null", "nil"})
+"""What programs write where they have no value: it is unknown, or none has come."""
+
 
 def scalar_of_text(text: str, kind: Kind) -> Scalar:
     """Read one cell of text.
@@ -59,7 +62,9 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
             return number
         if fits(made, kind):
             return made  # type: ignore[no-any-return]  # it fits
-    raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
+    is_absent = text.strip().lower() in _ABSENT
+    hint = ": leave a cell without a value empty, or write NaN where it is unknown"
+    raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}{hint if is_absent else ''}")
 
 
 def _whole_of(text: str) -> int:

@@ -103,7 +103,7 @@ def values(column: Column) -> str:
         shown = [one if len(one) <= _LONGEST else f"{one[:_LONGEST]}…" for one in labels]
         return f"{', '.join(shown[:_MOST_LABELS])}{more}"
     if column.is_event:
-        return f"{column.updates:,} times"
+        return f"{column.updates:,} times" if column.updates != 1 else "once"
     if column.shape.kind is Kind.BOOL:
         words = {"false": 0.0, "true": 1.0}
         return " and ".join(

@@ -95,6 +95,7 @@ def test_decimal_seconds_are_exact(tmp_path):
 
 BAD = {
     "text in a number": ("a.csv", "t,n\n0,1\n1,abc\n", "a.csv: line 3: column `n`: `abc`"),
+    "NA in a number": ("a.csv", "t,n\n0,1\n1,NA\n", "`NA` is not a whole number: leave a cell"),
     "text in a truth value": ("a.csv", "t,ok\n0,maybe\n", "line 2: column `ok`: `maybe`"),
     "time going backwards": ("a.csv", "t,n\n1,1\n0.5,1\n", "line 3: time goes backwards"),
     "time is no number": ("a.csv", "t,n\nsoon,1\n", "line 2: time `soon`"),
@@ -116,6 +117,7 @@ BAD = {
     "very long number": ("a.csv", f"t,n\n0,-{'9' * 5000}\n", "has more than 4300 digits"),
     "very late time": ("a.csv", f"t,n\n{'9' * 5000},1\n", "999...999"),
     "blanks and cells": ("a.csv", "t,n\n   \n0,x\n", "line 3: column `n`: `x`"),
+    "Latin-1": ("a.csv", "t,n\n0,1\n1,\xfc\n".encode("latin1"), "iconv -f latin1 -t utf-8"),
     "binary file": ("a.csv", b"\x7fELF\x02\x01\xff\xfe\x00" * 40, "is this a binary file?"),
     "a cell cut off": (
         "a.csv",
