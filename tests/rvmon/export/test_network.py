@@ -16,7 +16,7 @@ MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 @pytest.mark.law
 def test_random_networks_come_back():
-    for seed in range(20):
+    for seed in range(40):
         network = loads_network(random_model(2 * seed))
         again = loads_network(uppaal_xml(network))
         assert again.automata == network.automata
