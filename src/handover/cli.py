@@ -76,8 +76,8 @@ def _parser() -> ArgumentParser:
         "--no-monitors", action="store_true", help="evaluate nothing: only play"
     )
     own["run"].set_defaults(again=("no_monitors", "conform"))
-    for one, count in ((demo, 3), (own["run"], 0)):
-        one.add_argument(
+    for argument_parser, count in ((demo, 3), (own["run"], 0)):
+        argument_parser.add_argument(
             "--conform",
             metavar="N",
             type=positive,

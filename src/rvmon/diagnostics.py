@@ -165,7 +165,7 @@ def _width(text: str) -> int:
 
 def render_full(diagnostics: Sequence[Diagnostic], width: int = WIDEST) -> str:
     """Every finding with its places underlined and what fixes it, a blank line between."""
-    return "\n\n".join(_full(one, width) for one in diagnostics)
+    return "\n\n".join(_full(diagnostic, width) for diagnostic in diagnostics)
 
 
 def render_concise(diagnostics: Sequence[Diagnostic]) -> str:

@@ -189,7 +189,7 @@ def is_ours(path: Path) -> bool:
 @cache
 def this_rvmon() -> str:
     """Tells this version of rvmon from others: a checksum of its files' paths, sizes and times."""
-    files = ((one.path, one.stat()) for one in files_within(os.path.dirname(__file__)))
+    files = ((entry.path, entry.stat()) for entry in files_within(os.path.dirname(__file__)))
     stamps = [(path, found.st_size, found.st_mtime_ns) for path, found in files]
     return _checksum(repr(stamps).encode())
 

@@ -137,12 +137,16 @@ def files_under(part: str, main: str, others: Sequence[str]) -> list[tuple[str, 
 def imported_files(spec: str) -> list[str]:
     """The files that a specification imports; what rvmon brings along itself is none."""
     read = load_files(Source(spec, text_of_file(spec)), Path(spec).parent, Findings())
-    return [one.source.name for one in read[1:] if os.path.isfile(one.source.name)]
+    return [
+        parsed_spec.source.name
+        for parsed_spec in read[1:]
+        if os.path.isfile(parsed_spec.source.name)
+    ]
 
 
 def definition_files(binding: str) -> list[str]:
     """The files of definitions that a binding names."""
-    return [str(Path(binding).parent / one) for one in _definitions(binding)]
+    return [str(Path(binding).parent / definition) for definition in _definitions(binding)]
 
 
 def _definitions(binding: str) -> list[str]:

@@ -95,4 +95,4 @@ def expected_failures(robots: Collection[str]) -> tuple[ExpectedFailure, ...]:
             seldom=True,
         ),
     )
-    return tuple(one for one in known if one.robot in robots)
+    return tuple(failure for failure in known if failure.robot in robots)

@@ -135,7 +135,7 @@ def edge_tests() -> list[str]:
     """Edges of the model of which each has a run of its own; these runs take all that any takes."""
     witnesses = _witnesses()
     answers = {name: witnesses.answer((EDGES, name)) for name in witnesses.groups[0].items}
-    runs = {id(one.run): name for name, one in answers.items() if isinstance(one, Witness)}
+    runs = {id(answer.run): name for name, answer in answers.items() if isinstance(answer, Witness)}
     return [*runs.values()]
 
 
@@ -163,7 +163,11 @@ def _follower() -> Callable[[str], frozenset[str]]:
 
 def _edge_rows(shown: frozenset[str]) -> list[Row]:
     """By automaton, how many of its edges the robot's runs have shown, and the others."""
-    argued = {one.item: one.reason for one in UNREACHABLE if one.group == EDGES}
+    argued = {
+        unreachable.item: unreachable.reason
+        for unreachable in UNREACHABLE
+        if unreachable.group == EDGES
+    }
     edges: dict[str, list[str]] = {}
     for name in _witnesses().groups[0].items:
         edges.setdefault(name.partition(":")[0], []).append(name)

@@ -164,12 +164,12 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
     """The tables of each robot; the legacy one is that which the published table speaks of."""
     shown = {}
     checked = checked_of(summary)
-    for name, one in tables.robot_tables(summary).items():
-        notes = one.own.notes
+    for name, table in tables.robot_tables(summary).items():
+        notes = table.own.notes
         if "model-based" in summary.robots[name].strategies:
             notes = (*notes, WITNESSES)
-        own = replace(one.own, checked=checked, notes=notes)
-        control = one.control if name == "legacy" else None
+        own = replace(table.own, checked=checked, notes=notes)
+        control = table.control if name == "legacy" else None
         if control is not None:
             title = f"{summary.robots[name].title}, without the fitted loss of signals at start-up"
             control = replace(control, title=title)
@@ -203,7 +203,9 @@ def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
     """Which cells were fitted, and what they are without the fit."""
     shown = []
     for strategy, requirement in sorted(FITTED_BY_LOSS):
-        with_fit, without = (_cell(one, strategy, requirement) for one in (table, unfitted))
+        with_fit, without = (
+            _cell(verdict_table, strategy, requirement) for verdict_table in (table, unfitted)
+        )
         if with_fit and without:
             letters = "/".join(Verdict)
             counts = f"{letters} {with_fit} with it, {without} without"

@@ -47,7 +47,7 @@ def _take(rng: random.Random) -> Sequence[Action]:
         SetParam("hpressureOk", int(rng.random() < OK)),
     ]
     rng.shuffle(postures)
-    return [step for one in postures for step in (*_pause(0.0, 0.8)(rng), one)]
+    return [step for posture in postures for step in (*_pause(0.0, 0.8)(rng), posture)]
 
 
 def _reach_early(rng: random.Random) -> Sequence[Action]:

@@ -50,7 +50,11 @@ class Film:
     def scene(self) -> shown.Scene:
         """All frames, with what to draw."""
         bodies = (*BODIES, *BESIDE)[: len(self._bodies)]
-        drawn = tuple(one for one in outlines() if one.body not in BESIDE or one.body in bodies)
+        drawn = tuple(
+            outline
+            for outline in outlines()
+            if outline.body not in BESIDE or outline.body in bodies
+        )
         return shown.Scene(bodies, drawn, tuple(self._frames), VIEW)
 
 

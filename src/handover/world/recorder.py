@@ -75,8 +75,8 @@ Forces = tuple[float, float, float]
 _NO_FORCE: Forces = (0.0, 0.0, 0.0)
 
 
-def _greatest(one: Forces, other: Forces) -> Forces:
-    return max(one[0], other[0]), max(one[1], other[1]), max(one[2], other[2])
+def _greatest(forces: Forces, other: Forces) -> Forces:
+    return max(forces[0], other[0]), max(forces[1], other[1]), max(forces[2], other[2])
 
 
 class Truth:

@@ -101,8 +101,8 @@ class JsonObjects:
         self._told += len(fresh)
         signals = self.driver.spec.schema.signals
         for name in fresh:
-            ends = [one for one in signals if name.endswith(f".{one}")]
-            ends += [one for one in signals if one.endswith(f".{name}")]
+            ends = [signal for signal in signals if name.endswith(f".{signal}")]
+            ends += [signal for signal in signals if signal.endswith(f".{name}")]
             if ends:
                 _log.warning(
                     "`%s` feeds nothing, and `%s` is declared: is `--map %s=%s` meant?",

@@ -73,7 +73,9 @@ def address_of(url: str) -> Address:
         raise RvmonError(f"{url}: its port is no number up to 65535: {form}") from None
     if parts.scheme != "mqtt" or not parts.hostname or not topics:
         raise RvmonError(f"{url}: {form}")
-    if "#" in levels[:-1] or any(len(one) > 1 and ("+" in one or "#" in one) for one in levels):
+    if "#" in levels[:-1] or any(
+        len(level) > 1 and ("+" in level or "#" in level) for level in levels
+    ):
         raise RvmonError(f"{url}: in a filter, + stands for one level, # for all behind the last /")
     user, password = unquote(parts.username or ""), unquote(parts.password or "")
     return Address(parts.hostname, port, user, password, topics)

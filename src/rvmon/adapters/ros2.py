@@ -100,7 +100,7 @@ class Ros2Source:
                 several = ", ".join(sorted(self._found[name]))
                 self._feed.lose(name, f"it has several types, {several}", for_good=True)
             else:
-                self._begin(name, types[0], [one.qos_profile for one in publishers])
+                self._begin(name, types[0], [publisher.qos_profile for publisher in publishers])
 
     def _begin(self, name: str, type_name: str, published: list[Any]) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks

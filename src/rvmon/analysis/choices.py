@@ -186,7 +186,7 @@ def truths_tried(
     gap = spec.gap or 1
     samples = [Sample(place * gap, values) for place, values in enumerate(tried)]
     found = known_truths(spec, cores, samples, samples[-1].t, None, {})
-    columns = [_column(one, len(tried)) for one in found]
+    columns = [_column(known, len(tried)) for known in found]
     return list(zip(*columns, strict=True))
 
 
@@ -247,7 +247,7 @@ def choices_of(
     names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered, windows)
-    added = {name for one in windows for name in names_read(one) if name in read}
+    added = {name for window in windows for name in names_read(window) if name in read}
     seen = _Seen(spec, leaves, remembered | added)
     found: dict[tuple[object, ...], Valuation] = {}
     waiting = _defaults_first([options.of(name) for name in names])
@@ -270,7 +270,7 @@ def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Valu
 
 def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
     """The names whose updates matter, not only their values."""
-    yield from (name for name, one in spec.signals.items() if one.stale_after is not None)
+    yield from (name for name, signal in spec.signals.items() if signal.stale_after is not None)
     for leaf in leaves:
         if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
             yield leaf.name
@@ -383,8 +383,8 @@ class _Seen:
     def keys(self, valuations: Sequence[Valuation]) -> Iterator[tuple[object, ...]]:
         """The keys of some valuations."""
         spoken = [
-            {name: value for name, value in one.items() if not isinstance(value, Silence)}
-            for one in valuations
+            {name: value for name, value in valuation.items() if not isinstance(value, Silence)}
+            for valuation in valuations
         ]
         truths = truths_tried(self.spec, self.plain, spoken)
         for own, valuation in zip(truths, valuations, strict=True):

@@ -136,9 +136,9 @@ class Letters:
         if (source, leaves) not in self._seen:
             own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
             values = values_of(self.spec, own, source)
-            tried = [{} if isinstance(one, Silence) else {source: one} for one in values]
+            tried = [{} if isinstance(value, Silence) else {source: value} for value in values]
             found = truths_tried(self.spec, own, tried)
-            shown = dict.fromkeys(tuple(one == TRUE for one in truths) for truths in found)
+            shown = dict.fromkeys(tuple(truth == TRUE for truth in truths) for truths in found)
             self._seen[source, leaves] = tuple(shown)
         return self._seen[source, leaves]
 

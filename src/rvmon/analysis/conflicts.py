@@ -74,12 +74,12 @@ class ConflictSearch:
                 decided.add(frozenset(pair))
         self._groups()
         level = self._sets_of(3, list(self._near))
-        for one, other in self._to_be_set_apart():
+        for subject, other in self._to_be_set_apart():
             if self._is_late():
                 return
-            self._pair_apart(one, other)
-            if frozenset((one, other)) in decided:
-                self._open.discard(frozenset((one, other)))
+            self._pair_apart(subject, other)
+            if frozenset((subject, other)) in decided:
+                self._open.discard(frozenset((subject, other)))
         for size in range(4, LARGEST_SET + 1):
             level = self._sets_of(size, level)
 
@@ -92,14 +92,14 @@ class ConflictSearch:
         offsets = [member.offset for member in members]
         return self.together.can_reach(subjects, offsets, Aim(frozenset(range(len(members)))))
 
-    def _pair_at_once(self, one: Subject, other: Subject) -> bool | None:
+    def _pair_at_once(self, subject: Subject, other: Subject) -> bool | None:
         """Whether two can pass, triggered at one instant; a conflict is recorded."""
-        if self.together.can_start([one, other]) is False:
-            self._apart.add(frozenset((one, other)))
+        if self.together.can_start([subject, other]) is False:
+            self._apart.add(frozenset((subject, other)))
             return True
-        holds = self._can_hold([Member(one), Member(other)])
+        holds = self._can_hold([Member(subject), Member(other)])
         if holds is False:
-            self._keep([Member(one), Member(other)])
+            self._keep([Member(subject), Member(other)])
         return holds
 
     def _to_be_set_apart(self) -> Iterator[tuple[Subject, Subject]]:
@@ -108,17 +108,18 @@ class ConflictSearch:
         First each requirement with itself, then pairs that read a common name, then pairs
         connected by an `always` requirement that shares a name with both.
         """
-        yield from ((one, one) for one in self.subjects if one.starts_anew)
+        yield from ((subject, subject) for subject in self.subjects if subject.starts_anew)
         yield from self._pairs
-        for one, other in combinations(self.subjects, 2):
-            if frozenset((one, other)) not in self._near and any(
-                one.names & always.names and other.names & always.names for always in self._always
+        for subject, other in combinations(self.subjects, 2):
+            if frozenset((subject, other)) not in self._near and any(
+                subject.names & always.names and other.names & always.names
+                for always in self._always
             ):
-                yield one, other
+                yield subject, other
 
-    def _pair_apart(self, one: Subject, other: Subject) -> None:
+    def _pair_apart(self, subject: Subject, other: Subject) -> None:
         """Examine two, or one that is triggered twice, at several distances of the triggers."""
-        orders = [(one, other)] if one is other else [(one, other), (other, one)]
+        orders = [(subject, other)] if subject is other else [(subject, other), (other, subject)]
         for first, second in orders:
             if second.starts_late and not first.is_always:
                 for offset in _offsets(first, second):
@@ -180,13 +181,15 @@ class ConflictSearch:
                 if len(group) < LARGEST_GROUP and self._fits(group, other):
                     group.append(other)
             while len(group) > 2 and not self._is_late() and not self._is_fine(frozenset(group)):
-                if self._can_hold([Member(one) for one in group]):
+                if self._can_hold([Member(subject) for subject in group]):
                     self._fine.append(frozenset(group))
                 group.pop()
 
     def _fits(self, group: Collection[Subject], other: Subject) -> bool:
         """Whether one more shares a name with a member, can start with all, conflicts with none."""
-        if other in group or not any(frozenset((one, other)) in self._near for one in group):
+        if other in group or not any(
+            frozenset((subject, other)) in self._near for subject in group
+        ):
             return False
         return not self._is_hopeless(frozenset((*group, other)))
 

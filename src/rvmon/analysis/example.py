@@ -82,7 +82,7 @@ def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
         for bound in (interval.low, interval.high)
         if bound
     ]
-    bounds += [one.stale_after for one in spec.signals.values() if one.stale_after]
+    bounds += [signal.stale_after for signal in spec.signals.values() if signal.stale_after]
     step = _rounded_down(min(bounds, default=2 * TICKS_PER_SECOND) // 2)
     if spec.time is TimeModel.CLOCKED and spec.period:
         return max(step // spec.period, 1) * spec.period

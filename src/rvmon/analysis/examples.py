@@ -55,7 +55,7 @@ class Player:
         self._ids = tuple(
             name
             for name in compiled.requirements
-            if name in {one.requirement.id for one in requirements}
+            if name in {requirement.requirement.id for requirement in requirements}
         )
         plan = plan_alone(compiled, self._ids, stepped=True)
         kept = Kept(pack(plan).data)
@@ -206,7 +206,9 @@ class _Search:
         self.spec = spec
         self.choices = _choices(spec, requirements)
         self.gap = spec.period if spec.time is TimeModel.CLOCKED and spec.period else 1
-        self.step = budget.step or small_step(spec, [one.requirement for one in requirements])
+        self.step = budget.step or small_step(
+            spec, [requirement.requirement for requirement in requirements]
+        )
         self.most = budget.samples
         self.held: list[Valuation] = []
         self._numbers: dict[str, int] = {}
@@ -252,8 +254,10 @@ class _Search:
 
     def _sorted(self, held: Valuation) -> list[tuple[int, dict[str, Value], Valuation]]:
         """What a sample may bring where these values are held, by its stir."""
-        brought = ((self._changes(one, held), one) for one in self.choices.valuations)
-        found = [(_stir(changes), changes, one) for changes, one in brought if changes]
+        brought = (
+            (self._changes(valuation, held), valuation) for valuation in self.choices.valuations
+        )
+        found = [(_stir(changes), changes, valuation) for changes, valuation in brought if changes]
         return sorted(found, key=itemgetter(0))
 
     def _number(self, held: Valuation) -> int:
@@ -277,13 +281,24 @@ class _Search:
 
 
 def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> Choices:
-    leaves = {state.leaf: None for one in requirements for state, _ in one.leaves if state.leaf}
-    names = {name for one in requirements for name in one.reads}
-    names |= {
-        one.requirement.for_each.value.event for one in requirements if one.requirement.for_each
+    leaves = {
+        state.leaf: None
+        for requirement in requirements
+        for state, _ in requirement.leaves
+        if state.leaf
     }
-    captured = [capture.value for one in requirements for capture in one.requirement.captures]
-    windows = [limit for one in requirements for limit in _windows(one.requirement)]
+    names = {name for requirement in requirements for name in requirement.reads}
+    names |= {
+        requirement.requirement.for_each.value.event
+        for requirement in requirements
+        if requirement.requirement.for_each
+    }
+    captured = [
+        capture.value
+        for requirement in requirements
+        for capture in requirement.requirement.captures
+    ]
+    windows = [limit for requirement in requirements for limit in _windows(requirement.requirement)]
     return choices_of(spec, list(leaves), names, captured, windows)
 
 
@@ -294,7 +309,7 @@ def _windows(requirement: Requirement) -> Iterator[Compare]:
         if isinstance(part, Amount):
             found = Compare(CompareOp.GE, part.of, part.limit)
         if isinstance(found, Compare) and any(
-            one.value is not None for one in windows_in(found.left, found.right)
+            window.value is not None for window in windows_in(found.left, found.right)
         ):
             yield found
 
@@ -329,8 +344,13 @@ def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3)
         timelines: the most conflicts for which a timeline is sought.
     """
     subjects = [
-        Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
-        for one in compiled.requirements.values()
+        Subject(
+            requirement.requirement,
+            requirement.obligation.trigger,
+            requirement.automaton,
+            requirement.reads,
+        )
+        for requirement in compiled.requirements.values()
     ]
     found = examine(compiled.checked, subjects, seconds)
     drawn = []

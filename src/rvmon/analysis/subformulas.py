@@ -283,7 +283,7 @@ class TriggerParts:
         for place, (formula, text) in enumerate(asked):
             reads = frozenset(spec.signals.keys() & {*names_read(formula)})
             parts[formula] = _Part(formula, text, place, reads)
-        self._options = [tuple(parts[one] for one in own) for own in options]
+        self._options = [tuple(parts[formula] for formula in own) for own in options]
         self._is_told = requirement.for_each is None and not is_end(requirement.trigger)
 
     def miss_in(self, seen: RecordedTruths) -> str:

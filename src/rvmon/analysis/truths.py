@@ -137,7 +137,7 @@ def look_through(
     if isinstance(pieces, HeldRecording):
         outages, pieces = pieces.outages, pieces.pieces
     source = Trace((), names, end, outages)
-    runs = [one for one in groups.values() if one.begin(source, plans)]
+    runs = [group for group in groups.values() if group.begin(source, plans)]
     begin: int | None = None
     instants: list[NDArray[np.int64]] = []
     valueless = set(spec.signals)
@@ -155,7 +155,7 @@ def look_through(
             run.take(piece, samples)
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
-    truths = {whose: one.truths(ticks) for whose, one in groups.items()}
+    truths = {whose: group.truths(ticks) for whose, group in groups.items()}
     return RecordedTruths(names, begin, end, positions, frozenset(valueless), truths)
 
 
@@ -332,7 +332,7 @@ def _of_instance(
 
 def _reported(seen: Sequence[Payload | None]) -> Value:
     """Occurrences as the value of a sample; an unknown one among others has unknown fields."""
-    if all(one is None for one in seen):
+    if all(payload is None for payload in seen):
         return None
     return tuple({} if one is None else one for one in seen)
 
@@ -359,7 +359,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
 def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
     """The trigger, the consequent and all their subformulas, for an attempt."""
     wholes = (requirement.trigger, requirement.consequent)
-    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
+    formulas = tuple(formula for whole in wholes for _, formula in subformulas(whole, 0))
     return Question(formulas, requirement.for_each, attempt.captured)
 
 

@@ -50,16 +50,20 @@ def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) ->
     if requirement.for_each is not None or requirement.captures:
         return []
     parts = list(subformulas(requirement.consequent))
-    failed = [one for one in parts if format_formula(one) == blame.subformula] or parts
+    failed = [part for part in parts if format_formula(part) == blame.subformula] or parts
     found: dict[WindowValue, None] = {}
-    for one in subformulas(failed[0]):
-        match one:
+    for subformula in subformulas(failed[0]):
+        match subformula:
             case Amount(of=window):
                 found[window] = None
             case Compare(left=left, right=right):
                 found |= dict.fromkeys(windows_in(left, right))
     is_held = spec.time is TimeModel.HELD
-    return [one for one in found if not (is_held and one.moves) and unit_of(spec, one) is not None]
+    return [
+        window
+        for window in found
+        if not (is_held and window.moves) and unit_of(spec, window) is not None
+    ]
 
 
 def unit_of(spec: CheckedSpec, window: WindowValue) -> str | None:

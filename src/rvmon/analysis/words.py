@@ -149,7 +149,7 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 def _amount(formula: Amount, positive: bool) -> str:
     of = formula.of
     parts = chain(of.counted or of.operand)
-    chosen = [one for one in parts if not (isinstance(one, Passed) and one.since == TRIGGERED)]
+    chosen = [part for part in parts if not (isinstance(part, Passed) and part.since == TRIGGERED)]
     back = "so far" if len(chosen) == len(parts) else "since the trigger"
     back = back if of.window is None else f"in the last {format_duration(of.window)}"
     back = back if of.most is None else f"at the last {of.most} updates"

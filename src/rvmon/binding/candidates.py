@@ -285,11 +285,11 @@ def ranges_of(
     """By topic and value, what the values of these were."""
     ranges: dict[tuple[str, str], Range] = {}
     readers: dict[str, list[tuple[Range, Get]]] = defaultdict(list)
-    for one in candidates:
-        key = one.topic.name, one.value
-        if one.value and key not in ranges:
+    for candidate in candidates:
+        key = candidate.topic.name, candidate.value
+        if candidate.value and key not in ranges:
             ranges[key] = Range()
-            readers[one.topic.name].append((ranges[key], getter(term_of(one.value))))
+            readers[candidate.topic.name].append((ranges[key], getter(term_of(candidate.value))))
     with suppress(TraceError):
         for number, (topic, _, content) in enumerate(source.read(set(readers))):
             if number == MOST:

@@ -58,10 +58,10 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     topics = source.topics
     seen = names_in(source)
     everything = [
-        one
+        candidate
         for topic in topics.values()
         if not topic.fault
-        for one in candidates_of(topic, seen[topic.name])
+        for candidate in candidates_of(topic, seen[topic.name])
     ]
     types = {name: signal.type for name, signal in spec.signals.items()}
     found: dict[str, Found] = {}
@@ -72,8 +72,8 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     near = {
         name: in_such_a_unit(wanted[name], everything)[:_MOST] for name in types if not found[name]
     }
-    shown = [one for own in found.values() for _, one in own[: 2 * _MOST]]
-    ranges = ranges_of(source, [*shown, *(one for own in near.values() for one in own)])
+    shown = [candidate for own in found.values() for _, candidate in own[: 2 * _MOST]]
+    ranges = ranges_of(source, [*shown, *(candidate for own in near.values() for candidate in own)])
     found = {name: _with_values(own, ranges, types.get(name)) for name, own in found.items()}
     chosen = {
         name: own[0][1]
@@ -81,98 +81,106 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
         if is_clear(wanted[name], own) and not _is_idle(own, ranges)
     }
     lines = ['clock = "log"  # or "header": the stamps of the headers count']
-    for name, one in chosen.items():
+    for name, candidate in chosen.items():
         lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
         if guess := wanted[name].guess:
             lines.append(f"# A guess: {guess}.")
-        lines += _place_lines(one, ranges)
+        lines += _place_lines(candidate, ranges)
         if name in types:
-            lines += _signal_lines(types[name], one, ranges)
+            lines += _signal_lines(types[name], candidate, ranges)
         else:
-            lines += _event_lines(spec.events[name].fields, one)
+            lines += _event_lines(spec.events[name].fields, candidate)
         lines += [f"# or {_place(other, ranges)}" for _, other in found[name][1:_MOST]]
     missed = [name for name in found if name not in chosen]
     for name in missed:
         lines += ["", *_open_lines(name, types.get(name), found[name], near.get(name, ()), ranges)]
-    unlabelled = [name for name, one in chosen.items() if _has_codes(types.get(name), one)]
+    unlabelled = [
+        name for name, candidate in chosen.items() if _has_codes(types.get(name), candidate)
+    ]
     return Proposal("\n".join(lines) + "\n", tuple(missed), _shared(chosen), tuple(unlabelled))
 
 
-def _has_codes(type_: Type | None, one: Candidate) -> bool:
-    return type_ is not None and type_.kind is Kind.LABEL and one.kind is not Kind.LABEL
+def _has_codes(type_: Type | None, candidate: Candidate) -> bool:
+    return type_ is not None and type_.kind is Kind.LABEL and candidate.kind is not Kind.LABEL
 
 
 def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
     """Without what counts parts of a unit, and what never has a value, unless that is all."""
     if type_ is not None and type_.unit:
-        found = [(score, one) for score, one in found if not _is_raw(one, type_.unit, ranges)]
+        found = [
+            (score, candidate)
+            for score, candidate in found
+            if not _is_raw(candidate, type_.unit, ranges)
+        ]
     kept = [
-        (score, one)
-        for score, one in found
-        if (own := ranges.get((one.topic.name, one.value))) is None or own.count
+        (score, candidate)
+        for score, candidate in found
+        if (own := ranges.get((candidate.topic.name, candidate.value))) is None or own.count
     ]
     return kept or found
 
 
-def _is_raw(one: Candidate, unit: str, ranges: Ranges) -> bool:
+def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
     """Whether it is a whole number whose unit nobody says, and too large for the plain one."""
-    own = ranges.get((one.topic.name, one.value))
-    if own is None or own.high is None or own.low is None or one.unit is not None:
+    own = ranges.get((candidate.topic.name, candidate.value))
+    if own is None or own.high is None or own.low is None or candidate.unit is not None:
         return False
     plain = _plain_unit(parse_unit(unit).dimension)
-    return one.kind is Kind.INT and max(own.high, -own.low) > _LARGE.get(plain, inf)
+    return candidate.kind is Kind.INT and max(own.high, -own.low) > _LARGE.get(plain, inf)
 
 
 def _is_idle(found: Found, ranges: Ranges) -> bool:
     """Whether the best is a number that never changes, and another one does."""
-    best, *others = (ranges.get((one.topic.name, one.value), Range()) for _, one in found)
+    best, *others = (
+        ranges.get((candidate.topic.name, candidate.value), Range()) for _, candidate in found
+    )
     return best.is_constant and any(own.low != own.high for own in others)
 
 
-def _place_lines(one: Candidate, ranges: Ranges) -> Iterator[str]:
-    yield f"topic = {_text(one.topic.name)}"
-    yield f"type = {_text(one.topic.type)}"
-    if one.value:
-        yield f"value = {_text(one.value)}{_range(one, ranges)}"
+def _place_lines(candidate: Candidate, ranges: Ranges) -> Iterator[str]:
+    yield f"topic = {_text(candidate.topic.name)}"
+    yield f"type = {_text(candidate.topic.type)}"
+    if candidate.value:
+        yield f"value = {_text(candidate.value)}{_range(candidate, ranges)}"
 
 
-def _range(one: Candidate, ranges: Ranges) -> str:
-    own = ranges.get((one.topic.name, one.value))
+def _range(candidate: Candidate, ranges: Ranges) -> str:
+    own = ranges.get((candidate.topic.name, candidate.value))
     return f"  # {own}" if own is not None else ""
 
 
-def _place(one: Candidate, ranges: Ranges) -> str:
-    value = f", value = {_text(one.value)}" if one.value else ""
-    return f"topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
+def _place(candidate: Candidate, ranges: Ranges) -> str:
+    value = f", value = {_text(candidate.value)}" if candidate.value else ""
+    return f"topic = {_text(candidate.topic.name)}{value}{_range(candidate, ranges)}"
 
 
-def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
-    values = ranges.get((one.topic.name, one.value), Range())
+def _signal_lines(type_: Type, candidate: Candidate, ranges: Ranges) -> Iterator[str]:
+    values = ranges.get((candidate.topic.name, candidate.value), Range())
     if type_.unit:
-        symbol, remark = _unit_of(type_.unit, one, max(values.high or 0, -(values.low or 0)))
+        symbol, remark = _unit_of(type_.unit, candidate, max(values.high or 0, -(values.low or 0)))
         yield f"unit = {_text(symbol)}{remark}"
         if symbol == "1" and not remark and (values.high or 0) > _WHOLE:
-            yield f'# It looks like per cent: then value = "1 * {one.value}", unit = "%"'
-    if _has_codes(type_, one):
+            yield f'# It looks like per cent: then value = "1 * {candidate.value}", unit = "%"'
+    if _has_codes(type_, candidate):
         there = f": it holds {', '.join(map(str, values.first))}" if values.first else ""
         listed = ", ".join(f"0 = {_text(label)}" for label in type_.labels[:1])
         yield f"# labels = {{ {listed} }}  # which number stands for which{there}"
 
 
-def _unit_of(declared: str, one: Candidate, largest: float) -> tuple[str, str]:
+def _unit_of(declared: str, candidate: Candidate, largest: float) -> tuple[str, str]:
     """The unit of a value, and a remark unless the messages say it.
 
     Args:
         declared: the unit of the name.
-        one: what feeds it.
+        candidate: what feeds it.
         largest: of its values, without their sign.
     """
     dimension = parse_unit(declared).dimension
-    units = [unit.symbol or "1" for unit in one.meaning.units if unit.dimension == dimension]
+    units = [unit.symbol or "1" for unit in candidate.meaning.units if unit.dimension == dimension]
     if units:
         return units[0], ""
-    if one.unit is not None:
-        return one.unit.symbol, "  # by the name of the field"
+    if candidate.unit is not None:
+        return candidate.unit.symbol, "  # by the name of the field"
     is_plain = declared not in ("", "1") and parse_unit(declared).factor == 1
     plain = declared if is_plain else _plain_unit(dimension) or "1"
     if (plain == "1" and largest > _WHOLE) or (plain == "rad" and largest > _TURN):
@@ -194,13 +202,13 @@ def _plain_unit(dimension: tuple[tuple[str, int], ...]) -> str:
     return min(named, key=len, default=base_unit(dict(dimension)).symbol)
 
 
-def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:
-    if one.value:
+def _event_lines(fields: Mapping[str, Type], candidate: Candidate) -> Iterator[str]:
+    if candidate.value:
         yield 'on = "change"  # only the first of several in a row that are true'
     payload = {}
     for name, type_ in fields.items():
         wanted = wanted_of(name, type_, ())
-        ranked = fitting(wanted, candidates_of(one.topic, Looked()))
+        ranked = fitting(wanted, candidates_of(candidate.topic, Looked()))
         if is_clear(wanted, ranked):
             payload[name] = ranked[0][1].value
         else:
@@ -221,8 +229,8 @@ def _open_lines(
     else:
         yield f"# Nothing was found for `{name}` ({what}):"
     yield f"# [bind.{_key(name)}]"
-    for one in [one for _, one in found[:_MOST]] or near:
-        yield f"# {_place(one, ranges)}"
+    for candidate in [candidate for _, candidate in found[:_MOST]] or near:
+        yield f"# {_place(candidate, ranges)}"
     if not found and not near:
         yield '# topic = "…"'
         yield '# value = "…"'
@@ -230,8 +238,8 @@ def _open_lines(
 
 def _shared(chosen: Mapping[str, Candidate]) -> tuple[tuple[str, ...], ...]:
     names: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for name, one in chosen.items():
-        names[one.topic.name, one.value].append(name)
+    for name, candidate in chosen.items():
+        names[candidate.topic.name, candidate.value].append(name)
     return tuple(tuple(own) for own in names.values() if len(own) > 1)
 
 
@@ -245,7 +253,9 @@ def _described(type_: Type | None) -> str:
 
 def _key(name: str) -> str:
     parts = name.split(".")
-    return ".".join(one if re.fullmatch(r"[A-Za-z0-9_-]+", one) else _text(one) for one in parts)
+    return ".".join(
+        part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else _text(part) for part in parts
+    )
 
 
 def _text(text: str) -> str:

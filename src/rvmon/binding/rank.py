@@ -91,13 +91,15 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
     """The candidates that fit with their scores, the best first."""
     type_ = wanted.type
     fit = [
-        one
-        for one in candidates
-        if (_says_so(wanted, one) if type_ is None else _fits(wanted, type_, one))
+        candidate
+        for candidate in candidates
+        if (_says_so(wanted, candidate) if type_ is None else _fits(wanted, type_, candidate))
     ]
-    scored = [(score, one) for one in fit if (score := _score(wanted, one))]
-    if type_ is not None and type_.unit and any(one.says_unit for one in fit):
-        scored = [(score - 0.2 * (not one.says_unit), one) for score, one in scored]
+    scored = [(score, candidate) for candidate in fit if (score := _score(wanted, candidate))]
+    if type_ is not None and type_.unit and any(candidate.says_unit for candidate in fit):
+        scored = [
+            (score - 0.2 * (not candidate.says_unit), candidate) for score, candidate in scored
+        ]
     return sorted(
         scored,
         key=lambda found: (-found[0], found[1].topic.name, len(found[1].value), found[1].value),
@@ -111,14 +113,16 @@ def in_such_a_unit(wanted: Wanted, candidates: Iterable[Candidate]) -> list[Cand
         return []
     dimension = parse_unit(type_.unit).dimension
     found = [
-        one
-        for one in candidates
-        if one.meaning.sort is Sort.MEASURED
-        and dimension in one.dimensions
-        and one.is_command == ("command" in wanted.words)
-        and modifiers_of(one) <= {*wanted.words}
+        candidate
+        for candidate in candidates
+        if candidate.meaning.sort is Sort.MEASURED
+        and dimension in candidate.dimensions
+        and candidate.is_command == ("command" in wanted.words)
+        and modifiers_of(candidate) <= {*wanted.words}
     ]
-    return sorted(found, key=lambda one: -len({*wanted.words} & {*one.own, *one.around}))
+    return sorted(
+        found, key=lambda candidate: -len({*wanted.words} & {*candidate.own, *candidate.around})
+    )
 
 
 def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
@@ -132,8 +136,8 @@ def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
     best, first = found[0]
     is_exact = words_of(first.value) == [*wanted.words]
     return all(
-        score < best - (_A_WORD if _is_alike(first, one, is_exact=is_exact) else 1e-9)
-        for score, one in found[1:]
+        score < best - (_A_WORD if _is_alike(first, candidate, is_exact=is_exact) else 1e-9)
+        for score, candidate in found[1:]
     )
 
 

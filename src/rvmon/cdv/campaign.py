@@ -152,7 +152,7 @@ class Robot:
             RvmonError: one of the files is wrong.
         """
         specs = [self.requirements, *map(load, self.coverage)]
-        return [one.coverage_model for one in specs if one is not None]
+        return [spec.coverage_model for spec in specs if spec is not None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,12 +295,16 @@ def unreachable_items(
         UnknownNameError: nothing in the model is called so.
     """
     found: dict[tuple[str, str], str] = {}
-    for one in campaign.closing.unreachable:
-        if one.robot not in ("", robot):
+    for unreachable in campaign.closing.unreachable:
+        if unreachable.robot not in ("", robot):
             continue
-        items = [*_named(one, model)]
+        items = [*_named(unreachable, model)]
         if not items and closing:
-            place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
+            place = (
+                f"{unreachable.group}: {unreachable.item}"
+                if unreachable.group
+                else f"code `{unreachable.item}`"
+            )
             known = [
                 f"{name}: {item}" for name, group in model.groups.items() for item in group.items
             ]
@@ -309,20 +313,20 @@ def unreachable_items(
                 f"the campaign calls unreachable what there is not: {place}: nothing that is "
                 f"measured is called so; {fix}"
             )
-        if not (closing and one.by_model):
-            found |= dict.fromkeys(items, one.reason)
+        if not (closing and unreachable.by_model):
+            found |= dict.fromkeys(items, unreachable.reason)
     return found
 
 
-def _named(one: Unreachable, model: Model) -> Iterable[tuple[str, str]]:
-    if one.item in getattr(model.groups.get(one.group), "items", ()):
-        yield one.group, one.item
+def _named(unreachable: Unreachable, model: Model) -> Iterable[tuple[str, str]]:
+    if unreachable.item in getattr(model.groups.get(unreachable.group), "items", ()):
+        yield unreachable.group, unreachable.item
         return
     for group in model.groups.values():
-        if group.subject in _CODE and one.group in ("", group.name):
+        if group.subject in _CODE and unreachable.group in ("", group.name):
             for item in group.items.values():
                 targets = [item.text]
                 if group.subject is Subject.BRANCHES:
                     targets.append(item.text.rpartition(_ARROW)[2])
-                if one.item in targets:
+                if unreachable.item in targets:
                     yield group.name, item.name

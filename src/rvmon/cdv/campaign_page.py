@@ -51,17 +51,19 @@ def choose_examples(
         also: names of tests that get a page whatever became of them.
         every: whether all others are shown as well.
     """
-    playable = [one for one in played if one.outcome.ending not in (Ending.HUNG, Ending.LOST)]
+    playable = [
+        test_run for test_run in played if test_run.outcome.ending not in (Ending.HUNG, Ending.LOST)
+    ]
     shown = {
         place
-        for place, one in enumerate(playable)
+        for place, test_run in enumerate(playable)
         if every
-        or one.job.test.name in also
-        or one.job.test.mutation is not None
-        or one.outcome.error is not None
-        or differences(one.job.test.expected, one.outcome.verdicts)
+        or test_run.job.test.name in also
+        or test_run.job.test.mutation is not None
+        or test_run.outcome.error is not None
+        or differences(test_run.job.test.expected, test_run.outcome.verdicts)
     }
-    cells = [_cells_of(one) for one in playable]
+    cells = [_cells_of(test_run) for test_run in playable]
     by_cell = {
         cell: playable[place].job for place in sorted(shown, reverse=True) for cell in cells[place]
     }
@@ -74,12 +76,12 @@ def choose_examples(
     return Examples(tuple(playable[place].job for place in sorted(shown)), by_cell)
 
 
-def _cells_of(one: Played) -> set[Cell]:
+def _cells_of(played: Played) -> set[Cell]:
     """The counts that a test is part of; with a planted fault it counts in none."""
-    job = one.job
+    job = played.job
     if job.test.mutation is not None:
         return set()
-    return {(job.robot, job.test.strategy, *verdict) for verdict in one.outcome.verdicts.items()}
+    return {(job.robot, job.test.strategy, *verdict) for verdict in played.outcome.verdicts.items()}
 
 
 def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -> list[Job]:
@@ -92,11 +94,11 @@ def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -
     most = 1 if jobs else COMPARED
     for requirement in failed:
         passed = [
-            one.job
-            for one in played
-            if one.job.robot == job.robot
-            and one.job.test.mutation is None
-            and one.outcome.verdicts.get(requirement) is Verdict.PASS
+            test_run.job
+            for test_run in played
+            if test_run.job.robot == job.robot
+            and test_run.job.test.mutation is None
+            and test_run.outcome.verdicts.get(requirement) is Verdict.PASS
         ]
         # Tests that know their answers are about what the robot should do: those first.
         passed.sort(key=lambda one: not one.test.expected)
@@ -146,7 +148,7 @@ def campaign_page(
         about=" and ".join(robot.title.lower() for robot in summary.robots.values()),
         common=common,
         others=others,
-        whose=" and ".join(dict.fromkeys(of for one in others for of in robots_of[one])),
+        whose=" and ".join(dict.fromkeys(of for other in others for of in robots_of[other])),
         robots=[
             (
                 figures.title,
@@ -162,9 +164,11 @@ def campaign_page(
         measured=[
             figures
             for figures in summary.robots.values()
-            if any(one.statements or one.states for one in figures.strategies.values())
+            if any(
+                strategy.statements or strategy.states for strategy in figures.strategies.values()
+            )
         ],
-        directed=[one for one in summary.robots.items() if one[1].known],
+        directed=[item for item in summary.robots.items() if item[1].known],
         tests=tests,
         further=further,
         command=command,
@@ -204,6 +208,8 @@ def _silent(
         counts = [group.counts[name] for group in groups]
         tests = sum(sum(one.values()) for one in counts)
         if tests and sum(one.get(Verdict.NOT_TRIGGERED, 0) for one in counts) == tests:
-            shown = (examples.get((robot, one.name, name, Verdict.NOT_TRIGGERED)) for one in groups)
+            shown = (
+                examples.get((robot, group.name, name, Verdict.NOT_TRIGGERED)) for group in groups
+            )
             found.append((name, next((one for one in shown if one is not None), None)))
     return found

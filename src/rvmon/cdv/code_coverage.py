@@ -198,7 +198,11 @@ def measured_groups(campaign: Campaign) -> list[Group]:
     transitions = permutations(campaign.states, 2) if declared is None else declared
     return [
         group_of(STATES, Subject.STATES, [*map(Item, campaign.states)]),
-        group_of(TRANSITIONS, Subject.TRANSITIONS, [Item(_ARROW.join(one)) for one in transitions]),
+        group_of(
+            TRANSITIONS,
+            Subject.TRANSITIONS,
+            [Item(_ARROW.join(transition)) for transition in transitions],
+        ),
         group_of(PAIRS, Subject.TRANSITIONS, [*map(Item, _pairs(declared or ()))]),
         *(code_groups(campaign.code) if campaign.code is not None else ()),
     ]

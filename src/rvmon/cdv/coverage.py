@@ -54,8 +54,8 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
         RvmonError: two of its specifications call something the same.
     """
     groups = measured_groups(campaign)
-    for one in campaign.robots[robot].coverages:
-        groups += one.model.groups.values()
+    for coverage in campaign.robots[robot].coverages:
+        groups += coverage.model.groups.values()
     try:
         return model_of(groups)
     except ValueError as error:
@@ -74,7 +74,7 @@ def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> f
     """
     model = coverage_model(campaign, robot)
     out = unreachable_items(campaign, robot, model)
-    return share(merged(one.outcome.hits for one in played), without(model, out))
+    return share(merged(test_run.outcome.hits for test_run in played), without(model, out))
 
 
 def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:
@@ -99,8 +99,8 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
         argued = unreachable_items(campaign, robot, model)
         for (group, item), reason in {**argued, **results.unreachable}.items():
             database.exclude(group, item, reason)
-        for number, one in enumerate(played):
-            test, outcome = one.job.test, one.outcome
+        for number, test_run in enumerate(played):
+            test, outcome = test_run.job.test, test_run.outcome
             record = TestRecord(
                 test.name,
                 campaign=campaign.name,
@@ -113,7 +113,7 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
                 number=number,
                 seconds=outcome.seconds,
                 when=number,
-                expected=accepted_failures(one, campaign.expected_failures),
+                expected=accepted_failures(test_run, campaign.expected_failures),
             )
             database.record(record, outcome.hits)
 
@@ -121,8 +121,8 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
 def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
     """A model with what was seen that nobody declared: it is shown, and is no goal."""
     groups: dict[str, Group] = dict(model.groups)
-    for one in played:
-        for name, items in one.outcome.hits.items():
+    for test_run in played:
+        for name, items in test_run.outcome.hits.items():
             known = groups[name].items
             if not items.keys() <= known.keys():
                 rest = {item: Item(item, BinKind.IGNORE) for item in items if item not in known}
@@ -147,9 +147,9 @@ def write_coverage(
     figures = {}
     for robot, path in database_paths(folder, campaign.robots).items():
         played = [
-            one
-            for one in results.played
-            if one.job.robot == robot and one.job.test.mutation is None
+            played
+            for played in results.played
+            if played.job.robot == robot and played.job.test.mutation is None
         ]
         write_database(path, robot, played, results)
         up = "../" * len(path.parent.relative_to(folder).parts)
@@ -161,7 +161,7 @@ def write_coverage(
         if campaign.code is not None:
             model = coverage_model(campaign, robot)
             model = without(model, unreachable_items(campaign, robot, model))
-            hits = merged(one.outcome.hits for one in played)
+            hits = merged(test_run.outcome.hits for test_run in played)
             write_whole(path.with_name(LCOV), lcov(campaign.code, model, hits))
             write_whole(path.with_name(COBERTURA), cobertura(campaign.code, model, hits))
         figures[robot] = CoverageFigures(

@@ -58,16 +58,16 @@ class CampaignJudgement:
     def wrong(self) -> list[str]:
         """All that is not as expected."""
         of_tests = [
-            f"{one.played.job.test.name} ({one.played.job.robot}): {what}"
-            for one in self.tests
-            for what in one.wrong
+            f"{test.played.job.test.name} ({test.played.job.robot}): {what}"
+            for test in self.tests
+            for what in test.wrong
         ]
         return of_tests + [f"{check}: {what}" for check, what in self.checks.items() if what]
 
     @property
     def known(self) -> dict[str, int]:
         """The failures that were expected, in words, each with the number of its tests."""
-        return dict(Counter(what for one in self.tests for what in one.known))
+        return dict(Counter(what for test in self.tests for what in test.known))
 
 
 def judge_campaign(
@@ -100,12 +100,12 @@ def judge_campaign(
     decisions = shares or {}
     tests = tuple(
         judge_test(
-            one,
+            played,
             expected,
-            [name for robot, name in decisions if robot == one.job.robot],
-            gate=campaign.gates.get(_gate_name(campaign, one), Gate()) if strict else None,
+            [name for robot, name in decisions if robot == played.job.robot],
+            gate=campaign.gates.get(_gate_name(campaign, played), Gate()) if strict else None,
         )
-        for one in results.played
+        for played in results.played
     )
     checks: dict[str, str] = {}
     if not results.cut_short:
@@ -113,7 +113,9 @@ def judge_campaign(
         checks |= dict(_contradicted(campaign, results.played))
         checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
         for (robot, name), found in decisions.items():
-            if not any(one.requirement == name and one.robot in ("", robot) for one in expected):
+            if not any(
+                failure.requirement == name and failure.robot in ("", robot) for failure in expected
+            ):
                 share = next(iter(found.values())).share
                 checks[f"{name} {share} ({robot})"] = _undecided(found, strict=strict)
     return CampaignJudgement(tests, checks, results.cut_short)
@@ -121,14 +123,18 @@ def judge_campaign(
 
 def _undecided(found: Mapping[str, Decision], *, strict: bool) -> str:
     """What is wrong with a share of runs; empty if it holds, or need not be decided."""
-    rejected = [f"under {name} it {one}" for name, one in found.items() if one.holds is False]
-    if strict and not any(one.holds for one in found.values()):
-        rejected = rejected or [f"under {name} it is {one}" for name, one in found.items()]
+    rejected = [
+        f"under {name} it {decision}" for name, decision in found.items() if decision.holds is False
+    ]
+    if strict and not any(decision.holds for decision in found.values()):
+        rejected = rejected or [
+            f"under {name} it is {decision}" for name, decision in found.items()
+        ]
     return "; ".join(rejected)
 
 
 def judge_test(
-    one: Played,
+    played: Played,
     expected: Sequence[ExpectedFailure],
     shared: Collection[str] = (),
     *,
@@ -137,18 +143,18 @@ def judge_test(
     """Compare one test with what was expected of it, as `judge_campaign` does with all.
 
     Args:
-        one: the test.
+        played: the test.
         expected: failures that its campaign expects.
         shared: requirements of which not this test decides, but all together.
         gate: verdicts that are inconclusive are wrong, unless it or the test knows them; default:
             none is.
     """
-    test, outcome = one.job.test, one.outcome
+    test, outcome = played.job.test, played.outcome
     wrong: list[str] = []
     known: list[str] = []
     if outcome.ending is not Ending.COMPLETED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
-    accepted = accepted_failures(one, expected)
+    accepted = accepted_failures(played, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))
     wrong.extend(missed(test.reaches, outcome.hits))
@@ -166,7 +172,7 @@ def judge_test(
                 wrong.append(outcome.reasons.get(name, f"{name} failed"))
         elif verdict is Verdict.INCONCLUSIVE and gate and name not in gate.inconclusive:
             wrong.append(f"{name} is inconclusive")
-    return TestJudgement(one, tuple(wrong), tuple(known))
+    return TestJudgement(played, tuple(wrong), tuple(known))
 
 
 def _expected_failures(
@@ -177,9 +183,9 @@ def _expected_failures(
         if why.seldom:
             continue
         verdicts = [
-            one.outcome.verdicts[why.requirement]
-            for one in played
-            if why.requirement in one.outcome.verdicts and is_about(why, one)
+            test_run.outcome.verdicts[why.requirement]
+            for test_run in played
+            if why.requirement in test_run.outcome.verdicts and is_about(why, test_run)
         ]
         if verdicts:
             missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
@@ -200,10 +206,10 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
     for robot in campaign.robots:
         out = unreachable_items(campaign, robot, coverage_model(campaign, robot))
         first = {
-            f"{group}: {item}": one.job.test.name
-            for one in reversed(played)
-            if one.job.robot == robot and one.job.test.mutation is None
-            for group, items in one.outcome.hits.items()
+            f"{group}: {item}": test_run.job.test.name
+            for test_run in reversed(played)
+            if test_run.job.robot == robot and test_run.job.test.mutation is None
+            for group, items in test_run.outcome.hits.items()
             for item in items
             if (group, item) in out
         }
@@ -211,9 +217,9 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
         yield f"no test hits what is called unreachable ({robot})", wrong
 
 
-def _gate_name(campaign: Campaign, one: Played) -> str:
+def _gate_name(campaign: Campaign, played: Played) -> str:
     """The strategy whose gate a test is compared with; empty: that of all which have none."""
-    strategy = one.job.test.strategy
+    strategy = played.job.test.strategy
     return strategy if strategy in campaign.gates else ""
 
 
@@ -222,16 +228,18 @@ def _gated(
 ) -> Iterator[tuple[str, str]]:
     """What gates want of tests together, with what is wrong about it."""
     groups: dict[tuple[str, str], list[Played]] = {}
-    for one in played:
-        if one.job.test.mutation is None:  # a planted fault says nothing about the robot
-            groups.setdefault((one.job.robot, _gate_name(campaign, one)), []).append(one)
+    for test_run in played:
+        if test_run.job.test.mutation is None:  # a planted fault says nothing about the robot
+            groups.setdefault((test_run.job.robot, _gate_name(campaign, test_run)), []).append(
+                test_run
+            )
     for (robot, strategy), tests in groups.items():
         gate = campaign.gates.get(strategy, Gate())
         place = f"{strategy}, {robot}" if strategy else robot
         count = f"{len(tests)} test{'s' if len(tests) > 1 else ''}"
         for name in requirements[robot]:
             if name not in gate.untriggered:
-                seen = {one.outcome.verdicts[name] for one in tests}
+                seen = {test.outcome.verdicts[name] for test in tests}
                 decided = not seen.isdisjoint((Verdict.PASS, Verdict.FAIL))
                 wrong = "" if decided else f"none of {count} passed or failed it"
                 yield f"{name} is triggered ({place})", wrong
@@ -283,11 +291,11 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
     """
     root = ET.Element("testsuites", name=shown(campaign))
     groups: dict[str, list[TestJudgement]] = {}
-    for one in judgement.tests:
-        job = one.played.job
-        groups.setdefault(f"{job.robot}.{job.test.strategy}", []).append(one)
+    for test in judgement.tests:
+        job = test.played.job
+        groups.setdefault(f"{job.robot}.{job.test.strategy}", []).append(test)
     for name, tests in groups.items():
-        add_suite(root, f"{campaign}.{name}", [_case(one) for one in tests])
+        add_suite(root, f"{campaign}.{name}", [_case(test) for test in tests])
     together = [_check(check, what) for check, what in judgement.checks.items()]
     if judgement.cut_short:
         case = ET.Element("testcase", name="all tests are played")
@@ -298,8 +306,8 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
     return as_text(root)
 
 
-def _case(one: TestJudgement) -> ET.Element:
-    test, outcome = one.played.job.test, one.played.outcome
+def _case(judgement: TestJudgement) -> ET.Element:
+    test, outcome = judgement.played.job.test, judgement.played.outcome
     case = ET.Element("testcase", name=shown(test.name), time=f"{outcome.seconds:.3f}")
     properties = ET.SubElement(case, "properties")
     facts = {"seed": str(test.seed), "purpose": test.text, "planted fault": test.mutation or ""}
@@ -308,12 +316,14 @@ def _case(one: TestJudgement) -> ET.Element:
     for name, value in facts.items():
         if value:
             ET.SubElement(properties, "property", name=shown(name), value=shown(value))
-    if one.wrong:
+    if judgement.wrong:
         ended = outcome.ending is not Ending.COMPLETED and test.mutation is None
-        element = ET.SubElement(case, "error" if ended else "failure", message=shown(one.wrong[0]))
-        element.text = shown("\n".join(one.wrong))
-    elif one.known:
-        ET.SubElement(case, "skipped", message=shown("; ".join(one.known)))
+        element = ET.SubElement(
+            case, "error" if ended else "failure", message=shown(judgement.wrong[0])
+        )
+        element.text = shown("\n".join(judgement.wrong))
+    elif judgement.known:
+        ET.SubElement(case, "skipped", message=shown("; ".join(judgement.known)))
     return case
 
 

@@ -70,8 +70,10 @@ def print_summary(
             console.print()
         under = figures.strategies.values()
         measured = {
-            ("statements", "that ran"): [one.statements for one in under],
-            ("branches", "that were taken"): [one.branches for one in under],
+            ("statements", "that ran"): [strategy_summary.statements for strategy_summary in under],
+            ("branches", "that were taken"): [
+                strategy_summary.branches for strategy_summary in under
+            ],
         }
         for (what, how), columns in measured.items():
             if any(columns):
@@ -89,8 +91,8 @@ def _print_in_short(
 ) -> None:
     for line in _known(figures):
         console.print(line)
-    whole = [sum(one.statements.values(), NOTHING) for one in figures.strategies.values()]
-    if any(one.statements for one in whole):
+    whole = [sum(strategy.statements.values(), NOTHING) for strategy in figures.strategies.values()]
+    if any(coverage.statements for coverage in whole):
         shares = zip(figures.strategies, map(_share, whole), strict=True)
         told = ", ".join(f"{name} {share}" for name, share in shares)
         console.print(f"{figures.title}: statements of its code that ran: {told}")
@@ -124,11 +126,11 @@ def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
     for strategy in figures.strategies.values():
         for name, verdicts in strategy.counts.items():
             found[name].update(verdicts)
-    for one in figures.known:
-        if one.test.mutation is None:
-            for name, verdict in one.test.expected.items():
-                if one.verdicts[name] == verdict:
-                    found[name][one.verdicts[name]] -= 1
+    for answer in figures.known:
+        if answer.test.mutation is None:
+            for name, verdict in answer.test.expected.items():
+                if answer.verdicts[name] == verdict:
+                    found[name][answer.verdicts[name]] -= 1
     return found
 
 
@@ -172,15 +174,15 @@ def _share(block: BlockCoverage) -> str:
 def _known(figures: RobotSummary) -> Iterator[str]:
     if not figures.known:
         return
-    right = sum(one.as_expected for one in figures.known)
-    planted = sum(one.test.mutation is not None for one in figures.known)
+    right = sum(answer.as_expected for answer in figures.known)
+    planted = sum(answer.test.mutation is not None for answer in figures.known)
     yield (
         f"{figures.title}: {right} of {len(figures.known)} directed tests ended as they should, "
         f"{planted} of them with a fault planted into the robot."
     )
-    for one in figures.known:
-        if not one.as_expected:
-            yield f"  {one.test.name}: {', '.join(one.wrong)}"
+    for answer in figures.known:
+        if not answer.as_expected:
+            yield f"  {answer.test.name}: {', '.join(answer.wrong)}"
 
 
 TESTS = "tests"
@@ -212,7 +214,7 @@ def write_tests(folder: Path, results: Results) -> None:
     """Write every test that was played to `tests/`, each to be replayed alone."""
     tests = folder / TESTS
     tests.mkdir(parents=True, exist_ok=True)
-    for test in {one.job.test.name: one.job.test for one in results.played}.values():
+    for test in {played.job.test.name: played.job.test for played in results.played}.values():
         save(test, tests)
 
 

@@ -45,7 +45,7 @@ class Replay:
     @property
     def judged(self) -> JudgedRun:
         """The run as its page wants it."""
-        samples = tuple(Sample(*one) for one in self.recorded.samples)
+        samples = tuple(Sample(*sample) for sample in self.recorded.samples)
         return JudgedRun(
             self.test.name, replace(self.recorded.report, trace=self.test.name), samples
         )
@@ -144,12 +144,12 @@ def write_pages(
     shown = {(job.robot, job.test.name) for job in examples.jobs}
     judged = campaign.requirements
     wanted = [
-        one
-        for one in results.played
-        if (one.job.robot, one.job.test.name) in shown and one.job.robot in judged
+        played
+        for played in results.played
+        if (played.job.robot, played.job.test.name) in shown and played.job.robot in judged
     ]
     written = parallel.execute(
-        [_page_of(one, folder, results) for one in wanted],
+        [_page_of(played, folder, results) for played in wanted],
         partial(_writer, folder, campaign.robots, judged, spool),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
@@ -158,10 +158,10 @@ def write_pages(
     otherwise: list[str] = []
     with closing(written):
         pairs = zip(wanted, written, strict=True)
-        for number, (one, verdicts) in enumerate(pairs, start=1):
-            test = one.job.test.name
-            addresses[one.job.robot, test] = _address(one.job)
-            if verdicts != one.outcome.verdicts:
+        for number, (played, verdicts) in enumerate(pairs, start=1):
+            test = played.job.test.name
+            addresses[played.job.robot, test] = _address(played.job)
+            if verdicts != played.outcome.verdicts:
                 otherwise.append(test)
             progress(number)
     cells = {
@@ -177,7 +177,11 @@ def write_pages(
         tests=addresses,
         coverage=write_coverage(folder, results, addresses),
         further=campaign.presentation.sections(
-            {(one.job.robot, one.job.test.name): one.job.test for one in results.played}, addresses
+            {
+                (played.job.robot, played.job.test.name): played.job.test
+                for played in results.played
+            },
+            addresses,
         ),
     )
     write_whole(folder / REPORT, page)
@@ -201,17 +205,17 @@ class _Page:
     shrink: str
 
 
-def _page_of(one: Played, folder: Path, results: Results) -> _Page:
+def _page_of(played: Played, folder: Path, results: Results) -> _Page:
     campaign = results.plan.campaign
-    verdicts = one.outcome.verdicts
+    verdicts = played.outcome.verdicts
     failed = [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
-    others = comparable_jobs(one.job, failed, results.played) if failed else ()
-    fails = bool(one.job.test.removable) and failure_of(one.outcome) is not None
+    others = comparable_jobs(played.job, failed, results.played) if failed else ()
+    fails = bool(played.job.test.removable) and failure_of(played.outcome) is not None
     return _Page(
-        one.job,
-        _command("replay", folder, one.job, campaign),
+        played.job,
+        _command("replay", folder, played.job, campaign),
         tuple(others),
-        _command("shrink", folder, one.job, campaign) if fails else "",
+        _command("shrink", folder, played.job, campaign) if fails else "",
     )
 
 

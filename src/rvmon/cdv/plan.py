@@ -182,25 +182,25 @@ class Results:
     unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
 
-def accepted_failures(one: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
+def accepted_failures(played: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
     """The requirements that may fail in a test, each with the reason."""
     accepted = {
         name: "this test is made to fail it"
-        for name, verdict in one.job.test.expected.items()
+        for name, verdict in played.job.test.expected.items()
         if verdict == Verdict.FAIL.value
     }
     for why in expected:
-        if is_about(why, one):
+        if is_about(why, played):
             accepted.setdefault(why.requirement, why.reason)
     return accepted
 
 
-def is_about(why: ExpectedFailure, one: Played) -> bool:
+def is_about(why: ExpectedFailure, played: Played) -> bool:
     """Whether a failure is expected in a test: on the robot as it is."""
-    test = one.job.test
+    test = played.job.test
     return (
         test.mutation is None
         and why.strategy in ("", test.strategy)
         and why.test in ("", test.name)
-        and why.robot in ("", one.job.robot)
+        and why.robot in ("", played.job.robot)
     )

@@ -133,7 +133,7 @@ class Bench:
             hits |= self._meter.hits()
         found = self._checker.hits(run.end_ns)
         report = self._checker.finish(run.end_ns)
-        illegal = tuple(one.sentence(report.origin) for one in self._checker.illegal(found))
+        illegal = tuple(hit.sentence(report.origin) for hit in self._checker.illegal(found))
         seconds = time.perf_counter() - started
         return Recorded(run, report, samples, {**hits, **found}, illegal, seconds, cpu_s)
 

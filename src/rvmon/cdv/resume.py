@@ -161,7 +161,7 @@ def sources_of(campaign: Campaign) -> list[Path]:
         *campaign.strategies.values(),
         *(robot.system for robot in campaign.robots.values()),
     )
-    modules = {inspect.getmodule(one) for one in makers}
+    modules = {inspect.getmodule(maker) for maker in makers}
     files = {module.__file__ for module in modules if module is not None and module.__file__}
     models = (path for robot in campaign.robots.values() for path in robot.coverage)
     return [*map(Path, campaign.sources), *map(Path, sorted(files)), *map(Path, models)]

@@ -46,7 +46,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         groups = without(measured, unreachable_items(campaign, name, measured)).groups
         texts = _texts(specs.get(name))
         shares = _shares(specs.get(name))
-        played = [one for one in results.played if one.job.robot == name]
+        played = [played for played in results.played if played.job.robot == name]
         by_strategy = _by_strategy(played)
         robots[name] = RobotSummary(
             title=robot.title or name,
@@ -57,17 +57,21 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
                 for strategy, several in by_strategy.items()
             },
             controls={
-                strategy: _counts((one.control or one.outcome for one in several), tuple(texts))
+                strategy: _counts(
+                    (played.control or played.outcome for played in several), tuple(texts)
+                )
                 for strategy, several in by_strategy.items()
-                if any(one.control is not None for one in several)
+                if any(played.control is not None for played in several)
             },
             known=tuple(
-                KnownAnswer(test, one.outcome.verdicts, missed(test.reaches, one.outcome.hits))
-                for one in played
-                if (test := one.job.test).expected or test.reaches
+                KnownAnswer(
+                    test, test_run.outcome.verdicts, missed(test.reaches, test_run.outcome.hits)
+                )
+                for test_run in played
+                if (test := test_run.job.test).expected or test.reaches
             ),
         )
-    outcomes = [one.outcome for one in results.played]
+    outcomes = [played.outcome for played in results.played]
     return CampaignSummary(
         name=campaign.name,
         seed=results.plan.seed,
@@ -76,7 +80,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         finished=len(outcomes),
         cut_short=results.cut_short,
         seconds=results.seconds,
-        simulated_s=sum(one.simulated_s for one in outcomes),
+        simulated_s=sum(outcome.simulated_s for outcome in outcomes),
         figures=_sums(outcomes),
         kind="" if campaign.code is None else campaign.code.kind,
         control="" if campaign.control is None else campaign.control.name,
@@ -100,9 +104,9 @@ def _texts(spec: Spec | None) -> Mapping[str, str]:
 def _by_strategy(played: Sequence[Played]) -> dict[str, list[Played]]:
     """Tests of the robot as it is: a planted fault says nothing about the robot."""
     groups: dict[str, list[Played]] = {}
-    for one in played:
-        if one.job.test.mutation is None:
-            groups.setdefault(one.job.test.strategy, []).append(one)
+    for test_run in played:
+        if test_run.job.test.mutation is None:
+            groups.setdefault(test_run.job.test.strategy, []).append(test_run)
     return groups
 
 
@@ -113,7 +117,7 @@ def _strategy(
     blocks: Sequence[str],
     shares: Mapping[str, RunShare],
 ) -> StrategySummary:
-    outcomes = [one.outcome for one in played]
+    outcomes = [test_run.outcome for test_run in played]
     statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
     branches = {
         block: _coverage(groups[branches_name(block)], outcomes)
@@ -132,7 +136,7 @@ def _strategy(
         },
         errors=_errors(played),
         figures=_sums(outcomes),
-        simulated_s=sum(one.simulated_s for one in outcomes),
+        simulated_s=sum(outcome.simulated_s for outcome in outcomes),
         shares={name: decide(share, _drawn(name, played)) for name, share in shares.items()},
     )
 
@@ -141,34 +145,40 @@ def _shares(spec: Spec | None) -> Mapping[str, RunShare]:
     if spec is None:
         return {}
     requirements = spec.requirements.items()
-    return {name: one.run_share for name, one in requirements if one.run_share is not None}
+    return {
+        name: requirement.run_share
+        for name, requirement in requirements
+        if requirement.run_share is not None
+    }
 
 
 def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
     """The verdicts of tests that do not know theirs beforehand."""
-    for one in played:
-        if requirement not in one.job.test.expected:
-            yield one.outcome.verdicts[requirement]
+    for test_run in played:
+        if requirement not in test_run.job.test.expected:
+            yield test_run.outcome.verdicts[requirement]
 
 
 def _errors(played: Sequence[Played]) -> dict[Ending, dict[str, str]]:
-    found: dict[Ending, dict[str, str]] = {one: {} for one in Ending if one != Ending.COMPLETED}
-    for one in played:
-        if one.outcome.ending in found:
-            found[one.outcome.ending][one.job.test.name] = one.outcome.error or ""
+    found: dict[Ending, dict[str, str]] = {
+        ending: {} for ending in Ending if ending != Ending.COMPLETED
+    }
+    for test_run in played:
+        if test_run.outcome.ending in found:
+            found[test_run.outcome.ending][test_run.job.test.name] = test_run.outcome.error or ""
     return found
 
 
 def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> Mapping[str, Counts]:
     counts = {name: dict.fromkeys(Verdict, 0) for name in requirements}
-    for one in outcomes:
+    for outcome in outcomes:
         for name in requirements:
-            counts[name][one.verdicts[name]] += 1
+            counts[name][outcome.verdicts[name]] += 1
     return counts
 
 
 def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
-    return Counter(item for one in outcomes for item in one.hits.get(group, ()))
+    return Counter(item for outcome in outcomes for item in outcome.hits.get(group, ()))
 
 
 def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
@@ -189,5 +199,5 @@ def _sought(group: Group) -> list[str]:
 
 
 def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
-    names = dict.fromkeys(name for one in outcomes for name in one.figures)
-    return {name: sum(one.figures.get(name, 0) for one in outcomes) for name in names}
+    names = dict.fromkeys(name for outcome in outcomes for name in outcome.figures)
+    return {name: sum(outcome.figures.get(name, 0) for outcome in outcomes) for name in names}

@@ -142,10 +142,10 @@ class Checker:
     def __init__(self, spec: Spec | None, coverages: Sequence[SpecCoverage] = ()) -> None:
         self._monitor = None if spec is None else spec.monitor()
         self._coverages = coverages
-        self._collectors = [one.monitor() for one in coverages]
+        self._collectors = [coverage.monitor() for coverage in coverages]
         takers: list[tuple[CheckedSpec, Callable[[int, Values], object]]] = [
-            (one.spec, taker.step_ns)
-            for one, taker in zip(coverages, self._collectors, strict=True)
+            (coverage.spec, taker.step_ns)
+            for coverage, taker in zip(coverages, self._collectors, strict=True)
         ]
         if spec is not None and self._monitor is not None:
             takers.append((spec.checked, self._monitor.step_ns))
@@ -157,8 +157,8 @@ class Checker:
         """Forget the last test."""
         if self._monitor is not None:
             self._monitor.reset()
-        for one in self._collectors:
-            one.reset()
+        for collector in self._collectors:
+            collector.reset()
 
     def observe(self, t_ns: int, values: Values) -> None:
         """Take one whole sample."""
@@ -176,14 +176,14 @@ class Checker:
     def hits(self, end_ns: int) -> Hits:
         """What a test hit that was observed up to `end_ns`."""
         hits: dict[str, Mapping[str, Hit]] = {}
-        for one in self._collectors:
-            hits |= one.finish_ns(end_ns)
+        for collector in self._collectors:
+            hits |= collector.finish_ns(end_ns)
         return hits
 
     def illegal(self, hits: Hits) -> list[IllegalHit]:
         """What of these hits must not be."""
         return [
             IllegalHit(group.name, item.name, hit.count, hit.first or 0)
-            for one in self._coverages
-            for group, item, hit in illegal(hits, one.bin_model)
+            for coverage in self._coverages
+            for group, item, hit in illegal(hits, coverage.bin_model)
         ]

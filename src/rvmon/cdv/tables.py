@@ -94,10 +94,10 @@ def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
 def named_tables(tables: Mapping[str, RobotTables], control: str) -> dict[str, VerdictTable]:
     """The tables of all robots by a short name, for files of them."""
     named: dict[str, VerdictTable] = {}
-    for robot, one in tables.items():
-        named[robot] = one.own
-        if one.control is not None:
-            named[f"{robot} {control}"] = one.control
+    for robot, table in tables.items():
+        named[robot] = table.own
+        if table.control is not None:
+            named[f"{robot} {control}"] = table.control
     return named
 
 
@@ -115,20 +115,20 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         notes.append(
             f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
         )
-    for strategy, one in figures.strategies.items():
-        for name, decision in one.shares.items():
+    for strategy, strategy_summary in figures.strategies.items():
+        for name, decision in strategy_summary.shares.items():
             result = (
                 f"{decision}, {errors_text(decision)}" if decision.holds is not None else decision
             )
             notes.append(f"{name} {decision.share}: under {strategy} {result}.")
     strategies = figures.strategies.values()
-    if crashed := sum(len(one.errors[Ending.CRASHED]) for one in strategies):
+    if crashed := sum(len(strategy.errors[Ending.CRASHED]) for strategy in strategies):
         notes.append(
             f"The robot's code crashed in {crashed} tests, which were evaluated all the same."
         )
     ends = {Ending.HUNG: "{} hung: {}, and was ended", Ending.LOST: "{} was lost: {}"}
     for ending, text in ends.items():
-        ended = (item for one in strategies for item in one.errors[ending].items())
+        ended = (item for strategy in strategies for item in strategy.errors[ending].items())
         notes += [f"{text.format(*item)}; nothing is known of it." for item in ended]
     return tuple(notes)
 
@@ -147,8 +147,8 @@ def table_document(
         more: further entries.
     """
     robots = {
-        name: _robot_document(one, summary.kind, control_key)
-        for name, one in summary.robots.items()
+        name: _robot_document(robot, summary.kind, control_key)
+        for name, robot in summary.robots.items()
     }
     document: dict[str, object] = {"seed": summary.seed, "robots": robots, **(more or {})}
     if summary.cut_short:
@@ -165,7 +165,7 @@ def _robot_document(robot: RobotSummary, kind: str, control_key: str) -> dict[st
     document: dict[str, object] = {
         "spec": robot.spec,
         "strategies": {
-            name: _strategy_document(one, kind) for name, one in robot.strategies.items()
+            name: _strategy_document(strategy, kind) for name, strategy in robot.strategies.items()
         },
     }
     if robot.controls:
@@ -177,14 +177,14 @@ def _robot_document(robot: RobotSummary, kind: str, control_key: str) -> dict[st
         }
     if robot.known:
         document["known_answers"] = {
-            one.test.name: {
-                "mutation": one.test.mutation,
-                "expected": one.test.expected,
-                "verdicts": one.verdicts,
-                "missed": one.missed,
-                "as_expected": one.as_expected,
+            answer.test.name: {
+                "mutation": answer.test.mutation,
+                "expected": answer.test.expected,
+                "verdicts": answer.verdicts,
+                "missed": answer.missed,
+                "as_expected": answer.as_expected,
             }
-            for one in robot.known
+            for answer in robot.known
         }
     return document
 
@@ -215,15 +215,19 @@ def _strategy_document(figures: StrategySummary, kind: str) -> dict[str, object]
     document: dict[str, object] = {
         "tests": figures.tests,
         "requirements": rows_document(figures.counts),
-        "intervals": {name: _intervals(one) for name, one in figures.counts.items()},
+        "intervals": {name: _intervals(count) for name, count in figures.counts.items()},
     }
     if figures.statements:
         document["statements"] = {
             "percent": figures.total.percent,
-            f"by_{kind}": {name: one.percent for name, one in figures.statements.items()},
+            f"by_{kind}": {
+                name: statement.percent for name, statement in figures.statements.items()
+            },
         }
     if figures.shares:
-        document["shares"] = {name: _share_document(one) for name, one in figures.shares.items()}
+        document["shares"] = {
+            name: _share_document(share) for name, share in figures.shares.items()
+        }
     document["simulated_s"] = round(figures.simulated_s, 3)
     for name, figure in figures.figures.items():
         document.setdefault(name, round(figure, 3))
@@ -255,8 +259,8 @@ def work_done(summary: CampaignSummary) -> str:
 def block_chart(figures: StrategySummary) -> Markup:
     """Tables of one strategy: shares of the blocks, tests that entered states, and went on."""
     blocks = [
-        (name, _share(one), _share(figures.branches.get(name, NOTHING)))
-        for name, one in figures.statements.items()
+        (name, _share(statement), _share(figures.branches.get(name, NOTHING)))
+        for name, statement in figures.statements.items()
     ]
     transitions = [
         (f"{source} → {target}", tests) for (source, target), tests in figures.transitions.items()

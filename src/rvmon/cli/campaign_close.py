@@ -94,9 +94,9 @@ def conduct_closing(
 
 
 def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
-    tests = [one.job.test for one in closed.suite]
+    tests = [played.job.test for played in closed.suite]
     plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
-    seconds = sum(one.outcome.seconds for one in closed.suite)
+    seconds = sum(played.outcome.seconds for played in closed.suite)
     return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.proofs)
 
 

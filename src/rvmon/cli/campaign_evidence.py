@@ -62,7 +62,7 @@ def write_campaign(
     campaign = results.plan.campaign
     if begun(campaign, path) != before:
         raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
-    tests = {_name(one.job): one.job.test for one in results.played}
+    tests = {_name(played.job): played.job.test for played in results.played}
     about = About(
         name=campaign.name,
         packages=package_versions(campaign.packages),
@@ -76,9 +76,9 @@ def write_campaign(
         robot: (
             coverage_model(campaign, robot),
             [
-                one.outcome.hits
-                for one in results.played
-                if one.job.robot == robot and one.job.test.mutation is None
+                played.outcome.hits
+                for played in results.played
+                if played.job.robot == robot and played.job.test.mutation is None
             ],
         )
         for robot in campaign.robots
@@ -91,15 +91,15 @@ def write_campaign(
         "table.json": document_json(table),
         COVERAGE: coverage_json(covered),
     }
-    rows = (row for one in results.played for row in _rows(one.job, one.outcome))
+    rows = (row for played in results.played for row in _rows(played.job, played.outcome))
     write_evidence(path, about, entries, specs, rows)
 
 
 def programs_of(campaign: Campaign) -> dict[str, str]:
     """SHA-256 of the folders and files that outcomes of a campaign depend on, by name."""
     return {
-        one.name if one.is_dir() else f"{one.parent.name}/{one.name}": sha256_of(one)
-        for one in sources_of(campaign)
+        path.name if path.is_dir() else f"{path.parent.name}/{path.name}": sha256_of(path)
+        for path in sources_of(campaign)
     }
 
 

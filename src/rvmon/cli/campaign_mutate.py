@@ -74,10 +74,10 @@ def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
         code = code_mutants(mutated)
         if mutated.equivalent is not None:
             equivalent = equivalents(mutated.equivalent, code)
-        code = [one for one in code if arguments.only in one.identity]
+        code = [mutant for mutant in code if arguments.only in mutant.identity]
     if arguments.of != "code":
         spec = spec_mutants(campaign.requirements_of(robot).checked)
-        spec = [one for one in spec if arguments.only in one.identity]
+        spec = [mutant for mutant in spec if arguments.only in mutant.identity]
     if not code and not spec:
         raise UnknownNameError(f"no mutant has `{arguments.only}` in its name: --list lists all")
     return _Mutants(code, spec, equivalent)

@@ -56,7 +56,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         # The file is named after the test's file: what it says inside is no path.
         name = Path(arguments.test).stem
         write_whole(folder / f"{name}.html", page)
-        lines = [json.dumps({"t_ns": one.t, **one.values}) + "\n" for one in judged[1]]
+        lines = [json.dumps({"t_ns": sample.t, **sample.values}) + "\n" for sample in judged[1]]
         write_whole(folder / f"{name}.jsonl", "".join(lines))
     if arguments.expected:
         wrong = judge_test(

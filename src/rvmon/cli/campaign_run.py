@@ -173,7 +173,7 @@ def written(
     with busy("writing tables"):
         write_tables(folder, summary, tables, campaign.presentation)
         write_tests(folder, results)
-        played = frozenset(one.job.test.strategy for one in results.played)
+        played = frozenset(played.job.test.strategy for played in results.played)
         campaign.presentation.write_more(folder, played)
     witnesses = {test for table in tables.values() for test in table.witnesses.values()}
     examples = choose_examples(results.played, also=witnesses, every=arguments.pages == "all")

@@ -176,7 +176,7 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
         decided = attempt.decided
         if decided is not None:
             # Time alone decides nothing in a recording: something has to come behind.
-            behind = next((one.t for one in recording if one.t >= decided), decided)
+            behind = next((sample.t for sample in recording if sample.t >= decided), decided)
             stop = max(decided + arguments.after, behind)
     start = start if arguments.start is None else arguments.start
     stop = stop if arguments.stop is None else arguments.stop

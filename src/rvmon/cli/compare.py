@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         from rvmon.report.terminal import Terminal
 
         _print(found, Terminal(), None if arguments.all else LISTED)
-    return int(any(one.change.is_loss for one in found.differences))
+    return int(any(difference.change.is_loss for difference in found.differences))
 
 
 def _json(found: Comparison) -> str:
@@ -57,7 +57,7 @@ def _json(found: Comparison) -> str:
 
 
 def _print(found: Comparison, console: Console, most: int | None) -> None:
-    for change, group in groupby(found.differences, key=lambda one: one.change):
+    for change, group in groupby(found.differences, key=lambda difference: difference.change):
         _print_kind(change, list(group), console, most)
     failing = sum(map(len, found.failing.values()))
     for names, where in (
@@ -80,19 +80,20 @@ def _print_kind(
 
     style = "bold red" if change.is_loss else "bold green" if change.is_gain else "bold"
     console.print(Text(f"{len(differences):,} {change.value}:", style=style))
-    for one in differences[:most]:
-        console.print(Text(wrapped(_line(one), console.width)))
+    for difference in differences[:most]:
+        console.print(Text(wrapped(_line(difference), console.width)))
     if most is not None and len(differences) > most:
         console.print(f"  … and {len(differences) - most:,} more: --all lists them", style="dim")
 
 
-def _line(one: Difference) -> str:
+def _line(difference: Difference) -> str:
     from rvmon.report.terminal import in_short
 
-    if one.before is None or one.after is None:
-        cause = in_short(one.reason)
-        return f"{one.recording}: {cause}" if cause else one.recording
-    before, after = one.failures
+    if difference.before is None or difference.after is None:
+        cause = in_short(difference.reason)
+        return f"{difference.recording}: {cause}" if cause else difference.recording
+    before, after = difference.failures
     counts = f" ({before:,} → {after:,} failures)" if max(before, after) > 1 else ""
-    reason = f": {one.reason}" if one.reason and after else ""
-    return f"{one.requirement} in {one.recording}: {one.before} → {one.after}{counts}{reason}"
+    reason = f": {difference.reason}" if difference.reason and after else ""
+    what = f"{difference.requirement} in {difference.recording}"
+    return f"{what}: {difference.before} → {difference.after}{counts}{reason}"

@@ -131,7 +131,7 @@ def _verify(
     size = len(there) if arguments.sample is None else min(arguments.sample, len(there))
     chosen = random.Random(arguments.seed).sample(sorted(there), size)  # noqa: S311 - no secret
     now = rows_by_item(csv_bytes(again(kept, chosen, arguments.jobs)))
-    columns = [one for one in VerdictRow._fields if is_same or one not in ("reason", "error")]
+    columns = [field for field in VerdictRow._fields if is_same or field not in ("reason", "error")]
     for item in chosen:
         differ += _differences(item, kept.items[item], now.get(item, ()), columns)
     say(f"evaluated again: {size:,} of {len(kept.items):,}")
@@ -140,8 +140,8 @@ def _verify(
 def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Each recording with its hash, and how many have been looked at."""
     with bar("recordings", len(recordings)) as show:
-        for count, one in enumerate(recordings.items(), start=1):
-            yield one
+        for count, item in enumerate(recordings.items(), start=1):
+            yield item
             show(count)
 
 
@@ -186,5 +186,5 @@ def _differences(
 
 def _by_attempt(rows: Sequence[Row]) -> dict[str, Row]:
     return {
-        one["attempt"] or one["requirement"] or one["reason"] or one["error"]: one for one in rows
+        row["attempt"] or row["requirement"] or row["reason"] or row["error"]: row for row in rows
     }

@@ -119,16 +119,18 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
 
         from rvmon.export.hoa import automaton_json
 
-        found = [automaton_json(one, spec.checked) for one in chosen]
+        found = [automaton_json(compiled, spec.checked) for compiled in chosen]
         return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
     from rvmon.analysis.graph import graph_dot, graph_of
 
     texts = []
-    for one in chosen:
-        if one.automaton is None:
-            raise RvmonError(f"error: {one.requirement.id} has no automaton: {one.refusal}")
-        graph = graph_of(one, one.automaton, spec.checked)
-        texts.append(graph_dot(graph, one.requirement.id))
+    for compiled in chosen:
+        if compiled.automaton is None:
+            raise RvmonError(
+                f"error: {compiled.requirement.id} has no automaton: {compiled.refusal}"
+            )
+        graph = graph_of(compiled, compiled.automaton, spec.checked)
+        texts.append(graph_dot(graph, compiled.requirement.id))
     return "".join(texts)
 
 
@@ -141,9 +143,9 @@ def _hoa_texts(chosen: Sequence[CompiledRequirement], spec: CheckedSpec) -> str:
     from rvmon.export.hoa import hoa
 
     texts, faults = [], []
-    for one in chosen:
+    for compiled in chosen:
         try:
-            texts.append(hoa(one, spec))
+            texts.append(hoa(compiled, spec))
         except RvmonError as error:
             faults.append(error)
     if not texts:

@@ -100,8 +100,15 @@ def post_analysis(
     until = end if questions else max(values.until, windows.until)
     pieces: Iterable[Batch | Sample] | None = remembered.until(until)
     if pieces is None:
-        asked = {name for one in questions for part in one.formulas for name in names_read(part)}
-        asked |= {one.for_each.value.event for one in questions if one.for_each is not None}
+        asked = {
+            name
+            for question in questions
+            for part in question.formulas
+            for name in names_read(part)
+        }
+        asked |= {
+            question.for_each.value.event for question in questions if question.for_each is not None
+        }
         pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
     noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
     seen = look_through(
@@ -192,8 +199,8 @@ class _Windows:
             found = windows_blamed(spec.checked, requirement, attempt.blame)
             if found and len(found) <= MOST_VALUES:
                 key = attempt.requirement, attempt.number
-                self._asked[key] = [(attempt.decided or 0, one) for one in found]
-        asked = [one for own in self._asked.values() for one in own]
+                self._asked[key] = [(attempt.decided or 0, window) for window in found]
+        asked = [asked for own in self._asked.values() for asked in own]
         self.names: Set[str] = {name for _, window in asked for name in names_in(window)}
         self.until = max((t for t, _ in asked), default=0)
         self._values: Mapping[Asked, Scalar] = {}
@@ -205,7 +212,7 @@ class _Windows:
             return
         from rvmon.analysis.window_values import WindowValues
 
-        asked = [one for own in self._asked.values() for one in own]
+        asked = [asked for own in self._asked.values() for asked in own]
         run = WindowValues(self._spec.checked, asked, self._origin, recording)
         for piece in pieces:
             run.take(piece)
@@ -218,9 +225,9 @@ class _Windows:
 
         for (requirement, number), asked in self._asked.items():
             own = {
-                format_window(one): value_text(value, unit_of(self._spec.checked, one) or "")
-                for t, one in asked
-                if (value := self._values.get((t, one))) is not None
+                format_window(window): value_text(value, unit_of(self._spec.checked, window) or "")
+                for t, window in asked
+                if (value := self._values.get((t, window))) is not None
             }
             yield requirement, number, own
 
@@ -235,11 +242,11 @@ def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
     assert attempt.blame is not None, "only these are asked for"
     requirement = spec.requirements[attempt.requirement]
     measured: set[str] = set()
-    for one in subformulas(requirement.consequent):
-        if isinstance(one, Amount):
-            measured |= {*names_read(one)}
-        elif isinstance(one, Compare):
-            windows = windows_in(one.left, one.right)
+    for subformula in subformulas(requirement.consequent):
+        if isinstance(subformula, Amount):
+            measured |= {*names_read(subformula)}
+        elif isinstance(subformula, Compare):
+            windows = windows_in(subformula.left, subformula.right)
             measured |= {name for window in windows for name in names_in(window)}
     signals = spec.checked.signals
     signals_blamed = {

@@ -67,16 +67,18 @@ def shown_name(path: str) -> str:
     return Path(path).name
 
 
-def as_known(one: Judged, case: Case) -> Judged:
+def as_known(judged: Judged, case: Case) -> Judged:
     """What was judged of a reproducer, with the name that its recording has for people."""
     name = shown_name(case.recording)
-    report = None if one.report is None else replace(one.report, trace=name)
-    return replace(one, trace=name, report=report, error=one.error.replace(case.recording, name))
+    report = None if judged.report is None else replace(judged.report, trace=name)
+    return replace(
+        judged, trace=name, report=report, error=judged.error.replace(case.recording, name)
+    )
 
 
-def compare_expected(one: Judged, case: Case) -> None:
+def compare_expected(judged: Judged, case: Case) -> None:
     """Say whether the attempt has the verdict that it had."""
-    attempts = [] if one.report is None else one.report.attempts
+    attempts = [] if judged.report is None else judged.report.attempts
     found = next((attempt for attempt in attempts if attempt.name == case.attempt), None)
     if found is None or (found.verdict, found.decided) != (case.verdict, case.decided):
         now = "there is none now" if found is None else f"it is {found.verdict} now"

@@ -58,13 +58,13 @@ class Unfinished(journal.Journal):
                 self._add(trace, one)
             yield one
 
-    def _add(self, trace: str, one: Judged) -> None:
+    def _add(self, trace: str, judged: Judged) -> None:
         """Write down what was judged, unless it is to be tried again."""
         stamp = self.stamps[trace]
-        if one.report is None or stamp is None:
+        if judged.report is None or stamp is None:
             return
-        hits = {group: dict(items) for group, items in one.hits.items()}
-        entry = _Entry(trace, stamp, one.report.to_json(), one.missing, hits, one.seconds)
+        hits = {group: dict(items) for group, items in judged.hits.items()}
+        entry = _Entry(trace, stamp, judged.report.to_json(), judged.missing, hits, judged.seconds)
         with writing(self.path):
             self.keep(entry)
 
@@ -99,8 +99,8 @@ def unfinished(
     stamps = {trace: _stamp(trace) for trace in traces}
     known: dict[str, Judged] = {}
     with writing(path):
-        for one in shards:
-            known |= _judged_before(_entries(one, heading), stamps, is_moved=True)
+        for shard in shards:
+            known |= _judged_before(_entries(shard, heading), stamps, is_moved=True)
         entries = _entries(path, heading) if resume else []
         journal.begin(path, [heading, *map(msgspec.json.encode, entries)])
     return Unfinished(path, shards, stamps, known | _judged_before(entries, stamps))
@@ -134,16 +134,20 @@ def _judged_before(
             what it is copied from, and a time of its own; it may be missing.
     """
 
-    def is_same(one: _Entry) -> bool:
-        now = stamps[one.trace]
-        return now == one.stamp or (is_moved and (now is None or now[0] == one.stamp[0]))
+    def is_same(entry: _Entry) -> bool:
+        now = stamps[entry.trace]
+        return now == entry.stamp or (is_moved and (now is None or now[0] == entry.stamp[0]))
 
-    return {one.trace: _judged(one) for one in entries if one.trace in stamps and is_same(one)}
+    return {
+        entry.trace: _judged(entry) for entry in entries if entry.trace in stamps and is_same(entry)
+    }
 
 
-def _judged(one: _Entry) -> Judged:
-    report = Report.from_json(one.report)
-    return Judged(report.trace, report, missing=one.missing, hits=one.hits, seconds=one.seconds)
+def _judged(entry: _Entry) -> Judged:
+    report = Report.from_json(entry.report)
+    return Judged(
+        report.trace, report, missing=entry.missing, hits=entry.hits, seconds=entry.seconds
+    )
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:

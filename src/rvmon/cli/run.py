@@ -148,7 +148,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     known = _known_failures(arguments, spec)
     judged = _judged(arguments, traces, spec, options, case)
     _show(arguments, spec, judged)
-    reports = [one.report for one in judged if one.report is not None]
+    reports = [result.report for result in judged if result.report is not None]
     _show_known(known, reports)
     write_files(arguments, spec, judged, known, given if case else "")
     if before is not None:
@@ -158,7 +158,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     if len(reports) < len(judged):
         return 2
     failed = any(_failed(report, known, strict=arguments.strict) for report in reports)
-    failed |= any(one.missing for one in judged)
+    failed |= any(result.missing for result in judged)
     if arguments.require_triggered is not None:
         silent = _never_triggered(reports, must_trigger)
         for name in silent:
@@ -191,7 +191,7 @@ def _judged(
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
         found = list(judge(spec, traces, options))  # there is nothing to go on with
         if case is not None:
-            found = [as_known(one, case) for one in found]
+            found = [as_known(judged, case) for judged in found]
     else:
         from rvmon.cli.resume import unfinished
 
@@ -288,23 +288,23 @@ def _show_warnings(spec: Spec) -> None:
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
-    for one in judged:
-        if one.error:
-            warn(f"error: {one.error}")
-            for line in _before_lines(one.before):
+    for result in judged:
+        if result.error:
+            warn(f"error: {result.error}")
+            for line in _before_lines(result.before):
                 warn(f"  decided before that: {line}")
-        if one.missing:
-            names = ", ".join(f"`{name}`" for name in one.missing)
-            message = f"{one.trace} has no column for {names}: what reads that is inconclusive"
+        if result.missing:
+            names = ", ".join(f"`{name}`" for name in result.missing)
+            message = f"{result.trace} has no column for {names}: what reads that is inconclusive"
             warn(f"warning: {message}")
     if arguments.format == "json":
         _show_doubts(judged)
-        texts = [_json(one, spec) for one in judged]
+        texts = [_json(result, spec) for result in judged]
         say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
-    reports = [one.report for one in judged if one.report is not None]
+    reports = [result.report for result in judged if result.report is not None]
     print_reports(reports, spec.checked, counts_only=arguments.quiet)
 
 
@@ -319,18 +319,18 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
 
 def _show_doubts(judged: Sequence[Judged]) -> None:
     """Warn of what may not be what it seems, as the text for people does."""
-    for one in judged:
-        for health in () if one.report is None else one.report.health:
+    for result in judged:
+        for health in () if result.report is None else result.report.health:
             if health.is_doubt:
-                warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
+                warn(f"warning: {result.trace}: `{health.name}`: {health.remark}")
 
 
-def _json(one: Judged, spec: Spec) -> str:
-    if one.report is not None:
-        return one.text or one.report.to_json(spec.requirements)
+def _json(judged: Judged, spec: Spec) -> str:
+    if judged.report is not None:
+        return judged.text or judged.report.to_json(spec.requirements)
     from rvmon.verdict.report_json import encode_broken
 
-    return encode_broken(one.trace, one.error, one.before)
+    return encode_broken(judged.trace, judged.error, judged.before)
 
 
 def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:

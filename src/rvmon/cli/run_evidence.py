@@ -86,7 +86,7 @@ def write_run(
         judging=msgspec.structs.replace(how, binding=binding[0] if binding else None),
     )
     if arguments.coverage is not None:
-        covered = (spec.coverage_model.model, [one.hits for one in judged])
+        covered = (spec.coverage_model.model, [result.hits for result in judged])
         entries = {**entries, COVERAGE: coverage_json({"": covered})}
     write_evidence(arguments.evidence, about, entries, {"": spec}, rows_of_judged(judged))
 
@@ -94,6 +94,6 @@ def write_run(
 def rows_of_judged(judged: Sequence[Judged]) -> Iterator[VerdictRow]:
     """The verdicts, and what was hit of coverpoints and must not be."""
     yield from rows_of(judged)
-    for one in judged:
-        for hit in () if one.report is None else one.report.illegal:
-            yield VerdictRow(one.trace, verdict="F", reason=str(hit))
+    for result in judged:
+        for hit in () if result.report is None else result.report.illegal:
+            yield VerdictRow(result.trace, verdict="F", reason=str(hit))

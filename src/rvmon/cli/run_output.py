@@ -38,11 +38,11 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
 
 def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:
     """The verdicts on recordings as rows."""
-    for one in judged:
-        if one.report is not None:
-            yield from one.report.rows()
+    for result in judged:
+        if result.report is not None:
+            yield from result.report.rows()
         else:
-            yield from broken_rows(one.trace, one.error, one.before)
+            yield from broken_rows(result.trace, result.error, result.before)
 
 
 def write_files(
@@ -57,10 +57,10 @@ def write_files(
     Raises:
         RvmonError: a file cannot be written.
     """
-    reports = [one.report for one in judged if one.report is not None]
+    reports = [result.report for result in judged if result.report is not None]
     if arguments.coverage is not None:
         _record_coverage(Path(arguments.coverage), spec, judged, known)
-    broken = [(one.trace, one.error) for one in judged if one.report is None]
+    broken = [(result.trace, result.error) for result in judged if result.report is None]
     if arguments.junit:
         from rvmon.report.junit import junit_xml
 
@@ -79,7 +79,7 @@ def write_files(
 
         for report in reports:
             end = report.end or 0
-            samples = [one for one in read(report.trace) if one.t <= end]
+            samples = [sample for sample in read(report.trace) if sample.t <= end]
             write_verdicts(arguments.mcap, spec.checked, report, samples)
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
@@ -105,16 +105,16 @@ def _record_coverage(
 
     with Database.open(path) as database:
         database.declare(spec.coverage_model.model)
-        for number, one in enumerate(judged):
-            if one.report is not None:
+        for number, result in enumerate(judged):
+            if result.report is not None:
                 test = TestRecord(
-                    one.trace,
+                    result.trace,
                     campaign=spec.checked.name,
-                    recording=one.trace,
-                    verdicts=one.report.verdicts,
+                    recording=result.trace,
+                    verdicts=result.report.verdicts,
                     number=number,
-                    seconds=one.seconds,
-                    expected=known.expected(one.report),
-                    origin=one.report.origin,
+                    seconds=result.seconds,
+                    expected=known.expected(result.report),
+                    origin=result.report.origin,
                 )
-                database.record(test, one.hits)
+                database.record(test, result.hits)

@@ -132,8 +132,8 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
                         say(flush=True)
                 case Extremes():
                     found = list(extremes(asked, query, budget=budget, watch=watch))
-                    failed |= not all(one.exact for one in found)
-                    data["extremes"] += [extreme_data(asked, one) for one in found]
+                    failed |= not all(extreme.exact for extreme in found)
+                    data["extremes"] += [extreme_data(asked, extreme) for extreme in found]
                     if in_words:
                         _print_extremes(asked, found)
                 case _:
@@ -189,24 +189,26 @@ def _print_outcome(network: Network, outcome: Outcome) -> None:
 
 
 def _print_extremes(network: Network, found: Sequence[Extreme]) -> None:
-    _print_query(found[0].query, "answered" if all(one.exact for one in found) else "not decided")
-    for one in found:
-        statistics = one.statistics
-        say(f"    {extreme_text(one)}")
+    _print_query(
+        found[0].query, "answered" if all(extreme.exact for extreme in found) else "not decided"
+    )
+    for extreme in found:
+        statistics = extreme.statistics
+        say(f"    {extreme_text(extreme)}")
         say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s")
-        _print_run(network, one.run, "there" if one.attained else "near it")
+        _print_run(network, extreme.run, "there" if extreme.attained else "near it")
     say(flush=True)
 
 
-def _print_sampled(one: Sampled) -> None:
+def _print_sampled(sampled: Sampled) -> None:
     words = {True: "holds, by a test", False: "does not hold, by a test", None: "simulated"}
-    word = "not decided" if one.margin and one.holds is None else words[one.holds]
-    _print_query(one.query, word)
-    say(f"    {one.value:.4f} of {one.runs:,} simulated runs; ", end="")
-    if one.low is not None:
-        say(f"with {100 * (1 - ERROR):g} % confidence from {one.low:.4f} to {one.high:.4f}")
+    word = "not decided" if sampled.margin and sampled.holds is None else words[sampled.holds]
+    _print_query(sampled.query, word)
+    say(f"    {sampled.value:.4f} of {sampled.runs:,} simulated runs; ", end="")
+    if sampled.low is not None:
+        say(f"with {100 * (1 - ERROR):g} % confidence from {sampled.low:.4f} to {sampled.high:.4f}")
     else:
-        say(f"wrong in {100 * ERROR:g} % of cases, but within {one.margin:g} of the level")
+        say(f"wrong in {100 * ERROR:g} % of cases, but within {sampled.margin:g} of the level")
     say(flush=True)
 
 
@@ -259,15 +261,17 @@ def check_spec(
         known = ", ".join(spec.checked.signals) or "none"
         raise UnknownNameError(f"--bind {name}: no signal of that name is declared: {known}")
     observations = []
-    for one in observe(network, spec.checked, bindings=bindings, budget=budget, watch=watch):
-        observations.append(one)
+    for observation in observe(
+        network, spec.checked, bindings=bindings, budget=budget, watch=watch
+    ):
+        observations.append(observation)
         if arguments.format == "text":
-            _print_observation(one, spec)
+            _print_observation(observation, spec)
     if arguments.format == "json":
         say_json(
             json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2)
         )
-    return int(any(not one.holds for one in observations))
+    return int(any(not observation.holds for observation in observations))
 
 
 def _binding(text: str) -> tuple[str, str]:
@@ -277,30 +281,34 @@ def _binding(text: str) -> tuple[str, str]:
     return name.strip(), value.strip()
 
 
-def _print_observation(one: Observation, spec: Spec) -> None:
+def _print_observation(observation: Observation, spec: Spec) -> None:
     from rvmon.timed.observation.observe import UNDECIDED_IN_THE_END
 
-    word = {True: "holds on all runs", False: "fails on some run", None: ""}[one.holds]
-    if one.remark == UNDECIDED_IN_THE_END:
+    word = {True: "holds on all runs", False: "fails on some run", None: ""}[observation.holds]
+    if observation.remark == UNDECIDED_IN_THE_END:
         word = "holds on all finite runs"
-    say(f"{one.requirement}: {'; '.join(filter(None, (word, one.remark)))}")
-    if one.text:
-        say(f'    "{one.text}"')
-    say(f"    {one.statistics.visited:,} states, {one.statistics.seconds:.2f} s")
-    named = (("triggered", one.triggered), ("passes", one.passing), ("fails", one.failing))
+    say(f"{observation.requirement}: {'; '.join(filter(None, (word, observation.remark)))}")
+    if observation.text:
+        say(f'    "{observation.text}"')
+    say(f"    {observation.statistics.visited:,} states, {observation.statistics.seconds:.2f} s")
+    named = (
+        ("triggered", observation.triggered),
+        ("passes", observation.passing),
+        ("fails", observation.failing),
+    )
     for name, shown in named:
         if shown is None:
             continue
         say(f"    {name}:")
-        for line in run_lines(one.network, shown):
+        for line in run_lines(observation.network, shown):
             say(f"      {line}")
         if name != "triggered":
-            for line in _timeline(one, shown, spec):
+            for line in _timeline(observation, shown, spec):
                 say(f"      {line}")
     say(flush=True)
 
 
-def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
+def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     """What the requirement reads along a run, judged by the monitor that judges recordings."""
     from rvmon.analysis.example import Example
     from rvmon.report.explain_text import picture_of
@@ -310,11 +318,13 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind
 
-    names = concerned_names(spec.requirements[one.requirement])
+    names = concerned_names(spec.requirements[observation.requirement])
     declared = spec.checked.signals
     truths = {name for name, signal in declared.items() if signal.type.kind is Kind.BOOL}
-    signals = {name: read for name, read in signals_of(one.network).items() if name in declared}
-    recorded, end = recording_of(one.network, shown, signals)
+    signals = {
+        name: read for name, read in signals_of(observation.network).items() if name in declared
+    }
+    recorded, end = recording_of(observation.network, shown, signals)
     samples: list[Sample] = []
     last: dict[str, object] = {}
     for record in recorded:
@@ -326,7 +336,7 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
         last.update(values)
         if values or not samples:
             samples.append(Sample(record.t, values))
-    monitor = spec.monitor(only=[one.requirement])
+    monitor = spec.monitor(only=[observation.requirement])
     for record in samples:
         monitor.step_ns(record.t, record.values)
     if shown.steps and shown.steps[-1].action is None:
@@ -334,7 +344,7 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     monitor.advance_ns(end + 1)
     report = monitor.finish_ns(end)
     example = Example(
-        tuple(samples), end, {one.requirement: report.verdicts[one.requirement]},
+        tuple(samples), end, {observation.requirement: report.verdicts[observation.requirement]},
         tuple(report.attempts),
     )  # fmt: skip
     return [line.plain for line in picture_of(example, spec.checked, names)]

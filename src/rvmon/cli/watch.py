@@ -121,9 +121,11 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"--{name} does not apply to {arguments.source}: {instead}")
     live = watch(arguments, spec, shown)
     shown.ended(live)
-    verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
+    verdicts = [
+        verdict for status in live.status().values() for verdict in status.verdicts.values()
+    ]
     unseen = live.turned_away or any(
-        one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts
+        verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE) for verdict in verdicts
     )
     return int(unseen)
 

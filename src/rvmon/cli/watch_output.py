@@ -152,7 +152,7 @@ class View(Output):
 
     def show(self, driver: Driver) -> None:
         """Show how it stands, no longer than the terminal is high."""
-        lines = sum(-(-len(one) // self._screen.console.width) for one in self._failures)
+        lines = sum(-(-len(failure) // self._screen.console.width) for failure in self._failures)
         height = max(1, self._screen.console.height - lines - 1)
         self._screen.update(self._drawn(driver, height), refresh=True)
 
@@ -195,15 +195,15 @@ def tables(driver: Driver, height: int | None = None) -> RenderableType:
         height: so many lines there are; what finds none is counted. `None`: all requirements.
     """
     found = driver.status(most_open=_MOST_OPEN)
-    robots = sorted(found.values(), key=lambda one: _need(fold(one.verdicts.values())))
+    robots = sorted(found.values(), key=lambda status: _need(fold(status.verdicts.values())))
     requirements = len(driver.spec.requirements)
     most, rows = _SHOWN_ROBOTS, requirements
     if height is not None:
         most = max(1, min(_SHOWN_ROBOTS, height // (_FRAME + min(requirements, _FEW))))
         rows = max(1, height // max(1, min(most, len(robots))) - _FRAME)
-    more = [fold(one.verdicts.values()) for one in robots[most:]]
+    more = [fold(robot.verdicts.values()) for robot in robots[most:]]
     return Group(
-        *(_table(one, driver.spec, rows, is_cut=height is not None) for one in robots[:most]),
+        *(_table(robot, driver.spec, rows, is_cut=height is not None) for robot in robots[:most]),
         *_rest(more, "robots"),
         *([] if robots else ["nothing has come yet"]),
     )
@@ -216,7 +216,9 @@ def _need(verdict: Verdict) -> int:
 
 def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
     counts = Counter(verdicts)
-    listed = ", ".join(f"{counts[one]} {one.value}" for one in Verdict if counts[one])
+    listed = ", ".join(
+        f"{counts[verdict]} {verdict.value}" for verdict in Verdict if counts[verdict]
+    )
     return [f"… and {len(verdicts)} more {of}: {listed}"] if verdicts else []
 
 
@@ -229,9 +231,11 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
         table.add_column(column, no_wrap=True)
     table.add_column("requirement", style="dim")
     until: dict[str, int] = {}
-    for one in status.open:
-        if one.deadline is not None:
-            until[one.requirement] = min(until.get(one.requirement, one.deadline), one.deadline)
+    for attempt in status.open:
+        if attempt.deadline is not None:
+            until[attempt.requirement] = min(
+                until.get(attempt.requirement, attempt.deadline), attempt.deadline
+            )
     names = [*status.verdicts]
     if len(names) > rows:
         rows = max(1, rows - 1)  # one line counts the rest
@@ -322,7 +326,7 @@ def watch_kept(
         warn("ended; the run goes on with --state")
     # Also what earlier processes of the run lost; what it goes on to is not known yet.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
-    lost = [one for one in at_end.health if one.kind in _LOSSES and one.requirements]
+    lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):
         warn(f"{names}: {fact}")
     return int(bool(lost) or Verdict.FAIL in monitor.monitor.verdicts.values())

@@ -128,14 +128,14 @@ def _window_values(
     if not windows:
         return {}
     instants = sorted({attempt.triggered, attempt.decided})
-    asked = [(t, one) for one in windows for t in instants]
+    asked = [(t, window) for window in windows for t in instants]
     run = WindowValues(checked, asked, report.origin, Trace((), names, report.end, samples.outages))
     for piece in samples.pieces:
         run.take(piece)
     values = run.values()
     return {
-        format_window(one): [
-            value_text(values.get((t, one)), unit_of(checked, one) or "") for t in instants
+        format_window(window): [
+            value_text(values.get((t, window)), unit_of(checked, window) or "") for t in instants
         ]
-        for one in windows
+        for window in windows
     }

@@ -240,7 +240,11 @@ def _clip_bag(
     """
     is_latched, declared, writer = made
     with bag_errors(form), bag_readers()[form](path) as reader, writer:
-        latched = {(one.topic, one.id) for one in reader.connections if is_latched(one)}
+        latched = {
+            (connection.topic, connection.id)
+            for connection in reader.connections
+            if is_latched(connection)
+        }
         # All, in their order: by it messages of one instant are read again, and a topic without
         # messages is there all the same. Publishers that are distinguished by nothing are one.
         alike: dict[Any, Any] = {}
@@ -255,7 +259,11 @@ def _clip_bag(
             connections[one.id] = alike[key]
 
         def read(topics: Collection[str] | None, start: int, stop: int) -> Iterator[_Raw]:
-            wanted = [one for one in reader.connections if topics is None or one.topic in topics]
+            wanted = [
+                connection
+                for connection in reader.connections
+                if topics is None or connection.topic in topics
+            ]
             for connection, t, data in reader.messages(wanted, start, stop) if wanted else ():
                 yield connection.topic, connection.id, t, (connection, data)
 

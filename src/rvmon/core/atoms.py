@@ -94,15 +94,17 @@ class Names:
 
     def __init__(self, plan: Plan, numbering: Numbering) -> None:
         each = [rule.requirement.for_each for rule in plan.rules]
-        self.key = next((one.value for one in each if one is not None), None)
+        self.key = next((for_each.value for for_each in each if for_each is not None), None)
         read = {*plan.uses, *([] if self.key is None else [self.key.event])}
         self.signals = numbered([name for name in plan.signals if name in read])
         self.events = numbered([name for name in plan.events if name in read])
         captured = [name for rule in plan.rules for name in rule.captured]
         self.captured = numbered(captured)
         self.constants = plan.constants
-        measured = [one.amount for one in plan.graph.nodes if isinstance(one.amount, WindowValue)]
-        self.windows = {one: place for place, one in enumerate(dict.fromkeys(measured))}
+        measured = [
+            node.amount for node in plan.graph.nodes if isinstance(node.amount, WindowValue)
+        ]
+        self.windows = {fromkey: place for place, fromkey in enumerate(dict.fromkeys(measured))}
         self.numbering = numbering
         self._spec = plan.spec
 

@@ -98,7 +98,7 @@ def _add(
         operands: Sequence[int] = (),
         values: Sequence[int] = (0, 0, 0),
     ) -> None:
-        bounded = (max(-_FARTHEST, min(one, _FARTHEST)) for one in ticks)
+        bounded = (max(-_FARTHEST, min(tick, _FARTHEST)) for tick in ticks)
         listed = sections.listed(operands)
         how = kind, turned, kept, left, right
         sections.add(Section.OPERATORS, *bounded, *how, *listed, *values)
@@ -197,7 +197,7 @@ def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requir
 
 def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement) -> bool:
     """Whether a comparison is between labels, which have no distance."""
-    values = {one.name: one.value for one in requirement.captures}
+    values = {capture.name: capture.value for capture in requirement.captures}
     each = requirement.for_each
     if each is not None:
         values[each.name] = each.value

@@ -256,7 +256,9 @@ class Unit:
         found = _REPLAYS if replays else 0
         found |= _FRESH if fresh else 0
         found |= _FORGETS if fresh and reach is not None and reach.begins else 0
-        reads_now = any(isinstance(one.value, NowValue) for one in self._requirement.captures)
+        reads_now = any(
+            isinstance(capture.value, NowValue) for capture in self._requirement.captures
+        )
         found |= _CAPTURES_NOW if reads_now else 0
         return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
 

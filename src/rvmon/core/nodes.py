@@ -295,9 +295,9 @@ def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
 def _needed(plan: Plan) -> frozenset[int]:
     """The nodes needed once every signal is born and every trigger was TRUE or FALSE."""
     states = [state for _, rule in plan.judges for state in _asked(rule, plan)]
-    states += (one.proposition for core in plan.truths for one in literals(core))
+    states += (literal.proposition for core in plan.truths for literal in literals(core))
     states += (watch.state for watch in plan.watches)
-    determined = {one.determined for one in plan.rules if one.determined is not None}
+    determined = {rule.determined for rule in plan.rules if rule.determined is not None}
     return lasting(plan.graph, states, determined)
 
 

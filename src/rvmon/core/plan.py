@@ -225,13 +225,13 @@ class Part:
     @property
     def _captured(self) -> list[Numeric]:
         """The expressions captured by `let`."""
-        return [one.value for rule in self._plan.rules for one in rule.requirement.captures]
+        return [capture.value for rule in self._plan.rules for capture in rule.requirement.captures]
 
     def _add_events(self) -> int:
         """Add the events; returns how many fields they have."""
         plan, sections = self._plan, self._sections
         readers = self._readers(len(self.names.events), lambda atom: atom.occurrences)
-        compared = [one.leaf for one in plan.graph.nodes if isinstance(one.leaf, Compare)]
+        compared = [node.leaf for node in plan.graph.nodes if isinstance(node.leaf, Compare)]
         sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
         with_fields = events_of(*sides, *self._captured)
         key = self.names.key
@@ -266,7 +266,7 @@ class Part:
         for event in events_of(*self._captured):
             if event != each.value.event:
                 fields.pop(event, None)
-        return {event: self.names.field(event, one.field) for event, one in fields.items()}
+        return {event: self.names.field(event, field.field) for event, field in fields.items()}
 
 
 def pack(plan: Plan) -> Packed:

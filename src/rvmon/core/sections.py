@@ -64,7 +64,9 @@ class Numbering:
         types = [signal.type for signal in spec.signals.values()]
         for event in spec.events.values():
             types += event.fields.values()
-        self.labels = numbered(list(dict.fromkeys(one for type_ in types for one in type_.labels)))
+        self.labels = numbered(
+            list(dict.fromkeys(label for type_ in types for label in type_.labels))
+        )
 
 
 def numbered(names: Sequence[str]) -> dict[str, int]:

@@ -86,7 +86,7 @@ class Model:
     def goals_of(self, group: str) -> list[tuple[str, str]]:
         """The goals of a group, as names of group and item; none if there is no such group."""
         items = self.groups[group].items if group in self.groups else {}
-        return [(group, one.name) for one in items.values() if one.kind is BinKind.GOAL]
+        return [(group, item.name) for item in items.values() if item.kind is BinKind.GOAL]
 
 
 def combination(bins: Sequence[str]) -> str:
@@ -124,7 +124,7 @@ def model_of(groups: Sequence[Group]) -> Model:
     """
     named = {group.name: group for group in groups}
     if len(named) < len(groups):
-        double = next(one.name for one in groups if named[one.name] is not one)
+        double = next(group.name for group in groups if named[group.name] is not group)
         raise ValueError(f"two groups of one name: `{double}`")
     return Model(named)
 

@@ -200,7 +200,7 @@ class SpecCoverage:
         source = Source(recording, end, is_cut=True)
         watched = _Watched(self, requirements=requirements)
         runs = [
-            RecordingRun(self.spec, one, source, finds=False) for one in watched.planned.values()
+            RecordingRun(self.spec, core, source, finds=False) for core in watched.planned.values()
         ]
         for piece in source.pieces():
             for run in runs:

@@ -134,7 +134,7 @@ def edge_name(step: tuple[str, str]) -> str:
 
 def _steps(graph: Graph) -> Iterator[tuple[str, str]]:
     """The edges of an automaton without self-loops, which are not always evaluated."""
-    return ((one.source, one.target) for one in graph.edges if one.source != one.target)
+    return ((edge.source, edge.target) for edge in graph.edges if edge.source != edge.target)
 
 
 class WatchedRequirement:
@@ -159,21 +159,25 @@ class WatchedRequirement:
         """Its coverage groups: itself, and the locations and edges of its automaton."""
         name = self.requirement.id
         items = [_item(TRIGGERED), _item(PASSED)]
-        items += [_item(decides(one.part), by_failure=one.by_failure) for one in self.variants]
+        items += [
+            _item(decides(variant.part), by_failure=variant.by_failure) for variant in self.variants
+        ]
         if self.deadline is not None:
             items += map(_item, (JUST_BEFORE, AT, AFTER))
         title = self.requirement.text
         yield group_of(name, Subject.REQUIREMENT, items, title=title)
         if self.graph is not None:
             edges: dict[str, list[str]] = {}
-            for one in self.graph.edges:
-                if one.source != one.target:
-                    upon = " at ".join(part for part in (one.condition, one.when) if part)
-                    edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
+            for edge in self.graph.edges:
+                if edge.source != edge.target:
+                    upon = " at ".join(part for part in (edge.condition, edge.when) if part)
+                    edges.setdefault(edge_name((edge.source, edge.target)), []).append(upon)
             # An unbounded `always` passes only at the end of the run: no edge leads to `P`.
-            entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
+            entered = {self.graph.places[0].name, *(edge.target for edge in self.graph.edges)}
             required = [
-                _item(one.name, one.required) for one in self.graph.places if one.name in entered
+                _item(place.name, place.required)
+                for place in self.graph.places
+                if place.name in entered
             ]
             yield group_of(locations_of(name), Subject.STATES, required, title=title)
             steps = [_item(step, "; or ".join(upon)) for step, upon in edges.items()]
@@ -199,11 +203,14 @@ class WatchedRequirements:
         self._goals = goals_as_requirements(spec).requirements
         self._own = CompiledSpec(plain, is_kept=True)
         self._watched = {
-            name: WatchedRequirement(one) for name, one in self._own.requirements.items()
+            name: WatchedRequirement(requirement)
+            for name, requirement in self._own.requirements.items()
         }
         self._variants = {
             # Backticks keep the ids of variants distinct from those of requirements and goals.
-            name: {f"`{name}` {number}": one for number, one in enumerate(watched.variants, 1)}
+            name: {
+                f"`{name}` {number}": variant for number, variant in enumerate(watched.variants, 1)
+            }
             for name, watched in self._watched.items()
         }
         others: dict[str, Requirement] = {
@@ -214,15 +221,19 @@ class WatchedRequirements:
         self._others = CompiledSpec(
             replace(plain, requirements={**others, **self._goals}), is_kept=True
         )
-        self.groups = [group for one in self._watched.values() for group in one.groups]
+        self.groups = [
+            group for requirement in self._watched.values() for group in requirement.groups
+        ]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
     @cached_property
     def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
         """The plans of the runs: one of the requirements, one of variants and cover goals."""
-        traced = {name for name, one in self._watched.items() if one.graph is not None}
-        specs = [one for one in (self._own, self._others) if one.checked.requirements]
-        return {one: planned_core(one, traced=traced) for one in specs}
+        traced = {
+            name for name, requirement in self._watched.items() if requirement.graph is not None
+        }
+        specs = [spec for spec in (self._own, self._others) if spec.checked.requirements]
+        return {spec: planned_core(spec, traced=traced) for spec in specs}
 
     def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
         """The hits by group, of finished runs."""
@@ -241,7 +252,7 @@ class WatchedRequirements:
             if watched.graph is not None:
                 yield from _passages(watched.graph, name, passages[name])
         for name in self._goals:
-            shown = [one for one in attempts[name] if one.verdict is Verdict.PASS]
+            shown = [judged for judged in attempts[name] if judged.verdict is Verdict.PASS]
             yield name, dict(_hit(SHOWN, map(_instant, shown)))
 
 
@@ -257,8 +268,8 @@ def _hit(item: str, instants: Iterable[int]) -> dict[str, Hit]:
 
 def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[tuple[str, Hit]]:
     """The hits of the items on triggers, passes and deadlines."""
-    yield from _hit(TRIGGERED, [one.triggered for one in attempts]).items()
-    passed = [one for one in attempts if one.verdict is Verdict.PASS]
+    yield from _hit(TRIGGERED, [attempt.triggered for attempt in attempts]).items()
+    passed = [attempt for attempt in attempts if attempt.verdict is Verdict.PASS]
     yield from _hit(PASSED, [_instant(one) for one in passed]).items()
     if deadline is None:
         return
@@ -270,7 +281,7 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
     near = [at for at, left in waited if 0 < left <= deadline / TENTH]
     yield from _hit(JUST_BEFORE, near).items()
     yield from _hit(AT, [at for at, left in waited if left == 0]).items()
-    failed = [one for one in attempts if one.verdict is Verdict.FAIL]
+    failed = [attempt for attempt in attempts if attempt.verdict is Verdict.FAIL]
     late = [_instant(one) for one in failed if _instant(one) - one.triggered > deadline]
     yield from _hit(AFTER, late).items()
 
@@ -278,7 +289,7 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
 def _apart(own: Iterable[Judged], others: Iterable[Judged]) -> list[int]:
     """The instants of attempts in which two requirements differ in existence or decision."""
     first, second = (
-        {(one.triggered, one.decided, one.verdict): _instant(one) for one in some}
+        {(judged.triggered, judged.decided, judged.verdict): _instant(judged) for judged in some}
         for some in (own, others)
     )
     return [
@@ -310,7 +321,7 @@ def _passages(
         if source != target:
             _add(left, step[0], hit)
     locations = {
-        place: Hit(max(one.count for one in hits), min(one.first or 0 for one in hits))
+        place: Hit(max(hit.count for hit in hits), min(hit.first or 0 for hit in hits))
         for place in (came | left)
         if (hits := [own[place] for own in (came, left) if place in own])
     }

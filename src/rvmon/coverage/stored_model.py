@@ -73,8 +73,8 @@ def model_from(stored: Stored) -> Model:
     for name in sorted(stored, key=lambda name: (stored[name].position, name)):
         group = stored[name]
         items = {
-            item: Item(item, one.kind, one.goal, one.text)
-            for item, one in sorted(
+            item: Item(item, stored_item.kind, stored_item.goal, stored_item.text)
+            for item, stored_item in sorted(
                 group.items.items(), key=lambda named: (named[1].position, named[0])
             )
         }
@@ -160,8 +160,15 @@ def write_groups(
             "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (owner, name) DO UPDATE SET "
             "position = min(position, excluded.position), text = max(text, excluded.text)",
             (
-                (number, item, one.kind, one.goal, one.position, one.text)
-                for item, one in group.items.items()
+                (
+                    number,
+                    item,
+                    stored_item.kind,
+                    stored_item.goal,
+                    stored_item.position,
+                    stored_item.text,
+                )
+                for item, stored_item in group.items.items()
             ),
         )
 
@@ -170,9 +177,11 @@ def _refuse_nonsense(name: str, group: StoredGroup) -> None:
     """Raise `ValueError` if a weight or goal is invalid."""
     if group.weight < 0:
         raise ValueError(f"group `{name}` has weight {group.weight}: give at least 0")
-    for item, one in group.items.items():
-        if one.goal < 1:
-            raise ValueError(f"item `{item}` of `{name}` has goal {one.goal}: give at least 1")
+    for item, stored_item in group.items.items():
+        if stored_item.goal < 1:
+            raise ValueError(
+                f"item `{item}` of `{name}` has goal {stored_item.goal}: give at least 1"
+            )
 
 
 def _refuse_conflict(
@@ -189,12 +198,12 @@ def _refuse_conflict(
                 f"error: {name_of(path)}: group `{name}` {what} {after} here, {before} in "
                 f"what it is added to: {fix}"
             )
-    for item, one in other.items.items():
+    for item, stored_item in other.items.items():
         known = own.items.get(item)
-        if known is not None and (known.kind, known.goal) != (one.kind, one.goal):
+        if known is not None and (known.kind, known.goal) != (stored_item.kind, stored_item.goal):
             raise CoverageError(
                 f"error: {name_of(path)}: item `{item}` of group `{name}` is "
-                f"{_meaning(one)} here, {_meaning(known)} in what it is added to: {fix}"
+                f"{_meaning(stored_item)} here, {_meaning(known)} in what it is added to: {fix}"
             )
 
 

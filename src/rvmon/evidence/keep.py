@@ -186,8 +186,8 @@ def sha256_of(path: Path, *more: Path) -> str:
     if path.is_file():
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
-    files = [Path(one) for one in files_within(str(path))]
-    lines = sorted(f"{sha256_of(one)}  {one.relative_to(path).as_posix()}\n" for one in files)
+    files = [Path(entry) for entry in files_within(str(path))]
+    lines = sorted(f"{sha256_of(file)}  {file.relative_to(path).as_posix()}\n" for file in files)
     return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
@@ -201,9 +201,9 @@ def package_versions(further: Iterable[str] = ()) -> dict[str, str]:
     """The versions of the packages that rvmon can make use of, and of further ones."""
     needs: list[str] = []
     with suppress(PackageNotFoundError):
-        needs = [one for one in requires("rvmon") or () if "'dev'" not in one]
+        needs = [require for require in requires("rvmon") or () if "'dev'" not in require]
     found: dict[str, str] = {}
-    for name in sorted({re.split(r"[^\w.-]", one)[0] for one in needs} | {*further}):
+    for name in sorted({re.split(r"[^\w.-]", need)[0] for need in needs} | {*further}):
         with suppress(PackageNotFoundError):
             found[name] = version(name)
     return found

@@ -102,7 +102,7 @@ def trace_matrix(
         for item, rows in other.items():
             hits = [row["reason"] for row in rows if row["verdict"]]
             matrix += [Traced(robot, "illegal", "", "", item, "F", hit) for hit in hits]
-    return [one._replace(planted_fault=planted.get(one.by, "")) for one in matrix]
+    return [traced._replace(planted_fault=planted.get(traced.by, "")) for traced in matrix]
 
 
 def _folded(rows: Sequence[Row], is_broken: bool, first: Row) -> tuple[str, str]:
@@ -130,7 +130,7 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
         sections.setdefault(robot, []).append(_row(list(rows)))
     known = [(name, fact) for name, fact in facts.items() if fact]
     counted = "Recordings, or tests"
-    if any(one.planted_fault for one in matrix):
+    if any(traced.planted_fault for traced in matrix):
         counted += ", without a planted fault"
     page = render("matrix.html", title=title, facts=known, sections=sections, counted=counted)
     return page.encode("utf-8")
@@ -154,23 +154,23 @@ class _Row(NamedTuple):
 
 
 def _row(rows: Sequence[Traced]) -> _Row:
-    own = [one for one in rows if one.by and not one.planted_fault]
+    own = [traced for traced in rows if traced.by and not traced.planted_fault]
     found = {verdict: [one for one in own if one.verdict == verdict] for verdict in MARKS}
     lists = [
         _list(f"{mark.sign} {mark.word}", found[verdict], is_open=verdict is Verdict.FAIL)
         for verdict, mark in MARKS.items()
     ]
     lists.append(_list("not evaluated", [one for one in own if not one.verdict], is_open=True))
-    lists.append(_list("with a planted fault", [one for one in rows if one.planted_fault]))
+    lists.append(_list("with a planted fault", [traced for traced in rows if traced.planted_fault]))
     counts = [(verdict, len(some)) for verdict, some in found.items()]
     return _Row(rows[0], counts, [one for one in lists if one.size])
 
 
 def _list(heading: str, found: Sequence[Traced], *, is_open: bool = False) -> _Lines:
-    return _Lines(heading, len(found), [_line(one) for one in found[:LISTED]], is_open)
+    return _Lines(heading, len(found), [_line(traced) for traced in found[:LISTED]], is_open)
 
 
-def _line(one: Traced) -> str:
-    fault = f"{one.planted_fault}, {one.verdict}" if one.planted_fault else ""
-    name = one.by.removeprefix(f"{one.robot}/") if one.robot else one.by
-    return ": ".join(part for part in (name, fault, in_short(one.reason)) if part)
+def _line(traced: Traced) -> str:
+    fault = f"{traced.planted_fault}, {traced.verdict}" if traced.planted_fault else ""
+    name = traced.by.removeprefix(f"{traced.robot}/") if traced.robot else traced.by
+    return ": ".join(part for part in (name, fault, in_short(traced.reason)) if part)

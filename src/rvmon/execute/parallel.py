@@ -151,7 +151,9 @@ class _Pool:
                 yield pickle.loads(result)  # noqa: S301 - from a process that was begun here
                 number += 1
                 continue
-            busy: dict[Any, _Worker] = {one.connection: one for one in self._workers if one.tasks}
+            busy: dict[Any, _Worker] = {
+                worker.connection: worker for worker in self._workers if worker.tasks
+            }
             if not busy:
                 return
             answered = wait(busy, self._patience(busy.values()))
@@ -162,7 +164,7 @@ class _Pool:
 
     def _share(self) -> None:
         """Give tasks to all workers that have none; if there are more, to further ones."""
-        resting = [one for one in self._workers if not one.tasks]
+        resting = [worker for worker in self._workers if not worker.tasks]
         while resting or len(self._workers) < self._jobs:
             chunk = list(islice(self._left(), resting[-1].size if resting else 1))
             if not chunk:

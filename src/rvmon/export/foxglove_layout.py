@@ -174,9 +174,15 @@ def _numbers(
         if name in names and signal.type.kind in _NUMBERS:
             unit = f" [{signal.type.unit}]" if signal.type.unit else ""
             yield _path("signals", name, "value", f"{name}{unit}")
-            found = dict.fromkeys(one for each in judged for one in thresholds(each, name))
-            for one in found:
-                yield {"value": str(one.value), "label": f"{name} {one.op} {one.value:g}", **_SHOWN}
+            found = dict.fromkeys(
+                threshold for each in judged for threshold in thresholds(each, name)
+            )
+            for threshold in found:
+                yield {
+                    "value": str(threshold.value),
+                    "label": f"{name} {threshold.op} {threshold.value:g}",
+                    **_SHOWN,
+                }
 
 
 _SHOWN = {"enabled": True, "timestampMethod": "receiveTime"}

@@ -107,7 +107,9 @@ class _Machine:
     ) -> None:
         self.automaton, self.letters = automaton, letters
         self.edges = [self._edges(index, can_be) for index in range(len(automaton.locations))]
-        found = (compiled.forecaster.of(one.residual, (), None) for one in automaton.locations)
+        found = (
+            compiled.forecaster.of(location.residual, (), None) for location in automaton.locations
+        )
         self.words = [{True: "P", False: "F", None: "?"}[end] for end in found]
         while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._ahead(at, e))}:
             for index, word in ahead.items():

@@ -196,8 +196,8 @@ def _formula(names: Names, formula: QueryFormula) -> str:
         case Extremes(ends, where, terms):
             word = "bounds" if len(ends) > 1 else "sup" if ends[0] else "inf"
             listed = ", ".join(
-                names.expression(one.value) if one.clock is None else names.clock(one.clock)
-                for one in terms
+                names.expression(term.value) if term.clock is None else names.clock(term.clock)
+                for term in terms
             )
             return f"{word}{{{names.expression(where)}}}: {listed}"
         case _:

@@ -101,11 +101,15 @@ def write_verdicts(
         RvmonError: a file cannot be written, or an instant is before 1970.
     """
     recorded = list(samples)
-    instants = [one.t for one in recorded[:1]] or [one.triggered for one in report.attempts]
+    instants = [sample.t for sample in recorded[:1]] or [
+        attempt.triggered for attempt in report.attempts
+    ]
     begin = min(instants, default=report.end or 0)
     if begin < 0:
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
-    names = {name for one in report.verdicts for name in concerned_names(spec.requirements[one])}
+    names = {
+        name for verdict in report.verdicts for name in concerned_names(spec.requirements[verdict])
+    }
     states = sorted(_states(report, begin), key=itemgetter(0))
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
     values = _values(spec, recorded, names)
@@ -146,10 +150,10 @@ def _states(report: Report, begin: int) -> Iterator[_Message]:
     """What each requirement is: at the beginning, and whenever that changes."""
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
-    for one in report.attempts:
-        own = changes.setdefault(one.requirement, {})
-        own.setdefault(one.triggered, []).append((1, None))
-        own.setdefault(_settled(one, end), []).append((-1, one.verdict))
+    for attempt in report.attempts:
+        own = changes.setdefault(attempt.requirement, {})
+        own.setdefault(attempt.triggered, []).append((1, None))
+        own.setdefault(_settled(attempt, end), []).append((-1, attempt.verdict))
     for name in report.verdicts:
         still_open, last, counts = 0, Verdict.NOT_TRIGGERED, Counter[Verdict]()
         for t, steps in sorted({begin: [], **changes.get(name, {})}.items()):
@@ -176,22 +180,22 @@ def _settled(attempt: Attempt, end: int) -> int:
 def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
     """An entry of the log for each attempt, when it was decided."""
     found: list[_Message] = []
-    for one in report.attempts:
-        span = spec.requirements[one.requirement].span
-        t = _settled(one, report.end or 0)
+    for attempt in report.attempts:
+        span = spec.requirements[attempt.requirement].span
+        t = _settled(attempt, report.end or 0)
         content = {
             "timestamp": seconds_and_rest(t),
-            "level": _LEVELS[one.verdict],
-            "message": f"{one.verdict} {one.reason}".rstrip(),
-            "name": one.name,
+            "level": _LEVELS[attempt.verdict],
+            "message": f"{attempt.verdict} {attempt.reason}".rstrip(),
+            "name": attempt.name,
             "file": "" if span is None else span.source.name,
             "line": 0 if span is None else span.line,
-            "verdict": one.verdict.value,
-            "reason": one.reason,
-            "triggered": one.triggered,
+            "verdict": attempt.verdict.value,
+            "reason": attempt.reason,
+            "triggered": attempt.triggered,
         }
-        if one.decided is not None:
-            content["decided"] = one.decided
+        if attempt.decided is not None:
+            content["decided"] = attempt.decided
         found.append((t, ATTEMPTS, content))
     return sorted(found, key=itemgetter(0))
 

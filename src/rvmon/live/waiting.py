@@ -140,9 +140,9 @@ class Waiting:
     def take(self, most: int) -> list[Entry]:
         """Remove the oldest entries, at most `most`."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
-        for one in taken:
-            if isinstance(one, Dropped) and self._losing.get(one.robot) is one:
-                del self._losing[one.robot]
+        for dropped in taken:
+            if isinstance(dropped, Dropped) and self._losing.get(dropped.robot) is dropped:
+                del self._losing[dropped.robot]
         return taken
 
 

@@ -109,11 +109,11 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
         left, top = root.left, root.right
         right = nodes[top]
         if isinstance(right, Junction):
-            inner = [one for one in right.operands if not _ends(plan, left, one)]
+            inner = [operand for operand in right.operands if not _ends(plan, left, operand)]
             if right.every or len(inner) != 1 or len(right.operands) != 2:
                 return None
             top = inner[0]
-            excused = next(one for one in right.operands if one != top)
+            excused = next(operand for operand in right.operands if operand != top)
         elif not isinstance(end.core, Constant):
             return None  # `p R φ` requires φ also at the position where p ends it
     windows: list[Window] = []

@@ -99,7 +99,7 @@ def with_new_clock(ages: Ages) -> Ages:
 def projected(ages: Ages, clocks: Sequence[int]) -> Ages:
     """The zone of some clocks, in this order; clocks are numbered from 0, −1 is the last."""
     places = [0, *(range(1, len(ages))[clock] for clock in clocks)]
-    return tuple(tuple(ages[one][other] for other in places) for one in places)
+    return tuple(tuple(ages[place][other] for other in places) for place in places)
 
 
 def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:

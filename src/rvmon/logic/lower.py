@@ -102,8 +102,10 @@ def lower(
     begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
     truth_reader = begin(measured=False).reader if measured else lowering.reader
-    of_windows = [itself(one.value) for one in requirement.captures if windows_in(one.value)]
-    captures_known = tuple(truth_reader.four(one).read(UNKNOWN) for one in of_windows)
+    of_windows = [
+        itself(capture.value) for capture in requirement.captures if windows_in(capture.value)
+    ]
+    captures_known = tuple(truth_reader.four(window).read(UNKNOWN) for window in of_windows)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             required = lowering.core(requirement.consequent, True)

@@ -181,8 +181,12 @@ class Plan:
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:
         """The rules, then the judges of their attempts in doubt, each with its rule's number."""
         rules = [*enumerate(self.rules)]
-        beside = [(owner, one) for owner, rule in rules for one in (rule.hidden, rule.doubted)]
-        return rules + [(owner, one) for owner, one in beside if one is not None]
+        beside = [
+            (owner, planned_rule)
+            for owner, rule in rules
+            for planned_rule in (rule.hidden, rule.doubted)
+        ]
+        return rules + [(owner, rule) for owner, rule in beside if rule is not None]
 
     @property
     def judged(self) -> tuple[PlannedRule, ...]:
@@ -193,7 +197,7 @@ class Plan:
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     """The plan of requirements in one part: state formulas shared, uses of the input collected."""
     states = (state for rule in rules for state in rule.states)
-    captured = [one.value for rule in rules for one in rule.requirement.captures]
+    captured = [capture.value for rule in rules for capture in rule.requirement.captures]
     return replace(_shared(spec, states, captured), rules=tuple(rules), asked=tuple(rules))
 
 
@@ -211,7 +215,7 @@ def plan_of_truths(
     spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
 ) -> Plan:
     """A plan without requirements that evaluates formulas; `captured` values are constants."""
-    read = dict.fromkeys(one.proposition for core in formulas for one in literals(core))
+    read = dict.fromkeys(literal.proposition for core in formulas for literal in literals(core))
     return replace(_shared(spec, read), truths=tuple(formulas), constants=captured)
 
 
@@ -237,7 +241,7 @@ def _uses_of(graph: Graph, captured: Iterable[Numeric]) -> dict[str, Uses]:
         for name, places in graph.by_name.items()
     }
     amounts = (node.amount for node in graph.nodes)
-    windows = (one.value for one in amounts if isinstance(one, WindowValue))
+    windows = (amount.value for amount in amounts if isinstance(amount, WindowValue))
     # The value of a window is no leaf of the graph, so its names have to be added.
     for expression in (*captured, *(value for value in windows if value is not None)):
         for name in inputs_of(expression):

@@ -206,15 +206,15 @@ def _rows_without(draft: _DraftLocation, clock: int, cut: int) -> dict[Regions, 
     return made
 
 
-def _merged_row(one: Row, other: Row) -> Row | None:
+def _merged_row(row: Row, other: Row) -> Row | None:
     """A row that replaces both; `None` if they differ. An unreachable entry matches any edge."""
-    if one == other:
-        return one
-    if one[1:] != other[1:]:
+    if row == other:
+        return row
+    if row[1:] != other[1:]:
         return None
     edges = []
-    for mine, its in zip(one[0], other[0], strict=True):
+    for mine, its in zip(row[0], other[0], strict=True):
         if mine is not its and mine is not None and its is not None and mine != its:
             return None
         edges.append(its if mine is None else mine)
-    return (tuple(edges), *one[1:])
+    return (tuple(edges), *row[1:])

@@ -85,7 +85,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
         return right
     if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
         raise TooManyClausesError
-    made = _reduced(frozenset(_conjunction(one | other) for one in left for other in right))
+    made = _reduced(frozenset(_conjunction(clause | other) for clause in left for other in right))
     if limit is not None and len(made) > limit:
         raise TooManyClausesError
     return made

@@ -172,7 +172,11 @@ def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State])
     """
     settled: list[int | None] = []
     for state, operands in zip(graph.nodes, graph.operands, strict=True):
-        known = TRUE if state in determined else _settled(state, [settled[one] for one in operands])
+        known = (
+            TRUE
+            if state in determined
+            else _settled(state, [settled[operand] for operand in operands])
+        )
         settled.append(known)
     places = (graph.index[state] for state in roots)
     stack = [place for place in places if settled[place] is None]
@@ -187,7 +191,7 @@ def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State])
 
 def _settled(state: State, operands: Sequence[int | None]) -> int | None:
     """The constant truth value of a node from then on; `None` if it goes on changing."""
-    known = [one for one in operands if one is not None]
+    known = [operand for operand in operands if operand is not None]
     match state.op:
         case StateOp.LEAF:
             if isinstance(state.leaf, Constant):
@@ -326,8 +330,9 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, Fi
             continue
         parents = {one for place in leaves.keys() - fields for one in graph.parents[place]}
         alone = roots.intersection(leaves.keys() - fields) or any(
-            graph.nodes[one].op is not StateOp.AND or fields.keys().isdisjoint(graph.operands[one])
-            for one in parents
+            graph.nodes[parent].op is not StateOp.AND
+            or fields.keys().isdisjoint(graph.operands[parent])
+            for parent in parents
         )
         if not alone:
             found[name] = next(iter(fields.values()))
@@ -375,9 +380,9 @@ def _occurs(state: State, event: str) -> bool:
             return False
     match state.op:
         case StateOp.AND:
-            return any(_occurs(one, event) for one in state.args)
+            return any(_occurs(arg, event) for arg in state.args)
         case StateOp.OR:
-            return all(_occurs(one, event) for one in state.args)
+            return all(_occurs(arg, event) for arg in state.args)
         case StateOp.SURE | StateOp.DOUBT:
             return _occurs(state.args[0], event)
         case _:

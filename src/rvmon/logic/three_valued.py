@@ -136,7 +136,10 @@ class Reader(Reading[Four]):
         factory, leaf = self.factory, without_spans(formula)
         parts = [part for side in (leaf.left, leaf.right) for part in operands(side)]
         known = [itself(part) for part in parts if isinstance(part, Read)]
-        states, asked = [self.four(one).read(UNKNOWN) for one in known], [*map(self._unborn, known)]
+        states, asked = (
+            [self.four(comparison).read(UNKNOWN) for comparison in known],
+            [*map(self._unborn, known)],
+        )
         for window in windows_in(leaf.left, leaf.right):
             own = (self._truth_reader.four(part).read(FALSE) for part in window.operands)
             states.append(factory.window(window, *own))

@@ -49,7 +49,7 @@ class CompiledSpec:
     def chosen(self, only: Collection[str] | None) -> Sequence[CompiledRequirement]:
         """The requirements with these ids (`None`: all), in the order of the file."""
         wanted = self.requirements.keys() if only is None else frozenset(only)
-        return [one for name, one in self.requirements.items() if name in wanted]
+        return [requirement for name, requirement in self.requirements.items() if name in wanted]
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Only the checked specification is pickled; the other process compiles it again.

@@ -268,5 +268,7 @@ class RecordedMargins:
 
     def margins(self) -> Margins:
         """All figures collected."""
-        streams = {self._ids[number]: one.stream() for number, one in self._positions.items()}
+        streams = {
+            self._ids[number]: position.stream() for number, position in self._positions.items()
+        }
         return Margins(self._attempts, self._doubtful, streams)

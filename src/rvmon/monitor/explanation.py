@@ -128,15 +128,15 @@ def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
     """The names that have had no value so far, except those that `doubt` mentions already."""
-    named = set() if doubt is None else {one.name for one in doubt.outages}
+    named = set() if doubt is None else {outage.name for outage in doubt.outages}
     found = (outages[name] for name in sorted(set(names) & outages.keys() - named))
-    return tuple(one for one in found if one.why is HealthKind.MISSING)
+    return tuple(outage for outage in found if outage.why is HealthKind.MISSING)
 
 
 def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
     """The clauses for signals that have had no value so far; `end` as for `still_required`."""
     ended = "" if end is not None else " so far"
-    return "".join(f"; {outage_in_words(one, origin)}{ended}" for one in outages)
+    return "".join(f"; {outage_in_words(outage, origin)}{ended}" for outage in outages)
 
 
 def longer(required: Core, triggered: int, end: int | None) -> str:

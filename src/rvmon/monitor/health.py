@@ -97,9 +97,9 @@ class HealthLog:
         for number, count, at in run.stale():
             ids = readers.get(names[number], ())
             found.append(Health(HealthKind.STALE, names[number], count, at, ids))
-        for one in further:
-            ids = one.requirements or readers.get(one.name, ())
-            found.append(replace(one, requirements=ids))
+        for health in further:
+            ids = health.requirements or readers.get(health.name, ())
+            found.append(replace(health, requirements=ids))
         return tuple(sorted(found, key=lambda entry: (entry.name, entry.kind)))
 
 
@@ -142,9 +142,9 @@ class Findings:
             if row is not None:
                 self._arrived(name, int(times[row]))
         columns = dict(batch.signals)
-        for event, one in batch.events.items():
-            columns |= {f"{event}.{field}": cells for field, cells in one.fields.items()}
-            self._add(HealthKind.NONE, event, event, one.unknown_at(times))
+        for event, occurrences in batch.events.items():
+            columns |= {f"{event}.{field}": cells for field, cells in occurrences.fields.items()}
+            self._add(HealthKind.NONE, event, event, occurrences.unknown_at(times))
         for shown, cells in columns.items():
             is_signal = shown in batch.signals
             name = shown if is_signal else shown.rpartition(".")[0]

@@ -289,14 +289,14 @@ class Monitor(FedMonitor[Attempt]):
     def _open_counts(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         found = () if self._report is not None else self._core.open()
         if most is None:
-            return Counter(one.requirement for one in found), found
+            return Counter(attempt.requirement for attempt in found), found
         oldest: dict[object, Attempt] = {}
-        for one in found:
-            each = self._planned.instance(one)
-            if each not in oldest or one.triggered < oldest[each].triggered:
-                oldest[each] = one
-        chosen = nsmallest(most, oldest.values(), key=lambda one: one.triggered)
-        return Counter(one.requirement for one in found), chosen
+        for attempt in found:
+            each = self._planned.instance(attempt)
+            if each not in oldest or attempt.triggered < oldest[each].triggered:
+                oldest[each] = attempt
+        chosen = nsmallest(most, oldest.values(), key=lambda attempt: attempt.triggered)
+        return Counter(attempt.requirement for attempt in found), chosen
 
     @property
     def next_due(self) -> int | None:
@@ -349,7 +349,7 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
     document = document_of(compiled, data)
     try:
         sources = document["sources"]
-        if sources is not None and not all(isinstance(one, str) for one in sources):
+        if sources is not None and not all(isinstance(source, str) for source in sources):
             raise TypeError("names are texts")
         monitor = build_monitor(
             compiled,

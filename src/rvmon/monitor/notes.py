@@ -257,7 +257,7 @@ class NoteExplainer:
         runs = self._networks if flags & _NETWORK else self._machines
         judged, worse, better, at = runs(note, at)
         outages = self._outages(words[at:])
-        known = {one.name: one for one in outages if one.until is None}
+        known = {outage.name: outage for outage in outages if outage.until is None}
         doubt = self._doubt(attempt.origin, words[4], leaves, outages)
         names = frozenset().union(*self._reads)
         return judged, Undecided(
@@ -318,10 +318,10 @@ class NoteExplainer:
         if position == NEVER:
             return None
         lost = {
-            one.name: one
-            for one in outages
-            if one.why in (HealthKind.MISSING, HealthKind.ABSENT) or one.since <= position
-            if one.until is None or one.until > position
+            outage.name: outage
+            for outage in outages
+            if outage.why in (HealthKind.MISSING, HealthKind.ABSENT) or outage.since <= position
+            if outage.until is None or outage.until > position
         }
         found: dict[str, Outage] = {}
         texts = []
@@ -363,13 +363,13 @@ class NotesReader:
         """By requirement, the explainers of its part, by number of the judge."""
         gap = self._compiled.checked.gap
         chosen = self._compiled.chosen(self._ids)
-        parts = [[one for one in chosen if not _is_apart(one)]]
-        parts += [[one] for one in chosen if _is_apart(one)]
+        parts = [[compiled for compiled in chosen if not _is_apart(compiled)]]
+        parts += [[compiled] for compiled in chosen if _is_apart(compiled)]
         found: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
-            judges = [*part, *(beside for one in part for beside in _doubt_judges(one))]
-            explainers = [NoteExplainer(one, gap) for one in judges]
-            found |= {one.requirement.id: explainers for one in part}
+            judges = [*part, *(beside for compiled in part for beside in _doubt_judges(compiled))]
+            explainers = [NoteExplainer(judge, gap) for judge in judges]
+            found |= {compiled.requirement.id: explainers for compiled in part}
         return found
 
     def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
@@ -377,11 +377,11 @@ class NotesReader:
         return self._explainers[attempt.requirement][note.judge].details(attempt, note, name)
 
 
-def _is_apart(one: CompiledRequirement) -> bool:
-    return bool(one.requirement.captures) or one.requirement.for_each is not None
+def _is_apart(compiled: CompiledRequirement) -> bool:
+    return bool(compiled.requirement.captures) or compiled.requirement.for_each is not None
 
 
-def _doubt_judges(one: CompiledRequirement) -> Sequence[CompiledRequirement]:
+def _doubt_judges(compiled: CompiledRequirement) -> Sequence[CompiledRequirement]:
     """The judges of its attempts in doubt, in the order of the plan."""
-    doubted = one.doubted if one.requirement.for_each is not None else None
-    return [beside for beside in (one.hidden, doubted) if beside is not None]
+    doubted = compiled.doubted if compiled.requirement.for_each is not None else None
+    return [beside for beside in (compiled.hidden, doubted) if beside is not None]

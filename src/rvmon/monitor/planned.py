@@ -264,7 +264,9 @@ def planned_core(
         RvmonError: a requirement is beyond the core.
     """
     spec = compiled.checked
-    ids = tuple(one for one in spec.requirements if only is None or one in only)
+    ids = tuple(
+        requirement for requirement in spec.requirements if only is None or requirement in only
+    )
     how = ids, tuple(one for one in ids if one in traced), measured
     key = "core", *how
     found = compiled.forms.get(key)
@@ -284,11 +286,11 @@ def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
     """Pack a plan; `chosen` are its requirements."""
     from rvmon.core.plan import pack
 
-    single = frozenset().union(*(one.single_payloads for one in chosen))
+    single = frozenset().union(*(compiled.single_payloads for compiled in chosen))
     readers: dict[str, tuple[str, ...]] = {}
-    for one in chosen:
-        for name in one.reads:
-            readers[name] = (*readers.get(name, ()), one.requirement.id)
+    for compiled in chosen:
+        for name in compiled.reads:
+            readers[name] = (*readers.get(name, ()), compiled.requirement.id)
     return Kept(pack(plan).data, single, readers)
 
 

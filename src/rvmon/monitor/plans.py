@@ -18,37 +18,37 @@ from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.spec.checked.names_read import requirements_asked
 
 
-def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
+def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
     """A requirement as the core judges it, with its automaton if it has one."""
-    required, alphabet, automaton = one.obligation.required, one.alphabet, one.shaped
-    if measured and one.counts_alone:
+    required, alphabet, automaton = compiled.obligation.required, compiled.alphabet, compiled.shaped
+    if measured and compiled.counts_alone:
         required, alphabet, automaton = _nothing_required()
-    obligation = one.obligation
-    doubted = one.doubted if one.requirement.for_each is not None else None
-    captures = bool(one.requirement.captures)
+    obligation = compiled.obligation
+    doubted = compiled.doubted if compiled.requirement.for_each is not None else None
+    captures = bool(compiled.requirement.captures)
 
     def beside(other: CompiledRequirement | None) -> PlannedRule | None:
         if other is None:
             return None
         return planned_rule(other, measured=measured)
 
-    figured = one.measured_required if measured else None
-    read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
+    figured = compiled.measured_required if measured else None
+    read = [] if figured is None else [core for _, core in network_of(figured, compiled.gap).leaves]
     return PlannedRule(
-        one.requirement,
+        compiled.requirement,
         obligation.trigger,
         required,
         alphabet,
         automaton,
-        one.in_runs(automaton),
+        compiled.in_runs(automaton),
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
-        hidden=beside(one.hidden),
-        noted=() if measured else tuple(leaf for leaf, _ in one.leaves),
+        hidden=beside(compiled.hidden),
+        noted=() if measured else tuple(leaf for leaf, _ in compiled.leaves),
         doubted=beside(doubted),
         running=obligation.running if captures else None,
-        blurs=_blurs(one) if captures else None,
+        blurs=_blurs(compiled) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         captures_known=obligation.captures_known,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
@@ -56,10 +56,10 @@ def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> Planned
     )
 
 
-def _traced(one: CompiledRequirement) -> PlannedRule:
+def _traced(compiled: CompiledRequirement) -> PlannedRule:
     """A requirement judged by the automaton shown to users, whose edges coverage counts."""
-    rule, automaton = planned_rule(one), one.automaton
-    in_runs = one.in_runs(automaton)
+    rule, automaton = planned_rule(compiled), compiled.automaton
+    in_runs = compiled.in_runs(automaton)
     return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
 
 
@@ -79,11 +79,11 @@ def _nothing_required() -> tuple[Core, Alphabet, Automaton]:
     return required, alphabet, construct(factory.next(required), alphabet, Budget())
 
 
-def _blurs(one: CompiledRequirement) -> State | None:
+def _blurs(compiled: CompiledRequirement) -> State | None:
     """A state that is UNKNOWN where an attempt may have begun with other captured values."""
-    obligation = one.obligation
+    obligation = compiled.obligation
     # An ordinary `upon` attempt begins at a single, certain position.
-    return obligation.doubt or (None if one.beside is None else obligation.trigger)
+    return obligation.doubt or (None if compiled.beside is None else obligation.trigger)
 
 
 def plan_alone(
@@ -109,8 +109,10 @@ def plan_alone(
     """
     ids = requirements_asked(compiled.checked, only)
     rules = [
-        _traced(one) if one.requirement.id in traced else planned_rule(one, measured=measured)
-        for one in compiled.chosen(ids)
+        _traced(requirement)
+        if requirement.requirement.id in traced
+        else planned_rule(requirement, measured=measured)
+        for requirement in compiled.chosen(ids)
     ]
     if stepped:
         rules = [_stepped(rule) for rule in rules]

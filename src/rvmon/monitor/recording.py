@@ -86,7 +86,8 @@ class RecordingRun:
         self._cut = source.until if source.is_cut else None
         self._losses = Losses(checked, planned, self.core, None)
         stretches = [
-            self._losses.lose(one.names, one.since, one.until, one.why) for one in source.outages
+            self._losses.lose(outage.names, outage.since, outage.until, outage.why)
+            for outage in source.outages
         ]
         turns = [(_turns_at(turn, own[0].t), turn) for own in stretches for turn in own]
         self._turns = [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
@@ -165,24 +166,24 @@ class RecordingRun:
                 number = planned.numbers[name]
                 kind = planned.packed.signals[name]
                 found.append((number, _cells(cells, kind, planned.words[number])))
-            for name, one in batch.events.items():
-                says = np.ascontiguousarray(one.says)
-                found.append((planned.numbers[name], says, self._fields(name, one)))
+            for name, event in batch.events.items():
+                says = np.ascontiguousarray(event.says)
+                found.append((planned.numbers[name], says, self._fields(name, event)))
         except KeyError:
             return None
         return tuple(found)
 
-    def _fields(self, event: str, one: Occurrences) -> tuple[Any, ...] | None:
+    def _fields(self, event: str, occurrences: Occurrences) -> tuple[Any, ...] | None:
         """The fields of an event as columns; `None` if it has no column."""
-        if not one.fields:
+        if not occurrences.fields:
             return None
         found: list[tuple[Any, ...]] = []
         for place, ((of, field), kind) in enumerate(self._planned.packed.fields.items()):
             if of == event:
-                cells = one.fields.get(field)
+                cells = occurrences.fields.get(field)
                 words = self._planned.words[len(self._planned.numbers) + place]
                 if cells is None:
-                    nothing = np.full(len(one.says), NO_UPDATE, np.uint8)
+                    nothing = np.full(len(occurrences.says), NO_UPDATE, np.uint8)
                     found.append((_LAYOUTS[kind], None, nothing))
                 else:
                     found.append(_cells(cells, kind, words))

@@ -219,7 +219,9 @@ def report_of_run(
     order = _order(made)
     return Report(
         verdicts={
-            name: fold([one for one, count in own.items() if count], complete=complete[name])
+            name: fold(
+                [verdict for verdict, count in own.items() if count], complete=complete[name]
+            )
             for name, own in counts.items()
         },
         attempts=RecordedAttempts(
@@ -248,11 +250,14 @@ def _dropped(
         minlength=len(ids) * len(VERDICTS),
     ).reshape(-1, len(VERDICTS))
     dropped = {
-        name: {one: count - there[row, VERDICTS.index(one)].item() for one, count in own.items()}
+        name: {
+            verdict: count - there[row, VERDICTS.index(verdict)].item()
+            for verdict, count in own.items()
+        }
         for row, (name, own) in enumerate(counts.items())
     }
     return {
-        name: {one: count for one, count in own.items() if count}
+        name: {verdict: count for verdict, count in own.items() if count}
         for name, own in dropped.items()
         if any(own.values())
     }

@@ -87,7 +87,7 @@ class TruthsRun:
         self._run.finish()
         truths = self._run.core.truths
         return [
-            Known(*(np.frombuffer(one, np.int64).reshape(-1, 2) for one in truths(place)))
+            Known(*(np.frombuffer(truth, np.int64).reshape(-1, 2) for truth in truths(place)))
             for place in self._plan.places
         ]
 

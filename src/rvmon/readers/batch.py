@@ -93,19 +93,19 @@ class Occurrences:
     def with_payload(self) -> NDArray[np.bool_]:
         """Whether it comes with a payload, bool[n]."""
         found = np.zeros(len(self.says), np.bool_)
-        for one in self.fields.values():
-            found |= np.True_ if one.says is None else one.says != NO_UPDATE
+        for cells in self.fields.values():
+            found |= np.True_ if cells.says is None else cells.says != NO_UPDATE
         found &= self.says == YES
         return found
 
     def cut(self, start: int, stop: int) -> Occurrences:
         """Some of the rows."""
-        fields = {name: one.cut(start, stop) for name, one in self.fields.items()}
+        fields = {name: cells.cut(start, stop) for name, cells in self.fields.items()}
         return Occurrences(self.says[start:stop], fields)
 
     def spread(self, rows: NDArray[np.intp], count: int) -> Occurrences:
         """As `Cells.spread`."""
-        fields = {name: one.spread(rows, count) for name, one in self.fields.items()}
+        fields = {name: cells.spread(rows, count) for name, cells in self.fields.items()}
         return Occurrences(_spread(self.says, rows, count), fields)
 
     def unknown_at(self, times: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -116,8 +116,8 @@ class Occurrences:
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
         """As `Cells.of_rows`."""
         payloads: list[dict[str, Any]] = [{} for _ in range(start, stop)]
-        for name, one in self.fields.items():
-            for payload, value in zip(payloads, one.of_rows(start, stop), strict=True):
+        for name, cells in self.fields.items():
+            for payload, value in zip(payloads, cells.of_rows(start, stop), strict=True):
                 if value is not _NOTHING:
                     payload[name] = value
         for said, payload in zip(self.says[start:stop].tolist(), payloads, strict=True):
@@ -157,8 +157,8 @@ class Batch:
         """Some of the rows."""
         return Batch(
             self.times[start:stop],
-            {name: one.cut(start, stop) for name, one in self.signals.items()},
-            {name: one.cut(start, stop) for name, one in self.events.items()},
+            {name: signal.cut(start, stop) for name, signal in self.signals.items()},
+            {name: event.cut(start, stop) for name, event in self.events.items()},
             self.first + start,
             None if self.lines is None else self.lines[start:stop],
         )
@@ -187,8 +187,8 @@ class Batch:
 
     def without(self, names: Set[str]) -> Batch:
         """The rows with nothing of some names."""
-        signals = {name: one for name, one in self.signals.items() if name not in names}
-        events = {name: one for name, one in self.events.items() if name not in names}
+        signals = {name: signal for name, signal in self.signals.items() if name not in names}
+        events = {name: event for name, event in self.events.items() if name not in names}
         return replace(self, signals=signals, events=events)
 
     def up_to(self, until: int | None) -> Batch:
@@ -204,17 +204,17 @@ def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
     Returns:
         `None` if a name is in two of them, or an instant twice in one: these are merged as samples.
     """
-    names = [name for one in batches for name in (*one.signals, *one.events)]
-    is_twice = any((one.times[1:] == one.times[:-1]).any() for one in batches)
+    names = [name for batch in batches for name in (*batch.signals, *batch.events)]
+    is_twice = any((batch.times[1:] == batch.times[:-1]).any() for batch in batches)
     if is_twice or len(names) > len({*names}):
         return None
-    times = np.unique(np.concatenate([one.times for one in batches]))
+    times = np.unique(np.concatenate([batch.times for batch in batches]))
     signals: dict[str, Cells] = {}
     events: dict[str, Occurrences] = {}
-    for one in batches:
-        rows = times.searchsorted(one.times)
-        signals |= {name: cells.spread(rows, len(times)) for name, cells in one.signals.items()}
-        events |= {name: own.spread(rows, len(times)) for name, own in one.events.items()}
+    for batch in batches:
+        rows = times.searchsorted(batch.times)
+        signals |= {name: cells.spread(rows, len(times)) for name, cells in batch.signals.items()}
+        events |= {name: own.spread(rows, len(times)) for name, own in batch.events.items()}
     return Batch(times, signals, events, first)
 
 
@@ -265,13 +265,13 @@ def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -
             _note_conflicts(batch, name, cells, conflicts)
         said = last_said(batch, cells) if some_again else _said(cells)
         _note(alternations, name, unknown_in(cells), said, len(batch.times))
-    for name, one in batch.events.items():
-        bare = one.says != NO_UPDATE
-        for path, cells in one.fields.items():
+    for name, event in batch.events.items():
+        bare = event.says != NO_UPDATE
+        for path, cells in event.fields.items():
             said = _said(cells)
             bare &= cells.says == NO_UPDATE if cells.says is not None else np.False_
             _note(alternations, f"{name}.{path}", unknown_in(cells), said, len(batch.times))
-        _note(alternations, name, one.says == UNKNOWN, bare, len(batch.times))
+        _note(alternations, name, event.says == UNKNOWN, bare, len(batch.times))
 
 
 def _note(

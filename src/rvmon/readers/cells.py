@@ -47,7 +47,7 @@ def batch_of(
 
     `first`, `lines` and `is_last` are those of `Batch`.
     """
-    signals = {one.name: columns[one] for one in layout.signals}
+    signals = {signal.name: columns[signal] for signal in layout.signals}
     payloads: dict[str, dict[str, Cells]] = {}
     own: dict[str, Cells] = {}
     for column in layout.events:
@@ -59,7 +59,7 @@ def batch_of(
     events = {}
     for name, fields in payloads.items():
         says = _occurrences(own.get(name), fields.values(), len(times))
-        heard = {field: _where(one, says != NO) for field, one in fields.items()}
+        heard = {field: _where(cells, says != NO) for field, cells in fields.items()}
         events[name] = Occurrences(says, heard)
     return Batch(times, signals, events, first, lines, is_last)
 
@@ -80,8 +80,8 @@ def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDAr
         says = np.where(own.values, np.uint8(YES), np.uint8(NO))
         if own.says is not None:
             says = np.where(own.says == YES, says, own.says)
-    for one in fields:
-        given = np.True_ if one.says is None else one.says != NO_UPDATE
+    for field in fields:
+        given = np.True_ if field.says is None else field.says != NO_UPDATE
         says = np.where(given & (says != NO), np.uint8(YES), says)
     return says
 

@@ -258,14 +258,14 @@ def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
     try:
         times = instants(columns[layout.stamps.column], layout.stamps)
         cells = {
-            one: cells_of_column(
-                one.called, columns[layout.header[one.index]], one.kind, layout.gaps
+            column: cells_of_column(
+                column.called, columns[layout.header[column.index]], column.kind, layout.gaps
             )
-            for one in layout.columns
+            for column in layout.columns
         }
     except TraceError:
         raise NotPlainError("a column is none") from None
-    if any(len(one.values) != len(times) for one in cells.values()):
+    if any(len(cell.values) != len(times) for cell in cells.values()):
         raise NotPlainError("its columns are not equally long")
     return batch_of(times, layout, cells)
 

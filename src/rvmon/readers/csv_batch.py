@@ -115,7 +115,7 @@ class _Reader:
         for place, column in enumerate(layout.columns, 1):
             slots[column.index] = place
         self._slots = np.array(slots, np.int32)
-        kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[one.kind] for one in layout.columns)]
+        kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[column.kind] for column in layout.columns)]
         self._kinds = np.array(kinds, np.int32)
         no_update = layout.gaps.no_update
         self._absent = None if no_update is None else str(no_update).encode()

@@ -61,7 +61,9 @@ class Layout:
     @property
     def names_read(self) -> list[str]:
         """The names in the header of the time column and of those that the spec reads."""
-        return [self.header[place] for place in (self.time, *(one.index for one in self.columns))]
+        return [
+            self.header[place] for place in (self.time, *(column.index for column in self.columns))
+        ]
 
     @property
     def names(self) -> frozenset[str]:
@@ -245,10 +247,10 @@ def unended(
             raise TraceError(f"line {line}: {error}; the file ends here: was it cut off?") from None
         last = len(row) - 1
         lost = frozenset(
-            one.name
-            for one in layout.columns
+            column.name
+            for column in layout.columns
             if layout.time == last
-            or (one.index == last and (one.kind is not Kind.BOOL or not row[last]))
+            or (column.index == last and (column.kind is not Kind.BOOL or not row[last]))
         )
         for name in sorted(lost & ignoring):
             raise TraceError(

@@ -41,7 +41,7 @@ class CsvText(Generic[_Found]):
         self.is_whole = len(first) < places.BLOCK
         self._stretches = stretches(first, file)
         self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
-        self._read = ((one, None) for one in self._stretches)
+        self._read = ((stretch, None) for stretch in self._stretches)
         self.rest, self.found = next(self._read)
         self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
         self.line = 0

@@ -25,7 +25,7 @@ class HeldRecording(Sequence[Sample]):
 
     def __len__(self) -> int:
         """How many rows there are, of which some may be of one sample."""
-        return sum(1 if isinstance(one, Sample) else len(one.times) for one in self.pieces)
+        return sum(1 if isinstance(piece, Sample) else len(piece.times) for piece in self.pieces)
 
     def __iter__(self) -> Iterator[Sample]:
         """The samples."""
@@ -45,8 +45,8 @@ class HeldRecording(Sequence[Sample]):
         Args:
             names: all that a recording without names may lose.
         """
-        waiting = deque(sorted(self.outages, key=lambda one: one.since))
-        turns = sorted({t for one in waiting for t in (one.since, one.until)})
+        waiting = deque(sorted(self.outages, key=lambda outage: outage.since))
+        turns = sorted({t for outage in waiting for t in (outage.since, outage.until)})
         lasting: list[tuple[int, Set[str]]] = []
         for piece in self.pieces:
             for part in _parts(piece, turns):

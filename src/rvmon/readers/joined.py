@@ -89,7 +89,7 @@ class Joined:
         self.end = max(ends) if len(ends) == len(files) else None
         self.unread = [column for file in files for column in file.unread]
         self.ignored = sum((file.ignored for file in files), Counter[str]())
-        self.outages = sorted(_outages_of(files), key=lambda one: one.since)
+        self.outages = sorted(_outages_of(files), key=lambda outage: outage.since)
 
     def blocks(self) -> Iterator[Batch | list[Row]]:
         """The rows in order of time: as columns what lies between the ends of batches of files.
@@ -100,22 +100,22 @@ class Joined:
         from rvmon.readers.batch import outer_join
 
         number = 1
-        heads = [one for one in map(_Head, self._files) if one.is_there]
+        heads = [head for head in map(_Head, self._files) if head.is_there]
         while heads:
-            until = min(one.last for one in heads)
-            before = [own for one in heads if (own := one.take_before(until)) is not None]
-            count = sum(len(one.times) for one in before)
+            until = min(head.last for head in heads)
+            before = [own for head in heads if (own := head.take_before(until)) is not None]
+            count = sum(len(batch.times) for batch in before)
             joined = outer_join(before, number) if count >= _FEW else None
             # Each file has noted itself where two values of an instant differ.
-            apart = [one.samples() for one in before] if joined is None else []
+            apart = [batch.samples() for batch in before] if joined is None else []
             rows = [*merge(*apart, key=attrgetter("t"))]
-            rows += [sample for one in heads for sample in one.take_at(until)]
+            rows += [sample for head in heads for sample in head.take_at(until)]
             if joined is not None:
                 yield joined
                 number += len(joined.times)
-            yield [(number + place, one.t, one.values) for place, one in enumerate(rows)]
+            yield [(number + place, sample.t, sample.values) for place, sample in enumerate(rows)]
             number += len(rows)
-            heads = [one for one in heads if one.is_there]
+            heads = [head for head in heads if head.is_there]
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The recording in order; errors are those of `blocks`."""
@@ -128,7 +128,7 @@ class Joined:
 
     def stamp_doubts(self) -> list[Health]:
         """What is odd about each file."""
-        return [one for file in self._files for one in (*file.rows.doubts(), *file.doubts())]
+        return [doubt for file in self._files for doubt in (*file.rows.doubts(), *file.doubts())]
 
 
 class _Head:
@@ -224,5 +224,5 @@ def _schema_of(topics: tuple[str, str], schema: Schema) -> Schema:
 def _outages_of(parts: Sequence[File]) -> Iterator[Outage]:
     """Outages of files as those of the names that they feed."""
     for part in parts:
-        for one in part.outages:
-            yield replace(one, names=part.names) if one.names is None else one
+        for outage in part.outages:
+            yield replace(outage, names=part.names) if outage.names is None else outage

@@ -188,8 +188,8 @@ def _occurrences(cells: Sequence[Any], fields: Mapping[str, Kind], schema: Schem
         )
         for name, kind in fields.items()
     }
-    occurs = [True if isinstance(one, dict) else one for one in cells]
-    if schema.gaps.no_update is not None or any(one == {} for one in cells):
+    occurs = [True if isinstance(cell, dict) else cell for cell in cells]
+    if schema.gaps.no_update is not None or any(cell == {} for cell in cells):
         raise NotPlainError("an event is something else")
     own = cells_of_values(occurs, Kind.BOOL, schema.gaps, msgspec.UNSET)
     says = np.where(own.values, np.uint8(YES), np.uint8(NO))

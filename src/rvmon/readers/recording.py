@@ -122,7 +122,7 @@ class FileRecording:
             paths = files_of(self.path)
             of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
             files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
-            parts = [FileRecording(*one, ordered=ordered) for one in files]
+            parts = [FileRecording(*file, ordered=ordered) for file in files]
             self._joined = Joined(parts, self.rows)
             self.ignored, self.names = self._joined.ignored, self._joined.names
             self.end = self._joined.end

@@ -51,7 +51,7 @@ class Course(Sequence[tuple[int, Scalar]]):
         """One behind the other."""
         import numpy as np
 
-        return cls(*map(np.concatenate, zip(*(one._columns for one in courses), strict=True)))
+        return cls(*map(np.concatenate, zip(*(course._columns for course in courses), strict=True)))
 
     def __len__(self) -> int:
         return len(self._columns[0])
@@ -145,7 +145,7 @@ class RunChanges:
     def __init__(self, spec: CheckedSpec, only: Set[str] | None = None) -> None:
         self._signals = spec.signals
         self._ignoring = spec.ignoring
-        stale = {name: one.stale_after for name, one in spec.signals.items()}
+        stale = {name: signal.stale_after for name, signal in spec.signals.items()}
         self.by_name = {
             name: Changes(stale.get(name))
             for name in (*spec.signals, *spec.events)

@@ -121,8 +121,8 @@ def coverage_page(summary: Summary) -> str:
     numbered = list(enumerate(model.groups.values()))
     scored = [(number, group, summary.scores[group.name]) for number, group in numbered]
     groups = [one for one in scored if one[2].items]
-    whole = [one for one in groups if one[2].covered == one[2].items]
-    rest = [one for one in groups if one not in whole]
+    whole = [group for group in groups if group[2].covered == group[2].items]
+    rest = [group for group in groups if group not in whole]
     hides_whole = len(groups) > OPEN
     crosses = [one for one in numbered if is_grid(one[1])]
     listed = listed_tests(summary)
@@ -179,7 +179,7 @@ def _changes(summary: Summary) -> list[tuple[str, Sequence[tuple[str, str]], str
         ("Newly covered", found.gained, "P"),
         ("No longer in the model", found.dropped, "NT"),
     )
-    return [one for one in changes if one[1]]
+    return [change for change in changes if change[1]]
 
 
 def _linked(summary: Summary, table: VerdictTable) -> Markup:
@@ -197,7 +197,7 @@ def _is_open(summary: Summary, group: Group) -> bool:
     if len(group.items) <= SHORT:
         return True
     own = range(summary.starts[group.name], summary.starts[group.name] + len(group.items))
-    return len(own) <= LONG and any(one in own for one in (*summary.holes, *summary.illegal))
+    return len(own) <= LONG and any(hole in own for hole in (*summary.holes, *summary.illegal))
 
 
 def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, float | None, str]:
@@ -274,7 +274,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
     seen: set[tuple[str, str, Verdict]] = set()
     for place in every:
         record = summary.record(place)
-        shown = {(record.strategy, *one) for one in record.verdicts.items()}
+        shown = {(record.strategy, *item) for item in record.verdicts.items()}
         if not shown <= seen:
             seen |= shown
             wanted.add(place)

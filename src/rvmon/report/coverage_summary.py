@@ -47,7 +47,7 @@ class Summary(Answers):
     def is_empty(self) -> bool:
         """Whether there is nothing to cover, so that a share is meaningless."""
         groups = self.coverage.model.groups
-        return not any(one.items for name, one in self.scores.items() if groups[name].weight)
+        return not any(score.items for name, score in self.scores.items() if groups[name].weight)
 
     @cached_property
     def hole_texts(self) -> Mapping[int, Hole]:
@@ -218,7 +218,7 @@ class Summary(Answers):
     def tests_text(self) -> str:
         """The number of tests and campaigns, and how the tests ended."""
         endings = Counter(entry.record.ending for entry in self.coverage.entries)
-        ended = ", ".join(f"{endings[one]:,} {one}" for one in Ending if endings[one])
+        ended = ", ".join(f"{endings[ending]:,} {ending}" for ending in Ending if endings[ending])
         parts = [counted(len(self.coverage.entries), "test")]
         if len(self.campaigns) > 1:
             parts.append(f"of {len(self.campaigns)} campaigns")

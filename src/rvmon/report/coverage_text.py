@@ -233,8 +233,8 @@ def _print_comparison(found: Comparison, name: str, console: Console) -> None:
     ):
         _print_list(console, heading, [name_of(item) for item in items], style=style)
     changes = [
-        f"{one.test}  {one.requirement}  {_letter(one.before)} → {_letter(one.after)}"
-        for one in found.verdicts
+        f"{change.test}  {change.requirement}  {_letter(change.before)} → {_letter(change.after)}"
+        for change in found.verdicts
     ]
     _print_list(console, "verdicts that changed:", changes, style="bold")
 

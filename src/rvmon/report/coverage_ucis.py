@@ -42,11 +42,11 @@ def coverage_ucis(summary: Summary, version: str) -> str:
     ET.SubElement(place, "cginstSourceId", _PLACE)
     ET.SubElement(place, "cgSourceId", _PLACE)
     functional = [
-        one
-        for one in summary.coverage.model.groups.values()
-        if one.items and one.subject not in _CODE
+        group
+        for group in summary.coverage.model.groups.values()
+        if group.items and group.subject not in _CODE
     ]
-    for one in sorted(functional, key=lambda one: bool(one.axes)):  # crosses stand last
+    for one in sorted(functional, key=lambda group: bool(group.axes)):  # crosses stand last
         _cross(group, summary, one) if one.axes else _coverpoint(group, summary, one)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

@@ -218,9 +218,9 @@ def difference_explained(
 ) -> Iterator[RenderableType]:
     """Two requirements: the shortest timelines on which they differ."""
     pair = [compiled.requirements[name] for name in (first, second)]
-    for one in pair:
-        yield _title(one.requirement)
-        for line in requirement_in_words(one.requirement):
+    for requirement in pair:
+        yield _title(requirement.requirement)
+        for line in requirement_in_words(requirement.requirement):
             yield _wrapped(line, "  ", "    ")
         yield ""
     goal = difference_of(first, second)
@@ -273,9 +273,9 @@ def _not_found(found: Found) -> str:
     return f"{tried}, all that there are to try" if found.exhausted else f"{tried}; not decided"
 
 
-def _names_read(one: CompiledRequirement) -> frozenset[str]:
-    each = one.requirement.for_each
-    return one.reads | ({each.value.event} if each else set())
+def _names_read(compiled: CompiledRequirement) -> frozenset[str]:
+    each = compiled.requirement.for_each
+    return compiled.reads | ({each.value.event} if each else set())
 
 
 def _wrapped(text: str, first: str, rest: str) -> RenderableType:

@@ -38,9 +38,9 @@ def junit_xml(
             cases.append(_case(report, name, verdict, spec.requirements[name]))
             if verdict is Verdict.FAIL and name not in failures:
                 _accept(cases[-1], known.expected(report)[name])
-        for one in report.illegal:
-            cases.append(ET.Element("testcase", name=shown(f"{one.group}: {one.item}")))
-            ET.SubElement(cases[-1], "failure", message=shown(one.sentence(report.origin)))
+        for hit in report.illegal:
+            cases.append(ET.Element("testcase", name=shown(f"{hit.group}: {hit.item}")))
+            ET.SubElement(cases[-1], "failure", message=shown(hit.sentence(report.origin)))
         add_suite(root, report.trace or spec.name, cases)
     for trace, message in broken:
         case = ET.Element("testcase", name="recording")
@@ -71,7 +71,9 @@ def as_text(root: ET.Element) -> str:
 def _case(report: Report, name: str, verdict: Verdict, requirement: Requirement) -> ET.Element:
     case = ET.Element("testcase", name=shown(name))
     entries = [("requirement", requirement.text), ("severity", requirement.severity)]
-    entries = [one for one in (*entries, *(("tag", tag) for tag in requirement.tags)) if one[1]]
+    entries = [
+        entry for entry in (*entries, *(("tag", tag) for tag in requirement.tags)) if entry[1]
+    ]
     properties = ET.SubElement(case, "properties") if entries else case
     for kind, value in entries:
         ET.SubElement(properties, "property", name=kind, value=shown(value))

@@ -35,8 +35,8 @@ def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterat
     span = duration_text(profile.end - profile.start)
     start = format_stamp(profile.start)
     yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
-    for one in profile.outages:
-        yield Text(f"lost: {_lost(one, profile.start)}", "yellow")
+    for outage in profile.outages:
+        yield Text(f"lost: {_lost(outage, profile.start)}", "yellow")
     for title, columns in grouped(profile, requirements):
         table = Table(title=title, title_justify="left", title_style="bold", box=None)
         table.show_header = False
@@ -100,7 +100,7 @@ def values(column: Column) -> str:
     labels = list(column.course.labels)
     if labels:
         more = f", {len(labels) - _MOST_LABELS} more" if len(labels) > _MOST_LABELS else ""
-        shown = [one if len(one) <= _LONGEST else f"{one[:_LONGEST]}…" for one in labels]
+        shown = [label if len(label) <= _LONGEST else f"{label[:_LONGEST]}…" for label in labels]
         return f"{', '.join(shown[:_MOST_LABELS])}{more}"
     if column.is_event:
         return f"{column.updates:,} times" if column.updates != 1 else "once"
@@ -128,17 +128,19 @@ def spark(column: Column, profile: Profile) -> str:
     if is_constant(column):
         return ""
     stretches = column.course.until(profile.end)
-    lows = [one.low for one in stretches if one.low is not None]
-    highs = [one.high for one in stretches if one.high is not None]
+    lows = [stretch.low for stretch in stretches if stretch.low is not None]
+    highs = [stretch.high for stretch in stretches if stretch.high is not None]
     low, high = min(lows, default=0.0), max(highs, default=0.0)
     drawn = ""
     for place in range(_WIDTH):
         first = place * len(stretches) // _WIDTH
         own = stretches[first : max(first + 1, (place + 1) * len(stretches) // _WIDTH)]
         numbers = [
-            (one.low + one.high) / 2 for one in own if one.low is not None and one.high is not None
+            (stretch.low + stretch.high) / 2
+            for stretch in own
+            if stretch.low is not None and stretch.high is not None
         ]
-        if column.is_event and any(one.updates and one.high != 0.0 for one in own):
+        if column.is_event and any(stretch.updates and stretch.high != 0.0 for stretch in own):
             drawn += "│"
         elif numbers and not column.is_event:
             share = (sum(numbers) / len(numbers) - low) / (high - low) if high > low else 0.5
@@ -180,7 +182,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         profile=profile,
         about=f"{profile.samples:,} samples in {duration_text(span)}, "
         f"{len(profile.columns):,} names.",
-        lost=[f"Lost: {_lost(one, profile.start)}." for one in profile.outages],
+        lost=[f"Lost: {_lost(outage, profile.start)}." for outage in profile.outages],
         marks=_marks(profile.start, profile.end),
         groups=groups,
         left_out=left_out,
@@ -225,8 +227,8 @@ def _drawing(column: Column, profile: Profile) -> ET.Element:
             box = {"x": f"{left:.1f}", "width": f"{long:.1f}", "y": 0, "height": _HEIGHT}
             svg.append(e("rect", {**box, "class": "lost"}))
     if column.is_event:
-        for place, one in enumerate(stretches):
-            if one.updates and one.high != 0.0:
+        for place, stretch in enumerate(stretches):
+            if stretch.updates and stretch.high != 0.0:
                 svg.append(e("path", {"class": "event", "d": f"M{place} 4V{_HEIGHT - 4}"}))
         return svg
     for first, run in _runs(stretches):
@@ -236,7 +238,7 @@ def _drawing(column: Column, profile: Profile) -> ET.Element:
 
 def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
     """Maximal runs of stretches without a gap; short silences are bridged."""
-    said = [place for place, one in enumerate(stretches) if one.low is not None]
+    said = [place for place, stretch in enumerate(stretches) if stretch.low is not None]
     steps = sorted(after - before for before, after in pairwise(said))
     usual = steps[len(steps) // 2] if steps else 1
     first = 0
@@ -249,16 +251,16 @@ def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
 
 def _area(first: int, run: Sequence[Stretch], stretches: Sequence[Stretch]) -> str:
     """The outline from the least to the greatest value of each stretch."""
-    low = min(one.low for one in stretches if one.low is not None)
-    high = max(one.high for one in stretches if one.high is not None)
+    low = min(stretch.low for stretch in stretches if stretch.low is not None)
+    high = max(stretch.high for stretch in stretches if stretch.high is not None)
 
     def y(number: float) -> str:
         share = (number - low) / (high - low) if high > low else 0.5
         return f"{_HEIGHT - _EDGE - share * (_HEIGHT - 2 * _EDGE):.1f}"
 
     above, below = [], []
-    for place, one in enumerate(run, first):
-        if one.low is not None and one.high is not None:
-            above.append(f"{place + 0.5:g} {y(one.high)}")
-            below.append(f"{place + 0.5:g} {y(one.low)}")
+    for place, stretch in enumerate(run, first):
+        if stretch.low is not None and stretch.high is not None:
+            above.append(f"{place + 0.5:g} {y(stretch.high)}")
+            below.append(f"{place + 0.5:g} {y(stretch.low)}")
     return f"M{'L'.join([*above, *reversed(below)])}Z"

@@ -18,12 +18,13 @@ def memory_lines(spec: CheckedSpec) -> list[str]:
     >>> memory_lines(rvmon.loads(text).checked)
     ['memory: R keeps count(e, 5 s) in 128 bytes, and up to 64 a member in the last 5 s']
     """
-    return [line for one in spec.requirements.values() for line in _lines(one)]
+    return [line for requirement in spec.requirements.values() for line in _lines(requirement)]
 
 
 def _lines(requirement: Requirement) -> Iterator[str]:
     windows = {
-        format_window(one): one for one in windows_of(requirement.trigger, requirement.consequent)
+        format_window(window): window
+        for window in windows_of(requirement.trigger, requirement.consequent)
     }
     again = ""
     if requirement.for_each is not None:
@@ -33,7 +34,7 @@ def _lines(requirement: Requirement) -> Iterator[str]:
     for text, window in windows.items():
         yield f"memory: {requirement.id} keeps {text} in {_of(window)}{again}"
     if len(windows) > 1:
-        fixed = sum(_fixed(one) for one in windows.values())
+        fixed = sum(_fixed(window) for window in windows.values())
         yield f"memory: {requirement.id} keeps {fixed:,} bytes in all, and what is in its windows"
 
 

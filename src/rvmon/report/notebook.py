@@ -73,7 +73,7 @@ def _requirements(report: Report) -> Iterator[tuple[str, str, list[Attempt], int
         silence = ""
         if report.is_silent(name):
             silence = without_attempts(report.verdicts[name], report.misses.get(name, ""))
-        wrong = [one for one in attempts if one.verdict is not Verdict.PASS]
+        wrong = [attempt for attempt in attempts if attempt.verdict is not Verdict.PASS]
         counts = report.counts[name]
         yield name, silence, wrong, sum(counts.values()) - counts[Verdict.PASS] - len(wrong)
 
@@ -90,10 +90,10 @@ def _facts(report: Report, attempt: Attempt) -> tuple[str, Element, str]:
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[Attempt, str]]:
     """A bar from trigger to decision for each attempt."""
     for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
-        for one in islice(report.of(name, verdict), DRAWN):
-            left = view.fraction(one.triggered)
-            right = view.fraction(view.end if one.decided is None else one.decided)
-            yield one, place_of(left, max(right - left, 0.002))
+        for attempt in islice(report.of(name, verdict), DRAWN):
+            left = view.fraction(attempt.triggered)
+            right = view.fraction(view.end if attempt.decided is None else attempt.decided)
+            yield attempt, place_of(left, max(right - left, 0.002))
 
 
 def _piece(**values: object) -> str:

@@ -179,7 +179,7 @@ def table_html(
         others=others,
         link=link,
         witnesses=witnesses or {},
-        has_checked=any(one.checked for one in (table, *others.values())),
+        has_checked=any(verdict_table.checked for verdict_table in (table, *others.values())),
         checked_text=checked_text,
         interval_text=interval_text,
         counts_in=_counts_in,
@@ -188,4 +188,11 @@ def table_html(
 
 
 def _counts_in(table: VerdictTable, group: str, requirement: str) -> Counts | None:
-    return next((one.counts.get(requirement) for one in table.groups if one.name == group), None)
+    return next(
+        (
+            run_group.counts.get(requirement)
+            for run_group in table.groups
+            if run_group.name == group
+        ),
+        None,
+    )

@@ -128,7 +128,10 @@ def nearest_passing(
     best: tuple[float, Candidate, Attempt] | None = None
     looks = range(LOOKS)
     instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
-    own = [() if one.kind is TrackKind.EVENT else one.changes.values_at(instants) for one in tracks]
+    own = [
+        () if track.kind is TrackKind.EVENT else track.changes.values_at(instants)
+        for track in tracks
+    ]
     passing = (
         (candidate, one)
         for candidate in candidates
@@ -151,7 +154,7 @@ def nearest_passing(
 
 def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
     shift, (run, tracks) = failed.triggered - passed.triggered, candidate
-    moved = (replace(one, changes=one.changes.shifted(shift)) for one in tracks)
+    moved = (replace(track, changes=track.changes.shifted(shift)) for track in tracks)
     end = run.report.end
     return ReferenceAttempt(
         name=run.name,
@@ -235,7 +238,7 @@ class _Panels:
         candidates: list[Candidate] = []
         if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
             others = (other for other in self._content.others if other.samples)
-            candidates = [(run, tracks), *((one, self._tracks(one, name)) for one in others)]
+            candidates = [(run, tracks), *((other, self._tracks(other, name)) for other in others)]
         late = self._late(name, attempts)
         for attempt in attempts:
             came = None if attempt.in_doubt else late.get(attempt.number)
@@ -314,7 +317,7 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
             for verdict, most in SHOWN.items()
             for attempt in islice(report.of(name, verdict), most)
         ]
-        shown[name] = sorted(some, key=lambda one: one.number)
+        shown[name] = sorted(some, key=lambda attempt: attempt.number)
     return shown
 
 

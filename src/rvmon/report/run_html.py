@@ -157,7 +157,7 @@ def _rows(
 ) -> list[tuple[str, Panel, list[Bar]]]:
     """A row per requirement, the worst first: its id, worst panel and bars."""
     worst: dict[str, Panel] = {}
-    for panel in sorted(panels, key=lambda one: WORST_FIRST.index(one.verdict)):
+    for panel in sorted(panels, key=lambda panel: WORST_FIRST.index(panel.verdict)):
         worst.setdefault(panel.requirement, panel)
     names = sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name]))
     return [

@@ -68,7 +68,7 @@ class _Row(NamedTuple):
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
     """The index as HTML; without scripts it is complete, but cannot be filtered."""
     places = list(_GROUPS)
-    rows = [_row(one, spec, known) for one in recordings]
+    rows = [_row(recording, spec, known) for recording in recordings]
     rows.sort(key=lambda row: (places.index(row.group), -len(_failed(row.one))))
     counts = Counter(row.group for row in rows)
     groups = [(group, words, counts[group]) for group, words in _GROUPS.items() if counts[group]]
@@ -76,7 +76,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
         "index.html",
         title=f"{len(recordings):,} recordings, checked against {spec.name}",
         totals=[f"{count:,} {words}" for _, words, count in groups],
-        folder=_folder([one.name for one in recordings]),
+        folder=_folder([recording.name for recording in recordings]),
         requirements=list(_requirements(spec, recordings)),
         asked=ASKED,
         groups=groups,
@@ -88,7 +88,7 @@ def _requirements(
     spec: CheckedSpec, recordings: Sequence[Listed]
 ) -> Iterator[tuple[Requirement, Counter[Verdict], str]]:
     """Each requirement with its counts of verdicts, its severity and tags."""
-    reports = [one.report for one in recordings if one.report is not None]
+    reports = [recording.report for recording in recordings if recording.report is not None]
     for name in reports[0].verdicts if reports else ():
         requirement = spec.requirements[name]
         about = {"severity": requirement.severity, "tags": ", ".join(requirement.tags)}
@@ -102,36 +102,36 @@ def _folder(names: Sequence[str]) -> str:
     return shared[: shared.rfind("/") + 1]
 
 
-def _failed(one: Listed) -> list[str]:
-    verdicts = {} if one.report is None else one.report.verdicts
+def _failed(listed: Listed) -> list[str]:
+    verdicts = {} if listed.report is None else listed.report.verdicts
     return [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
 
 
-def _group(one: Listed, known: KnownFailures) -> str:
-    if one.report is None:
+def _group(listed: Listed, known: KnownFailures) -> str:
+    if listed.report is None:
         return _BROKEN
-    if known.failures(one.report) or one.report.illegal:
+    if known.failures(listed.report) or listed.report.illegal:
         return "F"
-    verdicts = set(one.report.verdicts.values())
+    verdicts = set(listed.report.verdicts.values())
     if Verdict.FAIL in verdicts:
         return _KNOWN
     order = (Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
-    return next((one.value for one in order if one in verdicts), "P")
+    return next((verdict.value for verdict in order if verdict in verdicts), "P")
 
 
-def _row(one: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
-    failed = _failed(one)
-    asked = [one.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
+def _row(listed: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
+    failed = _failed(listed)
+    asked = [listed.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
     why, cells = "", []
-    if one.report is None:
-        why = f"{_BROKEN}: {in_short(one.error.removeprefix(f'{one.name}: '))}"
+    if listed.report is None:
+        why = f"{_BROKEN}: {in_short(listed.error.removeprefix(f'{listed.name}: '))}"
     else:
-        failures, expected = known.failures(one.report), known.expected(one.report)
+        failures, expected = known.failures(listed.report), known.expected(listed.report)
         cells = [
-            _cell(one.report, name, "" if name in failures else expected.get(name, ""))
-            for name in one.report.verdicts
+            _cell(listed.report, name, "" if name in failures else expected.get(name, ""))
+            for name in listed.report.verdicts
         ]
-    return _Row(one, _group(one, known), " ".join(asked).strip().lower(), why, cells)
+    return _Row(listed, _group(listed, known), " ".join(asked).strip().lower(), why, cells)
 
 
 def _cell(report: Report, requirement: str, known: str) -> tuple[str, Verdict, str | None, bool]:

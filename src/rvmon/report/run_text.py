@@ -37,13 +37,15 @@ from rvmon.verdict.report import Report
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
     """The sum of the coverage of several runs by one specification, without first instants."""
     return [
-        replace(groups[0], bins=tuple(map(_sum, zip(*(one.bins for one in groups), strict=True))))
+        replace(
+            groups[0], bins=tuple(map(_sum, zip(*(group.bins for group in groups), strict=True)))
+        )
         for groups in zip(*several, strict=True)
     ]
 
 
 def _sum(bins: Sequence[CoveredBin]) -> CoveredBin:
-    return replace(bins[0], hits=sum(one.hits for one in bins), first=None)
+    return replace(bins[0], hits=sum(covered_bin.hits for covered_bin in bins), first=None)
 
 
 def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
@@ -57,21 +59,33 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
     size: not covered: high (1 of 3)
     """
     for group in groups:
-        wanted = [one for one in group.bins if one.kind is BinKind.GOAL]
-        holes = [one for one in wanted if one.is_hole]
-        hit = [f"{_name(one)} {one.hits:,}" for one in group.bins if one.hits]
+        wanted = [covered_bin for covered_bin in group.bins if covered_bin.kind is BinKind.GOAL]
+        holes = [covered_bin for covered_bin in wanted if covered_bin.is_hole]
+        hit = [
+            f"{_name(covered_bin)} {covered_bin.hits:,}"
+            for covered_bin in group.bins
+            if covered_bin.hits
+        ]
         covered = f"{group.name}: {len(wanted) - len(holes):,} of {len(wanted):,} covered"
         yield f"{covered}; hit: {first_of(hit, SHOWN)}" if hit else covered
         if holes:
             yield f"{group.name}: not covered: {first_of([*map(_missing, holes)], SHOWN)}"
 
 
-def _name(one: CoveredBin) -> str:
-    return one.name if one.kind is BinKind.GOAL else f"{one.name} ({one.kind})"
+def _name(covered_bin: CoveredBin) -> str:
+    return (
+        covered_bin.name
+        if covered_bin.kind is BinKind.GOAL
+        else f"{covered_bin.name} ({covered_bin.kind})"
+    )
 
 
-def _missing(one: CoveredBin) -> str:
-    return one.name if one.goal == 1 else f"{one.name} ({one.hits:,} of {one.goal:,})"
+def _missing(covered_bin: CoveredBin) -> str:
+    return (
+        covered_bin.name
+        if covered_bin.goal == 1
+        else f"{covered_bin.name} ({covered_bin.hits:,} of {covered_bin.goal:,})"
+    )
 
 
 def print_reports(
@@ -114,8 +128,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     if report.goals:
         console.print(_goals_text(report.goals))
     _print_coverage(report.coverage, console)
-    for one in report.illegal:
-        console.print(one.sentence(report.origin), style="bold red", markup=False)
+    for hit in report.illegal:
+        console.print(hit.sentence(report.origin), style="bold red", markup=False)
     if report.health:
         console.print("input health:")
     for names, fact in health_facts(report.health, report.origin):

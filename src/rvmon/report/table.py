@@ -138,8 +138,8 @@ def _width(table: VerdictTable, *others: VerdictTable) -> int:
     """The width of a column of counts: two more than the longest count."""
     counts = (
         count
-        for one in (table, *others)
-        for group in one.groups
+        for verdict_table in (table, *others)
+        for group in verdict_table.groups
         for by_verdict in group.counts.values()
         for count in by_verdict.values()
     )
@@ -157,13 +157,15 @@ def _grid(
 ) -> Table:
     shown = {group.name for group in groups}
     others = {
-        f"  {label}": one
-        for label, one in beside.items()
-        if shown & {group.name for group in one.groups}
+        f"  {label}": verdict_table
+        for label, verdict_table in beside.items()
+        if shown & {group.name for group in verdict_table.groups}
     }
     grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
     grid.add_column("", no_wrap=True)
-    has_checked = with_checked and any(one.checked for one in (table, *others.values()))
+    has_checked = with_checked and any(
+        verdict_table.checked for verdict_table in (table, *others.values())
+    )
     if has_checked:
         grid.add_column(Text("model\nchecking"), justify="center")
     letters = "".join(f"{verdict.value:>{width}}" for verdict in Verdict)
@@ -190,7 +192,12 @@ def _counts_cell(table: VerdictTable, group: str, name: str, width: int, *, dim:
     """The counts of a group, and below them the intervals of their shares."""
     cell = Text()
     counts, runs = next(
-        ((one.counts.get(name), one.runs) for one in table.groups if one.name == group), (None, 0)
+        (
+            (run_group.counts.get(name), run_group.runs)
+            for run_group in table.groups
+            if run_group.name == group
+        ),
+        (None, 0),
     )
     for verdict in Verdict:
         count = None if counts is None else counts.get(verdict, 0)

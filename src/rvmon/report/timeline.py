@@ -157,13 +157,13 @@ def _add_number(
 
 def _is_above(pieces: Sequence[Stretch], value: float) -> bool:
     """Whether the line is above a threshold where the threshold's label is placed."""
-    there = [one.value for one in pieces if one.right > 1 - LABELLED]
+    there = [piece.value for piece in pieces if piece.right > 1 - LABELLED]
     return any(isinstance(one, int | float) and one > value for one in there)
 
 
 def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
     """The range of a number's track: all finite values in view, and the thresholds."""
-    values = [float(one.value) for one in pieces if isinstance(one.value, int | float)]
+    values = [float(piece.value) for piece in pieces if isinstance(piece.value, int | float)]
     values = [value for value in values if math.isfinite(value)]
     values += [threshold.value for threshold in track.thresholds]
     low, high = min(values, default=0.0), max(values, default=1.0)

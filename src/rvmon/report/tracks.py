@@ -180,7 +180,9 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
     if len(pieces) <= PLACES:
         return list(pieces)
     joined: list[Stretch] = []
-    for narrow, group in groupby(pieces, key=lambda one: one.right - one.left < 1 / PLACES):
+    for narrow, group in groupby(
+        pieces, key=lambda stretch: stretch.right - stretch.left < 1 / PLACES
+    ):
         some = list(group)
         if narrow and len(some) > 1:
             joined.append(Stretch(some[0].left, some[-1].right, None, busy=True))
@@ -200,7 +202,7 @@ def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
 def polylines(pieces: Sequence[Stretch], lowest: float, highest: float) -> list[list[Point]]:
     """The steps of a number as lines, interrupted where it is unknown."""
     lines = []
-    for known, group in groupby(pieces, key=lambda one: one.value is not None):
+    for known, group in groupby(pieces, key=lambda stretch: stretch.value is not None):
         if known:
             points = []
             for piece in group:

@@ -94,17 +94,19 @@ def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, 
     x ignored: unknown
     """
     ignored: dict[str, list[str]] = {}
-    for one in entries:
-        if one.kind is HealthKind.IGNORED:
-            ignored.setdefault(one.remark, []).append(one.name)
-        elif one.is_doubt:
-            yield one.name, f"warning: {one.remark}"
+    for entry in entries:
+        if entry.kind is HealthKind.IGNORED:
+            ignored.setdefault(entry.remark, []).append(entry.name)
+        elif entry.is_doubt:
+            yield entry.name, f"warning: {entry.remark}"
         else:
-            first = "" if one.first is None else f", first at {format_stamped(one.first, origin)}"
-            times = "once" if one.count == 1 else f"{one.count} times"
-            remark = f": {one.remark}" if one.remark else ""
-            readers = f"  ({', '.join(one.requirements)})" if one.requirements else ""
-            yield one.name, f"{one.kind.value} {times}{first}{remark}{readers}"
+            first = (
+                "" if entry.first is None else f", first at {format_stamped(entry.first, origin)}"
+            )
+            times = "once" if entry.count == 1 else f"{entry.count} times"
+            remark = f": {entry.remark}" if entry.remark else ""
+            readers = f"  ({', '.join(entry.requirements)})" if entry.requirements else ""
+            yield entry.name, f"{entry.kind.value} {times}{first}{remark}{readers}"
     for remark, names in ignored.items():
         yield first_of(names, SHOWN), f"ignored{f': {remark}' if remark else ''}"
 

@@ -123,7 +123,7 @@ class _Resolver:
         self._first: dict[tuple[str, str], Ident] = {}
 
     def of(self, kind: type[_S]) -> dict[str, _S]:
-        return {one.name.text: one for one in self._stated if isinstance(one, kind)}
+        return {stated.name.text: stated for stated in self._stated if isinstance(stated, kind)}
 
     def add(self, item: items.Item) -> None:
         match item:
@@ -285,7 +285,7 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
         lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
         if lets and requirement.span.source is main:
             own = Counter(_names(requirement.span.text))
-            for let in (one.name for one in lets if own[one.name.text] < 2):
+            for let in (clause.name for clause in lets if own[clause.name.text] < 2):
                 yield rules.unused(let.span, "let", let.text)
 
 

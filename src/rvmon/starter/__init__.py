@@ -14,9 +14,9 @@ def campaign_files() -> dict[str, str]:
     ['campaign.py', 'lift.py', 'lift.rv']
     """
     folder = resources.files("rvmon.starter") / "campaign"
-    files = sorted(folder.iterdir(), key=lambda one: one.name)
+    files = sorted(folder.iterdir(), key=lambda traversable: traversable.name)
     return {
-        one.name.removesuffix(_ENDING): one.read_text(encoding="utf-8")
-        for one in files
-        if one.name.endswith(_ENDING)
+        file.name.removesuffix(_ENDING): file.read_text(encoding="utf-8")
+        for file in files
+        if file.name.endswith(_ENDING)
     }

@@ -72,7 +72,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
 def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
     """The names of several files; what two of them have is called `FILE.NAME`."""
     found = [shapes_of(path, stamps) for path in paths]
-    counts = Counter(name for one in found for name in (*one.declared, *one.left_out))
+    counts = Counter(name for shapes in found for name in (*shapes.declared, *shapes.left_out))
     declared: dict[str, Shape] = {}
     left_out: dict[str, str] = {}
     for shapes, (_, topic) in zip(found, topics_of(paths), strict=True):
@@ -252,8 +252,8 @@ def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
     for times, updates in _updates(recording.pieces(), columns):
         if start is None:
             start = int(times[0])
-            for one in columns.values():
-                one.course.start = start
+            for column in columns.values():
+                column.course.start = start
         end = int(times[-1])
         samples += len(times)
         for name, (own_times, values, known) in updates.items():
@@ -261,10 +261,12 @@ def _followed(recording: FileRecording, shapes: Shapes) -> Profile:
     if start is None or end is None:
         raise TraceError("holds no sample")
     end = max(end, recording.end or end)
-    for one in columns.values():
-        one.end(start, end, samples)
-    silent = {name: "no value in the recording" for name, one in columns.items() if not one.updates}
-    kept = tuple(one for one in columns.values() if one.updates)
+    for column in columns.values():
+        column.end(start, end, samples)
+    silent = {
+        name: "no value in the recording" for name, column in columns.items() if not column.updates
+    }
+    kept = tuple(column for column in columns.values() if column.updates)
     left_out = {**shapes.left_out, **silent}
     if not kept:
         raise TraceError(f"no signal or event is found ({_reasons(left_out)})")
@@ -291,11 +293,13 @@ def _updates(pieces: Iterable[Batch | Sample], columns: Mapping[str, Column]) ->
 
 def _of_batch(batch: Batch, columns: Mapping[str, Column]) -> Recorded:
     times = batch.times
-    found = {name: columns[name].updates_in(times, one) for name, one in batch.signals.items()}
-    for name, one in batch.events.items():
-        said = one.says != NO_UPDATE
-        values = np.where(one.with_payload, np.nan, one.says == YES)
-        found[name] = times[said], values[said], (one.says != UNKNOWN)[said]
+    found = {
+        name: columns[name].updates_in(times, signal) for name, signal in batch.signals.items()
+    }
+    for name, event in batch.events.items():
+        said = event.says != NO_UPDATE
+        values = np.where(event.with_payload, np.nan, event.says == YES)
+        found[name] = times[said], values[said], (event.says != UNKNOWN)[said]
     return times, found
 
 
@@ -311,12 +315,12 @@ def _of_samples(samples: Sequence[Sample], columns: Mapping[str, Column]) -> Rec
         times = np.array(instants, np.int64)
         kind = columns[name].shape.kind
         if kind is None:
-            numbers = [float(one) if isinstance(one, bool) else math.nan for one in values]
-            known = np.array([one is not None for one in values])
+            numbers = [float(value) if isinstance(value, bool) else math.nan for value in values]
+            known = np.array([value is not None for value in values])
             found[name] = times, np.array(numbers), known
         else:
             found[name] = columns[name].updates_in(times, _cells(values, kind))
-    return np.array([one.t for one in samples], np.int64), found
+    return np.array([sample.t for sample in samples], np.int64), found
 
 
 def _cells(values: Sequence[Value], kind: Kind) -> Cells:
@@ -324,7 +328,7 @@ def _cells(values: Sequence[Value], kind: Kind) -> Cells:
     try:
         return cells_of_values(values, kind, Gaps(), ...)
     except NotPlainError:
-        reals = [one if one is None else as_declared(one, Kind.REAL) for one in values]
+        reals = [value if value is None else as_declared(value, Kind.REAL) for value in values]
         return cells_of_values(reals, Kind.REAL, Gaps(), ...)
 
 

@@ -44,9 +44,9 @@ def skeletons_of(profile: Profile) -> list[Skeleton]:
     """Requirements that the recording itself meets, those that say most first."""
     found = [*_responses(profile.columns), *_ranges(profile.columns), *_sources(profile.columns)]
     others = _others(profile)
-    bodies = {one.body for one in found}
+    bodies = {skeleton.body for skeleton in found}
     return found + list(
-        islice((one for one in others if one.body not in bodies), max(0, FEWEST - len(found)))
+        islice((other for other in others if other.body not in bodies), max(0, FEWEST - len(found)))
     )
 
 
@@ -61,17 +61,21 @@ def name_text(name: str) -> str:
 
 def _ranges(columns: Sequence[Column]) -> Iterator[Skeleton]:
     """The ranges of numbers that change: one of each topic, those with a unit first."""
-    changing = sorted((one for one in columns if one.changes), key=lambda one: not one.shape.unit)
-    first = {one.shape.source or one.name: one for one in reversed(changing)}
-    yield from map(_range, [one for one in changing if one in first.values()][:_MOST_RANGES])
+    changing = sorted(
+        (column for column in columns if column.changes), key=lambda column: not column.shape.unit
+    )
+    first = {column.shape.source or column.name: column for column in reversed(changing)}
+    yield from map(
+        _range, [column for column in changing if column in first.values()][:_MOST_RANGES]
+    )
 
 
 def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
     """How often what is reported comes: one signal of each topic."""
-    signals = [one for one in columns if not one.is_event and one.updates > 1]
-    first = {one.shape.source or one.name: one for one in reversed(signals)}
-    chosen = [one for one in signals if one in first.values()]
-    chosen.sort(key=lambda one: one.changes)
+    signals = [column for column in columns if not column.is_event and column.updates > 1]
+    first = {signal.shape.source or signal.name: signal for signal in reversed(signals)}
+    chosen = [signal for signal in signals if signal in first.values()]
+    chosen.sort(key=lambda column: column.changes)
     yield from map(_freshness, chosen[:_MOST_SOURCES])
 
 

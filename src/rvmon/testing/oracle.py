@@ -88,7 +88,7 @@ def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dic
         RvmonError: a requirement's `pulse` is not what its trigger's syntax says.
     """
     _refuse_double_payloads(spec.requirements.values(), samples)
-    return {name: follow(one, word) for name, one in spec.requirements.items()}
+    return {name: follow(requirement, word) for name, requirement in spec.requirements.items()}
 
 
 def report_on(
@@ -97,11 +97,11 @@ def report_on(
     """The report on attempts that were followed to the end of the trace."""
     attempts = [
         record
-        for one in followings.values()
-        for followed in one.attempts
+        for following in followings.values()
+        for followed in following.attempts
         if (record := _record(followed, origin)) is not None
     ]
-    undetermined = [name for name, one in followings.items() if not one.is_determined]
+    undetermined = [name for name, following in followings.items() if not following.is_determined]
     return report_of(
         tuple(spec.requirements), attempts, incomplete=undetermined, origin=origin, end=end
     )

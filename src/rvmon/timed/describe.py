@@ -164,25 +164,30 @@ def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
     }
 
 
-def sampled_data(one: Sampled) -> dict[str, Any]:
+def sampled_data(sampled: Sampled) -> dict[str, Any]:
     """What random runs say of a query, for JSON."""
-    data = {"query": one.query.text, "id": one.query.id, "runs": one.runs, "value": one.value}
-    if one.margin is not None:
-        return {**data, "holds": one.holds, "error": ERROR, "margin": one.margin}
-    return {**data, "low": one.low, "high": one.high, "confidence": 1 - ERROR}
+    data = {
+        "query": sampled.query.text,
+        "id": sampled.query.id,
+        "runs": sampled.runs,
+        "value": sampled.value,
+    }
+    if sampled.margin is not None:
+        return {**data, "holds": sampled.holds, "error": ERROR, "margin": sampled.margin}
+    return {**data, "low": sampled.low, "high": sampled.high, "confidence": 1 - ERROR}
 
 
-def trajectory_lines(network: Network, query: Query, one: Trajectory) -> Iterator[str]:
+def trajectory_lines(network: Network, query: Query, trajectory: Trajectory) -> Iterator[str]:
     """A simulated run as lines: instants, and the values that are others than before."""
     assert isinstance(query.formula, Simulation), "runs are of such queries"
     before: tuple[Fraction | None, ...] = (None,) * len(query.formula.terms)
-    for now, row in zip(one.times, one.values, strict=True):
+    for now, row in zip(trajectory.times, trajectory.values, strict=True):
         changed = [
             f"{term.text} = {float(value):g}"
             for term, value, old in zip(query.formula.terms, row, before, strict=True)
             if value != old
         ]
-        if changed or now == one.times[-1]:
+        if changed or now == trajectory.times[-1]:
             yield f"{time_text(network, now):>9}  {', '.join(changed)}".rstrip()
         before = row
 
@@ -192,12 +197,12 @@ def simulation_data(query: Query, found: Sequence[Trajectory]) -> dict[str, Any]
     assert isinstance(query.formula, Simulation), "runs are of such queries"
     terms = [term.text for term in query.formula.terms]
     runs = [
-        {"times": [float(t) for t in one.times]}
+        {"times": [float(t) for t in trajectory.times]}
         | {
             term: [float(value) for value in values]
-            for term, values in zip(terms, zip(*one.values, strict=True), strict=True)
+            for term, values in zip(terms, zip(*trajectory.values, strict=True), strict=True)
         }
-        for one in found
+        for trajectory in found
     ]
     return {"query": query.text, "id": query.id, "runs": runs}
 

@@ -111,9 +111,13 @@ def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Compar
             elif not now.error:
                 differences.append(Difference(Change.READABLE, name))
             continue
-        only[0].extend(f"{one} in {name}" for one in was.verdicts if one not in now.verdicts)
-        only[1].extend(f"{one} in {name}" for one in now.verdicts if one not in was.verdicts)
-        for one in [one for one in was.verdicts if one in now.verdicts]:
+        only[0].extend(
+            f"{verdict} in {name}" for verdict in was.verdicts if verdict not in now.verdicts
+        )
+        only[1].extend(
+            f"{verdict} in {name}" for verdict in now.verdicts if verdict not in was.verdicts
+        )
+        for one in [verdict for verdict in was.verdicts if verdict in now.verdicts]:
             found = _difference(name, one, was, now)
             if found is not None:
                 differences.append(found)
@@ -122,7 +126,13 @@ def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Compar
             if fold(now.verdicts[one]) is Verdict.FAIL:
                 failing.setdefault(name, []).append(one)
     order = list(Change)
-    differences.sort(key=lambda one: (order.index(one.change), one.recording, one.requirement))
+    differences.sort(
+        key=lambda difference: (
+            order.index(difference.change),
+            difference.recording,
+            difference.requirement,
+        )
+    )
     return Comparison(differences, failing, *only, same)
 
 

@@ -61,8 +61,8 @@ class KnownFailures:
 
     def accepting(self, recording: str, requirement: str) -> KnownFailure | None:
         """The entry that accepts a failure of a requirement in a recording; `None` if none."""
-        about = (one for one in self.known if one.is_about(recording, requirement))
-        return next((one for one in about if self.today <= one.until), None)
+        about = (failure for failure in self.known if failure.is_about(recording, requirement))
+        return next((failure for failure in about if self.today <= failure.until), None)
 
     def failures(self, report: Report) -> list[str]:
         """The requirements whose failure in a recording is not accepted."""
@@ -75,21 +75,26 @@ class KnownFailures:
     def expected(self, report: Report) -> dict[str, str]:
         """The requirements whose failure in a recording would be accepted, with reason and day."""
         found = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
-        return {name: f"{one.reason} (until {one.until})" for name, one in found if one is not None}
+        return {
+            name: f"{failure.reason} (until {failure.until})"
+            for name, failure in found
+            if failure is not None
+        }
 
     def remarks(self, reports: Sequence[Report]) -> Iterator[str]:
         """Remarks on entries that have expired but still fail, and on those that no longer fail."""
-        for one in self.known:
+        for failure in self.known:
             about = [
-                (report.trace, report.verdicts[one.requirement])
+                (report.trace, report.verdicts[failure.requirement])
                 for report in reports
-                if one.requirement in report.verdicts
-                and one.is_about(report.trace, one.requirement)
+                if failure.requirement in report.verdicts
+                and failure.is_about(report.trace, failure.requirement)
             ]
             failed = [trace for trace, verdict in about if verdict is Verdict.FAIL]
-            what = f"{one.requirement} ({one.reason})"
-            if failed and self.today > one.until:
-                yield f"{what} was known to fail until {one.until}, and fails still: {failed[0]}"
+            what = f"{failure.requirement} ({failure.reason})"
+            if failed and self.today > failure.until:
+                until = failure.until
+                yield f"{what} was known to fail until {until}, and fails still: {failed[0]}"
             elif about and not failed:
                 yield f"{what} is known to fail, and does not: take it out of the file"
 
@@ -121,8 +126,8 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
             f"{path}: {error}: a known failure is a table [[known]] with requirement, reason, "
             'until = 2030-01-31, and recording = "*.csv" if it is about some only'
         ) from None
-    for one in found:
-        if one.requirement not in requirements:
-            meant = did_you_mean(one.requirement, list(requirements), "see `rvmon check`")
-            raise RvmonError(f"{path}: no requirement `{one.requirement}`: {meant}")
+    for failure in found:
+        if failure.requirement not in requirements:
+            meant = did_you_mean(failure.requirement, list(requirements), "see `rvmon check`")
+            raise RvmonError(f"{path}: no requirement `{failure.requirement}`: {meant}")
     return found

@@ -78,7 +78,7 @@ class Report:
     @property
     def absent(self) -> frozenset[str]:
         """The signals and events that had no source."""
-        return frozenset(one.name for one in self.health if one.kind is HealthKind.ABSENT)
+        return frozenset(health.name for health in self.health if health.kind is HealthKind.ABSENT)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
@@ -123,7 +123,7 @@ class Report:
         for attempt in self.attempts:
             yield attempt_row(self.trace, attempt)
         for name, verdict in self.verdicts.items():
-            found = [one for one, count in self.counts[name].items() if count]
+            found = [verdict for verdict, count in self.counts[name].items() if count]
             if not found or fold(found) is not verdict:  # none, or there may have been others
                 reason = self.misses.get(name, "")
                 yield VerdictRow(self.trace, name, verdict=verdict.value, reason=reason)
@@ -173,8 +173,8 @@ class Report:
         from rvmon.verdict.report_json import encoded, labels, packed
 
         attempts: dict[str, list[object]] = {name: [] for name in self.verdicts}
-        for one in self.attempts:
-            attempts[one.requirement].append(packed(one))
+        for attempt in self.attempts:
+            attempts[attempt.requirement].append(packed(attempt))
         found = {"goals": self.goals, "illegal": self.illegal, "coverage": self.coverage}
         return encoded(
             {

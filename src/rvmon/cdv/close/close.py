@@ -98,7 +98,7 @@ def close(
         with closing(outcomes(campaign, waiting, jobs=jobs, controls=False)) as results:
             while goals.open and not ended:
                 proposals = proposer.batch(min(BATCH, budget.tests - len(tests)))
-                waiting.jobs.extend(Job(one.test, robot) for one in proposals)
+                waiting.jobs.extend(Job(proposal.test, robot) for proposal in proposals)
                 for proposal in proposals:
                     outcome, _ = next(results)
                     if witnesses is not None and proposal.witness is not None:
@@ -125,7 +125,7 @@ def close(
     kept = {*found.places, *_gone_wrong(tests)}
     return Closed(
         tests=tests,
-        suite=[one.played for place, one in enumerate(tests) if place in kept],
+        suite=[test.played for place, test in enumerate(tests) if place in kept],
         choices=choices,
         fewest=found.at_least,
         goals=goals.met + len(goals.open),
@@ -153,8 +153,8 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
     places = {goal: place for place, goal in enumerate(sought)}
     wanted = {places[goal]: count for goal, count in sought.items()}
     rows: list[dict[int, int]] = []
-    for one in tests:
-        hits = one.played.outcome.hits
+    for test in tests:
+        hits = test.played.outcome.hits
         row = {
             places[group, item]: hit.count
             for group, items in hits.items()
@@ -172,8 +172,8 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
 def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:
     """The first test that went wrong in each way."""
     seen: set[str] = set()
-    for place, one in enumerate(tests):
-        outcome = one.played.outcome
+    for place, test in enumerate(tests):
+        outcome = test.played.outcome
         ways = {name for name, verdict in outcome.verdicts.items() if verdict is Verdict.FAIL}
         ways |= {illegal.partition(" at ")[0] for illegal in outcome.illegal}
         ways |= {outcome.ending} - {Ending.COMPLETED}

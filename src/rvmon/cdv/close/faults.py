@@ -43,7 +43,7 @@ def with_mutants(
     Raises:
         RvmonError: the campaign measures no code, or none of the tests has a result.
     """
-    played = [one.played.job.test for one in closed.tests]
+    played = [test.played.job.test for test in closed.tests]
     suite = record_suite(campaign, robot, played, jobs=jobs)
     drawn = _drawn(mutated_code(campaign), mutants)
     steps = len(closed.choices) + 3
@@ -59,13 +59,17 @@ def with_mutants(
         kills = killers(names, drawn, step)
         choices.append(_choice(times, len(names), kills, drawn))
     kept = closed.choices[max(closed.choices)]
-    missed = [one for one in drawn if one.identity not in kills]
+    missed = [mutant for mutant in drawn if mutant.identity not in kills]
     others = [name for name in suite.tests if name not in kept]
     by_others = killers(others, missed, steps - 2)
     added = _fewest(
         killers(
             list(dict.fromkeys(name for names in by_others.values() for name in names)),
-            [one for one in missed if one.identity in by_others and one.third != HELD_OUT],
+            [
+                mutant
+                for mutant in missed
+                if mutant.identity in by_others and mutant.third != HELD_OUT
+            ],
             steps - 1,
         )
     )
@@ -73,13 +77,13 @@ def with_mutants(
     choices.append(_choice(None, len(kept) + len(added), {**kills, **by_added}, drawn))
     everything = {**kills, **by_others}
     choices.append(_choice(0, len(suite.tests), everything, drawn))
-    suite_names = {*added, *(one.job.test.name for one in closed.suite)}
+    suite_names = {*added, *(played.job.test.name for played in closed.suite)}
     return replace(
         closed,
-        suite=[one.played for one in closed.tests if one.played.job.test.name in suite_names],
+        suite=[test.played for test in closed.tests if test.played.job.test.name in suite_names],
         trade=Trade(
-            sum(one.third != HELD_OUT for one in drawn),
-            sum(one.third == HELD_OUT for one in drawn),
+            sum(mutant.third != HELD_OUT for mutant in drawn),
+            sum(mutant.third == HELD_OUT for mutant in drawn),
             tuple(choices),
         ),
     )
@@ -89,7 +93,7 @@ def _drawn(code: Code, count: int) -> list[Mutant]:
     """So many mutants, evenly over the code."""
     found = code_mutants(code)
     known = {} if code.equivalent is None else equivalents(code.equivalent, found)
-    left = [one for one in found if one.identity not in known]
+    left = [mutant for mutant in found if mutant.identity not in known]
     count = min(count, len(left))
     return [left[place * len(left) // count] for place in range(count)]
 
@@ -104,9 +108,9 @@ def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
         return {}
     tried = play_mutants(suite, mutants, jobs=jobs)
     return {
-        one.mutant.identity: frozenset(found.test for found in one.findings if found.test)
-        for one in tried
-        if one.killed
+        trial.mutant.identity: frozenset(found.test for found in trial.findings if found.test)
+        for trial in tried
+        if trial.killed
     }
 
 
@@ -122,5 +126,5 @@ def _fewest(killers: Killers) -> list[str]:
 
 
 def _choice(times: int | None, tests: int, kills: Killers, drawn: Sequence[Mutant]) -> Choice:
-    held_out = sum(one.identity in kills for one in drawn if one.third == HELD_OUT)
+    held_out = sum(mutant.identity in kills for mutant in drawn if mutant.third == HELD_OUT)
     return Choice(times, tests, len(kills) - held_out, held_out)

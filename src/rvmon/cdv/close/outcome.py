@@ -138,16 +138,16 @@ def closed_document(closed: Closed) -> dict[str, object]:
         "ended": closed.ended,
         "tests": [
             {
-                "name": one.played.job.test.name,
-                "made": one.origin,
-                "ending": one.played.outcome.ending,
-                "verdicts": one.played.outcome.verdicts,
-                "added": one.goals,
-                "met": one.met,
+                "name": test.played.job.test.name,
+                "made": test.origin,
+                "ending": test.played.outcome.ending,
+                "verdicts": test.played.outcome.verdicts,
+                "added": test.goals,
+                "met": test.met,
             }
-            for one in closed.tests
+            for test in closed.tests
         ],
-        "suite": [one.job.test.name for one in closed.suite],
+        "suite": [played.job.test.name for played in closed.suite],
         "sizes": closed.sizes,
         "at_least": closed.fewest,
         "trade": closed.trade,
@@ -169,7 +169,7 @@ SHOWN = 3
 
 def print_closed(closed: Closed, console: Console) -> None:
     """Print what each test added, what is open and why, and how small the suite is."""
-    useful = [one for one in closed.tests if one.goals]
+    useful = [test for test in closed.tests if test.goals]
     if useful:
         console.print(_table(useful, closed))
     if idle := len(closed.tests) - len(useful):
@@ -227,9 +227,9 @@ def _trade(trade: Trade) -> Table:
     chosen, held_out = f"of {trade.mutants} that choose", f"of {trade.held_out} held out"
     for heading in ("tests", chosen, held_out):
         table.add_column(heading, justify="right", no_wrap=True)
-    for one in trade.choices:
-        figures = (one.tests, one.killed, one.held_out)
-        table.add_row(_choice_text(one.times), *map(str, figures))
+    for choice in trade.choices:
+        figures = (choice.tests, choice.killed, choice.held_out)
+        table.add_row(_choice_text(choice.times), *map(str, figures))
     return table
 
 
@@ -247,12 +247,12 @@ def _table(useful: Sequence[Added], closed: Closed) -> Table:
     for title in ("new", "share"):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("made from, and what it added")
-    for one in useful:
-        shown = ", ".join(map(name_of, one.goals[:SHOWN]))
-        more = f", … and {len(one.goals) - SHOWN} more" if len(one.goals) > SHOWN else ""
-        share = percent_text(one.met, closed.goals)
-        name = one.played.job.test.name
-        table.add_row(name, str(len(one.goals)), share, f"{one.origin}\n{shown}{more}")
+    for added in useful:
+        shown = ", ".join(map(name_of, added.goals[:SHOWN]))
+        more = f", … and {len(added.goals) - SHOWN} more" if len(added.goals) > SHOWN else ""
+        share = percent_text(added.met, closed.goals)
+        name = added.played.job.test.name
+        table.add_row(name, str(len(added.goals)), share, f"{added.origin}\n{shown}{more}")
     return table
 
 

@@ -158,7 +158,7 @@ class Proposer:
     def _changed(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """One of the tests that came nearest to a goal, changed."""
         nearest = self._rng.choice(self._nearest(goal)).job.test
-        others = [one.job.test for one in self._tests]
+        others = [test.job.test for test in self._tests]
         made = self._mutator.mutated(nearest, others, self._rng, drawn)
         if made is None:
             return None
@@ -170,7 +170,7 @@ class Proposer:
         """A test whose choices are those of the tests that came nearest to a goal, more often."""
         if self._campaign.closing.biased is None:
             return None
-        near = [self._draws.get(one.job.test.name, ()) for one in self._nearest(goal)]
+        near = [self._draws.get(played.job.test.name, ()) for played in self._nearest(goal)]
 
         def choose(name: str, options: Sequence[_Option], /) -> _Option:
             return self._learned.choose(self._rng, name, options, drawn, near)
@@ -199,7 +199,7 @@ class Proposer:
         return heapq.nlargest(
             NEAREST,
             self._tests,
-            lambda one: (nearness(goal, one.outcome.hits, model), rng.random()),
+            lambda played: (nearness(goal, played.outcome.hits, model), rng.random()),
         )
 
     def _by_campaign(self, what: str, make: Callable[[], Test]) -> Test:

@@ -232,7 +232,7 @@ class Mutator:
             case inspect.LiteralType():
                 return self._learned.choose(rng, path, list(kind.values), drawn)
             case inspect.EnumType():
-                options = [one.value for one in kind.cls]
+                options = [enum.value for enum in kind.cls]
                 return self._learned.choose(rng, path, options, drawn)
             case inspect.IntType() | inspect.FloatType():
                 return _number(kind, rng)

@@ -108,8 +108,8 @@ def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
     return Difference(test, *min(places, key=lambda place: place[0]), verdicts)
 
 
-def _states(one: Recorded) -> tuple[tuple[int, Values], ...]:
-    return tuple((t_ns, {"state": state}) for t_ns, state in one.run.states)
+def _states(recorded: Recorded) -> tuple[tuple[int, Values], ...]:
+    return tuple((t_ns, {"state": state}) for t_ns, state in recorded.run.states)
 
 
 _OVER: tuple[int, Values] = (2**63, {})
@@ -169,12 +169,12 @@ class Suite:
             return list(self.tests)
         statements = self._statements[path]
         own = statements[bisect_right(statements, mutant.line) - 1]
-        return [name for name, one in self.recorded.items() if own in one.lines[path]]
+        return [name for name, recorded in self.recorded.items() if own in recorded.lines[path]]
 
     @cached_property
     def _statements(self) -> dict[str, list[int]]:
         """The first lines of the statements of each file, ascending."""
-        groups = [one for one in code_groups(self.code) if one.subject is Subject.STATEMENTS]
+        groups = [group for group in code_groups(self.code) if group.subject is Subject.STATEMENTS]
         found: dict[str, list[int]] = {}
         for block, group in zip(self.code.blocks, groups, strict=True):
             found.setdefault(block.path, []).extend(map(int, group.items))
@@ -217,7 +217,7 @@ def record_suite(
     under_test = campaign.robots[robot]
     code = mutated_code(campaign)
     spec = campaign.requirements_of(robot)
-    own = [one for one in tests if one.mutation is None and one.robot in (None, robot)]
+    own = [test for test in tests if test.mutation is None and test.robot in (None, robot)]
     recorded: dict[str, Recorded] = {}
     left_out: dict[str, str] = {}
     with closing(
@@ -241,7 +241,7 @@ def record_suite(
     if not recorded:
         why = next(iter(left_out.values()), "it has no test for this robot without a planted fault")
         raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
-    used = {one.name: one for one in own if one.name in recorded}
+    used = {test.name: test for test in own if test.name in recorded}
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
 
 

@@ -53,7 +53,9 @@ class MutationReport:
         """The score of each third, and of all."""
         tried = self.suites[suite].tried
         thirds = {
-            third: scored((one for one in tried if one.mutant.third == third), self.equivalent)
+            third: scored(
+                (trial for trial in tried if trial.mutant.third == third), self.equivalent
+            )
             for third in THIRDS
         }
         return {**thirds, ALL: scored(tried, self.equivalent)}
@@ -62,7 +64,9 @@ class MutationReport:
         """The score on mutants of the requirements; what is equivalent is proved to be."""
         tried = self.suites[suite].spec_tried
         thirds = {
-            third: spec_scored(one for one in tried if one.mutant.third == third)
+            third: spec_scored(
+                spec_tried for spec_tried in tried if spec_tried.mutant.third == third
+            )
             for third in THIRDS
         }
         return {**thirds, ALL: spec_scored(tried)}
@@ -70,9 +74,9 @@ class MutationReport:
     def spec_survivors(self, suite: str) -> list[SpecTried]:
         """The mutants of requirements that are shown, and that no run tells apart."""
         return [
-            one
-            for one in self.suites[suite].spec_tried
-            if self._shows(one) and not (one.test or one.proved)
+            tried
+            for tried in self.suites[suite].spec_tried
+            if self._shows(tried) and not (tried.test or tried.proved)
         ]
 
     def shown(self, suite: str) -> list[Tried]:
@@ -85,20 +89,20 @@ class MutationReport:
     def kills(self, suite: str) -> list[tuple[str, str, str]]:
         """Those of them that are killed, and the mutants of requirements: name, change, by what."""
         killed: list[tuple[Mutant | SpecMutant, str]]
-        killed = [(one.mutant, killer(one)) for one in self.shown(suite) if one.killed]
+        killed = [(tried.mutant, killer(tried)) for tried in self.shown(suite) if tried.killed]
         killed += [
-            (one.mutant, f"{one.test}: {one.was}, now {one.now}")
-            for one in self.suites[suite].spec_tried
-            if one.test and self._shows(one)
+            (tried.mutant, f"{tried.test}: {tried.was}, now {tried.now}")
+            for tried in self.suites[suite].spec_tried
+            if tried.test and self._shows(tried)
         ]
         return [(mutant.identity, mutant.brief, what) for mutant, what in killed]
 
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
         """Those of them that survive and are not known to be equivalent, by what may be missing."""
         found: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}
-        for one in self.shown(suite):
-            if not (one.killed or one.invalid or one.mutant.identity in self.equivalent):
-                found[missing(one)].append(one)
+        for tried in self.shown(suite):
+            if not (tried.killed or tried.invalid or tried.mutant.identity in self.equivalent):
+                found[missing(tried)].append(tried)
         return {kind: members for kind, members in found.items() if members}
 
     @property
@@ -107,22 +111,22 @@ class MutationReport:
         scores = (
             one[ALL] for name in self.suites for one in (self.scores(name), self.spec_scores(name))
         )
-        return any(one.killed < one.rest for one in scores)
+        return any(score.killed < score.rest for score in scores)
 
     def contradictions(self) -> list[str]:
         """Mutants that are declared equivalent, and are killed, or make a run differ."""
         return [
-            f"{one.mutant.identity} is declared equivalent, and {why}"
+            f"{tried.mutant.identity} is declared equivalent, and {why}"
             for suite in self.suites.values()
-            for one in suite.tried
-            if one.mutant.identity in self.equivalent and (why := self._refuted(one))
+            for tried in suite.tried
+            if tried.mutant.identity in self.equivalent and (why := self._refuted(tried))
         ]
 
-    def _refuted(self, one: Tried) -> str:
+    def _refuted(self, tried: Tried) -> str:
         """What distinguishes a mutant from the code as it is; empty: nothing does."""
-        if one.killed:
-            return f"{killer(one)} kills it"
-        return question(one, self.reading) if one.difference is not None else ""
+        if tried.killed:
+            return f"{killer(tried)} kills it"
+        return question(tried, self.reading) if tried.difference is not None else ""
 
     def document(self) -> dict[str, object]:
         """All of it as data."""
@@ -139,17 +143,17 @@ class MutationReport:
             "tests": suite.tests,
             "left_out": suite.left_out,
             "scores": self.scores(name),
-            "mutants": [self._mutant(one) for one in self.shown(name)],
+            "mutants": [self._mutant(tried) for tried in self.shown(name)],
             "spec_scores": self.spec_scores(name),
             "spec_mutants": [
-                _spec_mutant(one)
-                for one in suite.spec_tried
-                if self.shows_held_out or one.mutant.third != HELD_OUT
+                _spec_mutant(tried)
+                for tried in suite.spec_tried
+                if self.shows_held_out or tried.mutant.third != HELD_OUT
             ],
         }
 
-    def _mutant(self, one: Tried) -> dict[str, object]:
-        mutant = one.mutant
+    def _mutant(self, tried: Tried) -> dict[str, object]:
+        mutant = tried.mutant
         document: dict[str, object] = {
             "mutant": mutant.identity,
             "third": mutant.third,
@@ -157,37 +161,37 @@ class MutationReport:
             "line": mutant.line,
             "before": mutant.before,
             "after": mutant.after,
-            "reaching": one.reaching,
-            "played": one.played,
+            "reaching": tried.reaching,
+            "played": tried.played,
         }
-        if one.invalid:
-            document["invalid"] = one.invalid
-        elif one.killed:
-            document["killed_by"] = one.findings
+        if tried.invalid:
+            document["invalid"] = tried.invalid
+        elif tried.killed:
+            document["killed_by"] = tried.findings
         elif mutant.identity in self.equivalent:
             document["equivalent"] = self.equivalent[mutant.identity]
         else:
-            document |= {"missing": missing(one).value, "question": question(one, self.reading)}
+            document |= {"missing": missing(tried).value, "question": question(tried, self.reading)}
         return document
 
 
-def killer(one: Tried) -> str:
+def killer(tried: Tried) -> str:
     """What kills a mutant, in words: a requirement that fails before anything else."""
-    found = next((each for each in one.findings if each.how == "requirement"), one.findings[0])
+    found = next((each for each in tried.findings if each.how == "requirement"), tried.findings[0])
     what = ", ".join(found.what)
     return f"{found.how} ({what})" + (f" in {found.test}" if found.test else "")
 
 
-def _spec_mutant(one: SpecTried) -> dict[str, object]:
+def _spec_mutant(tried: SpecTried) -> dict[str, object]:
     document: dict[str, object] = {
-        "mutant": one.mutant.identity,
-        "third": one.mutant.third,
-        "before": one.mutant.before,
-        "after": one.mutant.after,
-        "proved_equivalent": one.proved,
+        "mutant": tried.mutant.identity,
+        "third": tried.mutant.third,
+        "before": tried.mutant.before,
+        "after": tried.mutant.after,
+        "proved_equivalent": tried.proved,
     }
-    if one.was is not None and one.now is not None:
-        document["killed_by"] = {"test": one.test, "was": one.was.value, "now": one.now.value}
+    if tried.was is not None and tried.now is not None:
+        document["killed_by"] = {"test": tried.test, "was": tried.was.value, "now": tried.now.value}
     return document
 
 
@@ -237,11 +241,14 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
 def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
     """What survives, by what may be missing: a heading, and the lines of each."""
     for kind, survivors in report.survivors(suite).items():
-        yield TITLES[kind], [list(survivor_lines(one, report)) for one in survivors]
+        yield TITLES[kind], [list(survivor_lines(survivor, report)) for survivor in survivors]
     if spec_survivors := report.spec_survivors(suite):
         blocks = [
-            [f"  {one.mutant.identity}", *_difference(one.mutant.before, one.mutant.after)]
-            for one in spec_survivors
+            [
+                f"  {survivor.mutant.identity}",
+                *_difference(survivor.mutant.before, survivor.mutant.after),
+            ]
+            for survivor in spec_survivors
         ]
         yield SPEC_TITLE, blocks
 
@@ -258,12 +265,12 @@ def score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
             name = ""
 
 
-def survivor_lines(one: Tried, report: MutationReport) -> Iterator[str]:
+def survivor_lines(tried: Tried, report: MutationReport) -> Iterator[str]:
     """A survivor: its place, the change, the question."""
-    mutant = one.mutant
+    mutant = tried.mutant
     yield f"  {mutant.path.name}:{mutant.line}  {mutant.identity}"
     yield from _difference(mutant.before, mutant.after)
-    yield f"    {question(one, report.reading)}"
+    yield f"    {question(tried, report.reading)}"
 
 
 def spec_score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
@@ -284,12 +291,12 @@ def _difference(before: str, after: str) -> Iterator[str]:
 def _killers(suite: SuiteTried) -> str:
     """How many are killed by what first comes of: a requirement, an answer, a crash and so on."""
     counts = dict.fromkeys(How, 0)
-    for one in suite.tried:
-        if one.killed:
-            found = {finding.how for finding in one.findings}
+    for tried in suite.tried:
+        if tried.killed:
+            found = {finding.how for finding in tried.findings}
             counts[next(how for how in How if how in found)] += 1
     kills = ", ".join(f"{count} {_HOW_TEXT[how]}" for how, count in counts.items() if count)
-    invalid = sum(bool(one.invalid) for one in suite.tried)
+    invalid = sum(bool(tried.invalid) for tried in suite.tried)
     rest = f"; {invalid} cannot be planted" if invalid else ""
     return f"{counted(suite.tests, 'test')}, {kills or 'nothing killed'}{rest}"
 
@@ -310,7 +317,7 @@ def _left_out(suite: SuiteTried) -> Iterator[str]:
 
 def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
     """The mutants one by one, without playing them."""
-    shown = [one for one in mutants if held_out or one.third != HELD_OUT]
+    shown = [mutant for mutant in mutants if held_out or mutant.third != HELD_OUT]
     rows = [("third", "mutant", "change")]
     rows += [(one.third, one.identity, one.brief) for one in shown]
     hidden = len(mutants) - len(shown)
@@ -329,8 +336,8 @@ def mutation_page(report: MutationReport) -> str:
     """Write the page; it needs no script and nothing but itself."""
     suites = report.suites.values()
     hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, and not shown."
-    code = any(one.tried for one in suites)
-    requirements = any(one.spec_tried for one in suites)
+    code = any(suite.tried for suite in suites)
+    requirements = any(suite.spec_tried for suite in suites)
     scores: list[tuple[str, Sequence[str], Iterable[Sequence[str]]]] = []
     scores += [("The code", HEAD, score_rows(report))] if code else []
     scores += [("The requirements", SPEC_HEAD, spec_score_rows(report))] if requirements else []
@@ -353,19 +360,19 @@ def _shown(report: MutationReport, suite: str) -> tuple[list[Tried], list[Sequen
     """Mutants of a suite that were killed, and a row for each that is declared equivalent."""
     found = report.shown(suite)
     equivalent = [
-        (one.mutant.identity, one.mutant.brief, report.equivalent[one.mutant.identity])
-        for one in found
-        if one.mutant.identity in report.equivalent
+        (tried.mutant.identity, tried.mutant.brief, report.equivalent[tried.mutant.identity])
+        for tried in found
+        if tried.mutant.identity in report.equivalent
     ]
-    return [one for one in found if one.killed], [*equivalent]
+    return [tried for tried in found if tried.killed], [*equivalent]
 
 
 def _kill_rows(killed: Sequence[Tried]) -> list[Sequence[str]]:
     """By each requirement, and each other way, how many mutants it kills first."""
     counts: Counter[str] = Counter()
     tests: dict[str, Counter[str]] = {}
-    for one in killed:
-        best = min(one.findings, key=lambda found: tuple(How).index(found.how))
+    for tried in killed:
+        best = min(tried.findings, key=lambda found: tuple(How).index(found.how))
         for what in best.what if best.how is How.REQUIREMENT else (best.how.value,):
             counts[what] += 1
             tests.setdefault(what, Counter())[best.test] += 1

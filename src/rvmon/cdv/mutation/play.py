@@ -37,7 +37,7 @@ def plant(mutant: Mutant, source: str) -> None:
     path = os.path.abspath(mutant.path)
     changed = compile(mutant.source, path, "exec")
     _change_loader(path, changed)
-    modules = [one for one in list(sys.modules.values()) if _path_of(one) == path]
+    modules = [module for module in list(sys.modules.values()) if _path_of(module) == path]
     if not modules:
         return
     known = _codes_of(compile(source, path, "exec"), mutant.function)
@@ -64,14 +64,14 @@ def _change_loader(path: str, changed: CodeType) -> None:
 
 def _codes_of(code: CodeType, name: str) -> list[CodeType]:
     """The functions of a qualified name in the order of the file: a property has up to three."""
-    return [one for one in _all_codes(code) if one.co_qualname == name]
+    return [code_type for code_type in _all_codes(code) if code_type.co_qualname == name]
 
 
 def _all_codes(code: CodeType) -> Iterator[CodeType]:
-    for one in code.co_consts:
-        if isinstance(one, CodeType):
-            yield one
-            yield from _all_codes(one)
+    for const in code.co_consts:
+        if isinstance(const, CodeType):
+            yield const
+            yield from _all_codes(const)
 
 
 def _change_functions(path: str, known: list[CodeType], changed: list[CodeType]) -> None:
@@ -149,8 +149,8 @@ def play_mutants(
         What became of each, in their order; it does not depend on `jobs`.
     """
     _load_what_runs_need(suite)
-    sources = {str(one.path): text_of_file(one.path) for one in mutants}
-    tasks = [(one, suite.reaching(one)) for one in mutants]
+    sources = {str(mutant.path): text_of_file(mutant.path) for mutant in mutants}
+    tasks = [(mutant, suite.reaching(mutant)) for mutant in mutants]
     found: list[Tried] = []
     with closing(
         parallel.execute(

@@ -213,7 +213,7 @@ def code_mutants(code: Code) -> list[Mutant]:
     for path, own in lines.items():
         known = {_meaning(compile(text_of_file(path), path, "exec"))}
         made = mutants(Path(path), own, constants=code.constants.get(path, ()))
-        for mutant in sorted(made, key=lambda one: one.line):
+        for mutant in sorted(made, key=lambda mutant: mutant.line):
             meaning = _meaning_of(mutant)
             if meaning is not None and meaning not in known:
                 known.add(meaning)
@@ -234,8 +234,8 @@ def _meaning(code: CodeType) -> tuple[object, ...]:
 
 
 def _constants(code: CodeType) -> Iterator[object]:
-    for one in code.co_consts:
-        if isinstance(one, CodeType):
-            yield _meaning(one)
+    for const in code.co_consts:
+        if isinstance(const, CodeType):
+            yield _meaning(const)
         else:
-            yield type(one).__name__, repr(one)
+            yield type(const).__name__, repr(const)

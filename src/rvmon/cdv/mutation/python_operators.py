@@ -47,13 +47,15 @@ def _used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
     """The strings right below a node, each with its use."""
     match node:
         case ast.Call(func=function, args=arguments):
-            pairs = [(f"{ast.unparse(function)} {at}", one) for at, one in enumerate(arguments)]
+            pairs = [
+                (f"{ast.unparse(function)} {at}", argument) for at, argument in enumerate(arguments)
+            ]
         case ast.Return(value=ast.expr() as value):
             pairs = [("return", value)]
         case ast.Compare(left=left, comparators=comparators):
             pairs = [("compare", one) for one in (left, *comparators)]
         case ast.Set(elts=elements):
-            pairs = [("element", one) for one in elements]
+            pairs = [("element", element) for element in elements]
         case _:
             pairs = []
     for use, one in pairs:
@@ -82,9 +84,9 @@ class Scope:
 
     def further(self, elements: Sequence[ast.expr]) -> list[str]:
         """The next string that a set of strings has not."""
-        own = [one for one in elements if isinstance(one, ast.Constant)]
-        values = [one.value for one in own]
-        others = (other for one in own for other in self._strings.others(one))
+        own = [element for element in elements if isinstance(element, ast.Constant)]
+        values = [constant.value for constant in own]
+        others = (other for constant in own for other in self._strings.others(constant))
         return [other for other in others if other not in values][:1]
 
     def bound_before(self, name: str, node: ast.stmt) -> bool:
@@ -99,8 +101,8 @@ class Scope:
 
     def holds_all_waits(self, node: ast.AST) -> bool:
         """Whether without a node it would be no generator any more."""
-        waits = {id(one) for one in self._nodes if isinstance(one, _WAITS)}
-        return bool(waits) and waits <= {id(one) for one in _below(node)}
+        waits = {id(t) for t in self._nodes if isinstance(t, _WAITS)}
+        return bool(waits) and waits <= {id(t) for t in _below(node)}
 
     def is_top_level(self, node: ast.stmt) -> bool:
         """Whether it is one of its statements, and not part of another."""
@@ -113,7 +115,7 @@ class Scope:
 
     def returned(self) -> list[str]:
         """The constants that it returns; nothing, once, if it returns no values."""
-        returns = [one.value for one in self._nodes if isinstance(one, ast.Return)]
+        returns = [node.value for node in self._nodes if isinstance(node, ast.Return)]
         values = [ast.unparse(one) for one in returns if isinstance(one, ast.Constant)]
         return list(dict.fromkeys(values)) or ([""] if not any(returns) else [])
 

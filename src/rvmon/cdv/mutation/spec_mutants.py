@@ -262,8 +262,8 @@ class SpecTried:
 def spec_scored(tried: Iterable[SpecTried]) -> Score:
     """Count mutants of requirements."""
     counted = list(tried)
-    killed = sum(bool(one.test) for one in counted)
-    return Score(len(counted), sum(one.proved for one in counted), killed, killed, 0)
+    killed = sum(bool(spec_tried.test) for spec_tried in counted)
+    return Score(len(counted), sum(spec_tried.proved for spec_tried in counted), killed, killed, 0)
 
 
 def spec_mutants(spec: CheckedSpec) -> list[SpecMutant]:
@@ -274,7 +274,11 @@ def spec_mutants(spec: CheckedSpec) -> list[SpecMutant]:
     >>> [one.after for one in spec_mutants(spec) if one.kind == "no deadline"]
     ['upon a then eventually b']
     """
-    return [mutant for one in spec.requirements.values() for mutant in _of_requirement(one)]
+    return [
+        mutant
+        for requirement in spec.requirements.values()
+        for mutant in _of_requirement(requirement)
+    ]
 
 
 def _of_requirement(requirement: Requirement) -> Iterator[SpecMutant]:
@@ -309,10 +313,10 @@ def try_spec_mutants(
     Returns:
         What became of each; of what no run tells apart it is tried to prove that none can.
     """
-    named = {one.identity: one for one in mutants}
+    named = {mutant.identity: mutant for mutant in mutants}
     every = replace(
         spec.checked,
-        requirements={name: replace(one.changed, id=name) for name, one in named.items()},
+        requirements={name: replace(mutant.changed, id=name) for name, mutant in named.items()},
         properties={},
     )
     checker = Checker(Spec(every))
@@ -340,20 +344,30 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
     """
     pair = {"before": mutant.requirement, "after": mutant.changed}
     compiled = CompiledSpec(
-        replace(spec, requirements={name: replace(one, id=name) for name, one in pair.items()})
+        replace(
+            spec,
+            requirements={
+                name: replace(requirement, id=name) for name, requirement in pair.items()
+            },
+        )
     ).requirements
     if any(
-        horizon(one.obligation.required) is None or one.automaton is None
-        for one in compiled.values()
+        horizon(requirement.obligation.required) is None or requirement.automaton is None
+        for requirement in compiled.values()
     ):
         return False
     before, after = (
-        Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
-        for one in compiled.values()
+        Subject(
+            requirement.requirement,
+            requirement.obligation.trigger,
+            requirement.automaton,
+            requirement.reads,
+        )
+        for requirement in compiled.values()
     )
     fails_alone = Aim(frozenset({0}), frozenset({1}))
     return all(
-        starts_with(together, other, one)
-        and together.can_reach([other, one], [0, 0], fails_alone) is False
-        for other, one in ((before, after), (after, before))
+        starts_with(together, other, subject)
+        and together.can_reach([other, subject], [0, 0], fails_alone) is False
+        for other, subject in ((before, after), (after, before))
     )

@@ -77,7 +77,7 @@ class Tried:
     @property
     def killed_by_requirement(self) -> bool:
         """Whether a requirement fails on it: known answers and crashes do not count."""
-        return any(one.how is How.REQUIREMENT for one in self.findings)
+        return any(finding.how is How.REQUIREMENT for finding in self.findings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +107,9 @@ class Score:
 def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
     """The runs that were kept of mutants which are not held out, by test and mutant."""
     return {
-        f"{one.failing[0]} with {one.mutant.identity}": one.failing[1]
-        for one in tried
-        if one.failing is not None and one.mutant.third != HELD_OUT
+        f"{trial.failing[0]} with {trial.mutant.identity}": trial.failing[1]
+        for trial in tried
+        if trial.failing is not None and trial.mutant.third != HELD_OUT
     }
 
 
@@ -120,14 +120,14 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
         tried: mutants.
         equivalent: the identities of those that are declared to change no behaviour.
     """
-    counted = [one for one in tried if not one.invalid]
+    counted = [trial for trial in tried if not trial.invalid]
     known = set(equivalent)
     return Score(
         len(counted),
-        sum(one.mutant.identity in known and not one.killed for one in counted),
-        sum(one.killed for one in counted),
-        sum(one.killed_by_requirement for one in counted),
-        sum(not one.reaching for one in counted),
+        sum(trial.mutant.identity in known and not trial.killed for trial in counted),
+        sum(trial.killed for trial in counted),
+        sum(trial.killed_by_requirement for trial in counted),
+        sum(not trial.reaching for trial in counted),
     )
 
 
@@ -212,7 +212,7 @@ def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
         raise RvmonError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise RvmonError(f"{path}: not TOML: {error}") from None
-    known = {one.identity: one.brief for one in mutants}
+    known = {mutant.identity: mutant.brief for mutant in mutants}
     arguments: dict[str, str] = {}
     for name, entry in found.items():
         match entry:

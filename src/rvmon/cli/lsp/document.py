@@ -257,7 +257,7 @@ class Document:
 
 def _badness(compiled: Compilation) -> tuple[int, int]:
     found = compiled.findings
-    return sum(one.severity is Severity.ERROR for one in found), len(found)
+    return sum(diagnostic.severity is Severity.ERROR for diagnostic in found), len(found)
 
 
 @cache

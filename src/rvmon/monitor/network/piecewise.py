@@ -112,12 +112,12 @@ def not_before(pieces: Pieces, at: int, slope: int) -> Pieces:
     return latest(pieces, ((-FAR, FAR, at, slope),))
 
 
-def earliest(one: Pieces, other: Pieces) -> Pieces:
+def earliest(pieces: Pieces, other: Pieces) -> Pieces:
     """The pointwise minimum: known as soon as one of two is."""
-    if not one or not other:
-        return one or other
+    if not pieces or not other:
+        return pieces or other
     made: list[Piece] = []
-    for left, right, first, second in _refined(one, other):
+    for left, right, first, second in _refined(pieces, other):
         if first is not None and second is not None:
             _choose(made, left, right, first, second, least=True)
         elif line := first or second:
@@ -125,12 +125,12 @@ def earliest(one: Pieces, other: Pieces) -> Pieces:
     return made
 
 
-def latest(one: Pieces, other: Pieces) -> Pieces:
+def latest(pieces: Pieces, other: Pieces) -> Pieces:
     """The pointwise maximum: known once both are."""
-    if not one or not other:
+    if not pieces or not other:
         return ()
     made: list[Piece] = []
-    for left, right, first, second in _refined(one, other):
+    for left, right, first, second in _refined(pieces, other):
         if first is not None and second is not None:
             _choose(made, left, right, first, second, least=False)
     return made
@@ -159,12 +159,12 @@ def _choose(
     append(made, max(left, cross + 1), right, *upper)
 
 
-def _refined(one: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None, Line | None]]:
+def _refined(pieces: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None, Line | None]]:
     """The stretches on which each has a single line or none, in order; not where both have none."""
     i = j = 0
     at = -FAR
-    while i < len(one) or j < len(other):
-        start, end, *line = one[i] if i < len(one) else _NO_MORE
+    while i < len(pieces) or j < len(other):
+        start, end, *line = pieces[i] if i < len(pieces) else _NO_MORE
         its_start, its_end, *its_line = other[j] if j < len(other) else _NO_MORE
         left = max(at, min(start, its_start))
         right = min(

@@ -83,7 +83,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
             f"ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
         )
     with errors_as_damage(_FORM):
-        end = max(int(one.load()[0].max()) for one in topics)
+        end = max(int(topic.load()[0].max()) for topic in topics)
     return ColumnMessages(topics, end, close=close)
 
 
@@ -152,10 +152,10 @@ def _listed(tree: _Tree, prefix: str) -> Iterator[tuple[str, _Array]]:
 
 def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[ColumnTopic]:
     """A topic for each group with stamps; groups in it without any are part of it."""
-    own = {name: one for name, one in tree.items() if isinstance(one, _Array)}
-    for name, one in own.items():
+    own = {name: array for name, array in tree.items() if isinstance(array, _Array)}
+    for name, array in own.items():
         is_named = stamps is not None and stamps.column.strip("/") == f"{place}{name}"
-        if len(one.shape) == 1 and (is_named or (stamps is None and name.lower() in _TIMES)):
+        if len(array.shape) == 1 and (is_named or (stamps is None and name.lower() in _TIMES)):
             yield _topic(tree, place, name, stamps)
             break
     for name, inner in tree.items():
@@ -176,9 +176,9 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnT
     }
     paths = distinct([path_of(name) for name in found])
     columns = dict(zip(paths, found.values(), strict=True))
-    arrays = {path + "[]" * (len(one.shape) - 1): one for path, one in columns.items()}
-    leaves = {leaf: kind_of_type(one.dtype) for leaf, one in arrays.items()}
-    units = {leaf: one.unit for leaf, one in arrays.items() if one.unit}
+    arrays = {path + "[]" * (len(column.shape) - 1): column for path, column in columns.items()}
+    leaves = {leaf: kind_of_type(array.dtype) for leaf, array in arrays.items()}
+    units = {leaf: array.unit for leaf, array in arrays.items() if array.unit}
     name = "/" + "/".join(path_of(step) for step in place.strip("/").split("/") if step)
     topic = Topic(name if place else "/data", "arrays", leaves, units=units)
     return ColumnTopic(topic, count, lambda: (_ticks(array, stamps), columns))

@@ -108,7 +108,7 @@ class FrameMessages(Messages):
             for channel in sorted(found, key=str)
         }
         if self.end is not None:
-            self.end = max([self.end, *(one.until for one in self.outages)])
+            self.end = max([self.end, *(outage.until for outage in self.outages)])
             if self._is_cut:
                 self.outages.append(Outage(self.end, self.end + 1, "it was cut off, or not closed"))
                 self.end += 1
@@ -358,7 +358,7 @@ def _reader(message: Any) -> Callable[[bytes], Mapping[str, Any]]:
         for signal in message.signals
         if signal.choices and signal.name not in named
     }
-    bits = {one.name for one in message.signals if _kind(one) is Kind.BOOL}
+    bits = {signal.name for signal in message.signals if _kind(signal) is Kind.BOOL}
 
     def value(name: str, number: Any) -> Any:
         if name in named:

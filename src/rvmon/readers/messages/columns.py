@@ -49,9 +49,9 @@ class ColumnMessages(Messages):
         outages: Sequence[Outage] = (),
         close: Callable[[], object] = lambda: None,
     ) -> None:
-        self._topics = {one.topic.name: one for one in topics}
-        self.topics = {one.topic.name: one.topic for one in topics}
-        self.count = sum(one.count for one in topics)
+        self._topics = {topic.topic.name: topic for topic in topics}
+        self.topics = {topic.topic.name: topic.topic for topic in topics}
+        self.count = sum(topic.count for topic in topics)
         self.end = end
         self.outages = outages
         self._close = close
@@ -96,7 +96,8 @@ class LateColumn:
         cells: list[Any] = values.tolist()
         if values.dtype.kind in "SO":
             cells = [
-                one.decode("utf-8", "replace") if isinstance(one, bytes) else one for one in cells
+                cell.decode("utf-8", "replace") if isinstance(cell, bytes) else cell
+                for cell in cells
             ]
         if invalid is not None:
             cells = [None if wrong else one for one, wrong in zip(cells, invalid, strict=True)]

@@ -81,7 +81,7 @@ def dataflash_messages(path: Path) -> ColumnMessages:
     loaded = [topic.load()[0] for topic in topics]
     end = max((int(times.max()) for times in loaded if len(times)), default=0)
     outages = _damage(log, data, starts, end)
-    last = max((one.until for one in outages), default=end)
+    last = max((outage.until for outage in outages), default=end)
     return ColumnMessages(topics, max(end, last), outages, log.filehandle.close)
 
 
@@ -182,4 +182,4 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     is_filling = len(rest) < _PAGE and bool((rest == 0).all() or (rest == _ERASED).all())
     if len(places) and (behind[-1] > len(data) or not is_filling):
         found.append(Outage(end, end + 1, "it ends within a message"))
-    return sorted(found, key=lambda one: one.since)
+    return sorted(found, key=lambda outage: outage.since)

@@ -133,17 +133,17 @@ class MessageFile:
 
     def _of_names(self, outages: Sequence[Outage]) -> Iterator[Outage]:
         """Outages of topics as those of the names that they feed."""
-        for one in outages:
-            if one.names is None:
-                yield one
-            elif fed := {name for name, own in self._bounds.items() if own.topic in one.names}:
-                yield replace(one, names=frozenset(fed))
+        for outage in outages:
+            if outage.names is None:
+                yield outage
+            elif fed := {name for name, own in self._bounds.items() if own.topic in outage.names}:
+                yield replace(outage, names=frozenset(fed))
 
     def _opened(self) -> Messages:
         path, form = self._place
         source = open_messages(local_path(path), form, self._schema)
         schema = self._schema
-        bound = [one.topic for one in schema.binding.bounds.values()]
+        bound = [bound.topic for bound in schema.binding.bounds.values()]
         pairs = pairs_asked([*bound, *schema.columns.values(), *schema.signals])
         if pairs and sends_transforms(source.topics):
             return WithTransforms(source, pairs)

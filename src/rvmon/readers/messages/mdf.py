@@ -65,7 +65,7 @@ def mdf_messages(path: Path) -> ColumnMessages | None:
     file = open_measurement(path)
     with errors_as_damage("MDF"):
         groups = [one for one, group in enumerate(file.groups) if group.channel_group.cycles_nr]
-        kept = [one for one in groups if not _holds_frames(file.groups[one])]
+        kept = [group for group in groups if not _holds_frames(file.groups[group])]
         if groups and not kept:
             file.close()
             return None

@@ -223,11 +223,11 @@ def _combined(
         return ()
     # A number that is not a field may change the scale: thousandths of metres become metres.
     keeps = sign not in ("*", "/")
-    return tuple(replace(one, is_exact=one.is_exact and keeps) for one in known[0][1])
+    return tuple(replace(measure, is_exact=measure.is_exact and keeps) for measure in known[0][1])
 
 
 def _expect_alike(term: Applied, inner: list[tuple[Measure, ...]], topic: Topic) -> None:
-    dimensions = [{one.unit.dimension for one in own} for own in inner if own]
+    dimensions = [{measure.unit.dimension for measure in own} for own in inner if own]
     if dimensions and not reduce(set.intersection, dimensions):
         listed = " and ".join(
             f"`{arg}` in {_written(own)}" for arg, own in zip(term.args, inner, strict=True) if own
@@ -252,11 +252,11 @@ def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
 
 def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> None:
     found = measures_of(term, topic)
-    is_prose = bool(found) and all(one.is_prose for one in found)
+    is_prose = bool(found) and all(measure.is_prose for measure in found)
     if not found or not declared or (is_prose and given):
         return  # who writes the unit of a field has read what its comment means
     target = parse_unit(given or declared)
-    alike = [one for one in found if one.unit.dimension == target.dimension]
+    alike = [measure for measure in found if measure.unit.dimension == target.dimension]
     where = f"topic {topic.name} ({topic.type})" if topic.type else f"topic {topic.name}"
     is_so = f"`{term}` of {where} is {_written(found)}{', as a comment says' if is_prose else ''}"
     wanted = f"`{name}` is declared [{declared}]"
@@ -265,7 +265,7 @@ def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> N
         raise TraceError(
             f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}{otherwise}"
         )
-    if any(not one.is_exact or one.unit.factor == target.factor for one in alike):
+    if any(not measure.is_exact or measure.unit.factor == target.factor for measure in alike):
         return
     says = f"and `unit` says [{given}]" if given else "in which it would be judged as it is"
     fix = f'write `unit = "{alike[0].unit.symbol or 1}"` in a binding, and it is converted'
@@ -288,6 +288,7 @@ def _written(found: Iterable[Measure]) -> str:
     'in [rad] or a plain number'
     """
     listed = [
-        f"in [{one.unit.symbol}]" if one.unit.dimension else "a plain number" for one in found
+        f"in [{measure.unit.symbol}]" if measure.unit.dimension else "a plain number"
+        for measure in found
     ]
     return " or ".join(dict.fromkeys(listed))

@@ -76,7 +76,9 @@ class BagMessages(Messages):
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
-        wanted = [one for one in self._reader.connections if one.topic in topics]
+        wanted = [
+            connection for connection in self._reader.connections if connection.topic in topics
+        ]
         if not wanted:
             return
         decoders = self._decoders
@@ -256,7 +258,7 @@ def _types(distribution: str, parts: Iterable[Callable[[], Any]]) -> tuple[Any, 
 
     store = get_typestore(Stores[distribution])
     try:
-        store.register({name: fields for one in parts for name, fields in one().items()})
+        store.register({name: fields for part in parts for name, fields in part().items()})
     except (TypesysError, KeyError, ValueError, TypeError) as error:
         return None, first_line(error)
     return store, ""

@@ -90,18 +90,26 @@ class Skew:
 
     def doubts(self) -> list[Health]:
         """What is odd about the clocks, by topic."""
-        known = {name: one for name, one in self.by_topic.items() if one.count >= ENOUGH}
-        nearest = min((min(one.lots) for one in known.values()), default=0)
+        known = {
+            name: differences
+            for name, differences in self.by_topic.items()
+            if differences.count >= ENOUGH
+        }
+        nearest = min((min(differences.lots) for differences in known.values()), default=0)
         doubts = []
-        for name, one in known.items():
-            if remarks := _remarks(one, nearest, len(known)):
+        for name, differences in known.items():
+            if remarks := _remarks(differences, nearest, len(known)):
                 remark = "; ".join(remarks)
-                doubts.append(Health(HealthKind.CLOCK, name, one.count, one.first, remark=remark))
+                doubts.append(
+                    Health(
+                        HealthKind.CLOCK, name, differences.count, differences.first, remark=remark
+                    )
+                )
         return doubts
 
 
-def _remarks(one: Differences, nearest: int, topics: int) -> list[str]:
-    remarks, least = [], min(one.lots)
+def _remarks(differences: Differences, nearest: int, topics: int) -> list[str]:
+    remarks, least = [], min(differences.lots)
     if least < -AHEAD:
         remarks.append(f"headers are up to {format_ticks(-least)} later than the log")
     elif topics > 1 and least - max(nearest, 0) > APART:
@@ -109,9 +117,9 @@ def _remarks(one: Differences, nearest: int, topics: int) -> list[str]:
             f"headers are at least {format_ticks(least)} earlier than the log, those of "
             f"another topic {format_ticks(max(nearest, 0))}"
         )
-    if abs(one.change) > DRIFT:
-        away = "further from" if one.change > 0 else "nearer to"
-        remarks.append(f"headers come {format_ticks(abs(one.change))} {away} the log")
+    if abs(differences.change) > DRIFT:
+        away = "further from" if differences.change > 0 else "nearer to"
+        remarks.append(f"headers come {format_ticks(abs(differences.change))} {away} the log")
     return [*remarks, "do the clocks agree?"] if remarks else []
 
 

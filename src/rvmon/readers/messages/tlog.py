@@ -58,7 +58,7 @@ class TelemetryMessages(Messages):
         if not self._times:
             raise TraceError("holds no packet of MAVLink: is it telemetry?")
         self.count = len(self._times)
-        self.end = max(max(self._times), max((one.until for one in self.outages), default=0))
+        self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
         self._names = [
             "" if key in self._lost else self._name(key, is_only=senders[self._called(key)] == 1)
@@ -108,7 +108,7 @@ class TelemetryMessages(Messages):
                 near = self._times[max(0, one - 1) : one + 2]
                 why = f"there is an unknown packet at byte {self._places[one]:,}"
                 self.outages.append(Outage(min(near), max(near), why))
-        self.outages.sort(key=lambda one: one.since)
+        self.outages.sort(key=lambda outage: outage.since)
 
     def _lose(self, place: int, last: int, micros: int) -> None:
         # What was lost may have had the stamp of its neighbour.

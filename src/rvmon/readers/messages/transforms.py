@@ -98,7 +98,7 @@ class WithTransforms(Messages):
                 yield name, t, content
             if not pairs or name not in SOURCES:
                 continue
-            heard = {_take(one, frames) for one in content.transforms}
+            heard = {_take(transform, frames) for transform in content.transforms}
             for made, (outer, inner) in pairs.items():
                 way = _way(outer, inner, frames)
                 if way is not None and not heard.isdisjoint(way[1]):

@@ -69,11 +69,11 @@ def ulog_messages(path: Path) -> ColumnMessages:
     outages = [outage for _, outage in read if outage is not None]
     outages += [
         Outage(
-            one.timestamp * _PER_STAMP,
-            one.timestamp * _PER_STAMP + max(1, one.duration) * _PER_DURATION,
+            dropout.timestamp * _PER_STAMP,
+            dropout.timestamp * _PER_STAMP + max(1, dropout.duration) * _PER_DURATION,
             "the logger dropped messages",
         )
-        for one in log.dropouts
+        for dropout in log.dropouts
     ]
     if watched.is_cut:
         outages.append(Outage(end, end + 1, "it ends within a message"))
@@ -94,7 +94,10 @@ def _topic(data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
     is_stamped = times > 0
     outage = None
     if not is_stamped.all():
-        times, columns = times[is_stamped], {path: one[is_stamped] for path, one in columns.items()}
+        times, columns = (
+            times[is_stamped],
+            {path: column[is_stamped] for path, column in columns.items()},
+        )
         until = int(times.min()) - 1 if len(times) else TIME_LIMIT - 1
         lost = frozenset({name})
         outage = Outage(start, max(start, until), "messages have no stamp", lost)

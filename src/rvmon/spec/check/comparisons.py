@@ -108,7 +108,7 @@ def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> F
         return found
     if any(fields_in(found.left, found.right)):
         raise Refusal(rules.limit_of_event(node.span))
-    if time is TimeModel.HELD and any(one.moves for one in (*windows[0], *windows[1])):
+    if time is TimeModel.HELD and any(window.moves for window in (*windows[0], *windows[1])):
         return brought_alone(found, node.span)
     return found
 

@@ -267,9 +267,9 @@ class _Point:
         return compared(self.checker, side, EVERYWHERE)
 
 
-def _alike(one: Formula, other: Formula) -> bool:
+def _alike(formula: Formula, other: Formula) -> bool:
     """Whether two formulas say the same in the same words, wherever they stand."""
-    return format_formula(one) == format_formula(other)
+    return format_formula(formula) == format_formula(other)
 
 
 def _clauses(

@@ -85,7 +85,7 @@ def brought_alone(compared: Compare, span: Span) -> Formula:
 
 
 def _moves(number: Numeric) -> bool:
-    return any(one.moves for one in windows_in(number))
+    return any(window.moves for window in windows_in(number))
 
 
 def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formula:

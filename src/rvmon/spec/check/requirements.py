@@ -130,12 +130,15 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
     """Of several occurrences at one instant each has to tell by itself whether it counts."""
     for window in windows_of(*formulas):
-        events = {one.event for one in fields_in(window.value)} if window.value else None
+        events = {value.event for value in fields_in(window.value)} if window.value else None
         if not events:
             continue
-        for one in subformulas(window.operand):
-            read = {*names_read(one)} & events if isinstance(one, Compare) else set()
-            own = isinstance(one, Compare) and one.left == one.right == window.value
+        for subformula in subformulas(window.operand):
+            read = {*names_read(subformula)} & events if isinstance(subformula, Compare) else set()
+            own = (
+                isinstance(subformula, Compare)
+                and subformula.left == subformula.right == window.value
+            )
             if len(events) > 1 or (read and not own):
                 raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
 
@@ -247,8 +250,8 @@ def _warn_of_traps(
         found += traps_at_start(mode, trigger, consequent, item.span)
     lets = zip(_clauses(item, LetClause), captures, strict=True)
     found += capture_traps(mode, trigger, lets, time)
-    for one in found:
-        checker.report(one)
+    for diagnostic in found:
+        checker.report(diagnostic)
 
 
 def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:

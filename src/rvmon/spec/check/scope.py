@@ -128,16 +128,16 @@ class AtTrigger:
 
     def begun(self, span: Span) -> Passed:
         """That it has come."""
-        if not any(one.name == TRIGGERED for one in self.captures):
+        if not any(capture.name == TRIGGERED for capture in self.captures):
             self.captures.append(Capture(TRIGGERED, NowValue()))
         return since_trigger(span)
 
     def number(self, word: str, value: Numeric) -> str:
         """The name of a number of that instant, which begins as a word of the language does."""
-        for one in self.captures:
-            if one.value == value and one.name.startswith(word):
-                return one.name
-        taken = sum(one.name.startswith(word) for one in self.captures)
+        for capture in self.captures:
+            if capture.value == value and capture.name.startswith(word):
+                return capture.name
+        taken = sum(capture.name.startswith(word) for capture in self.captures)
         self.captures.append(Capture(f"{word} {taken + 1}" if taken else word, value))
         return self.captures[-1].name
 

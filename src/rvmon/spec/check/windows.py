@@ -196,7 +196,7 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     node = node_of((quantity, place))
     if windows_in(node):
         raise Refusal(rules.window_in_window(place))
-    events = {one.event for one in fields_in(node)}
+    events = {value.event for value in fields_in(node)}
     signals = {*names_in(node)} - events
     if window.most is not None:
         if measured.of is Members.HELD:
@@ -212,9 +212,9 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
         raise Refusal(time_rules.ago_of_samples(call.span))
     if measured.of is Members.EVENTS and isinstance(node, SignalValue):
         conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
-    chosen = tuple(one for one in conditions if _is_of_occurrence(one, events))
+    chosen = tuple(condition for condition in conditions if _is_of_occurrence(condition, events))
     member: Formula = itself(node, place)
-    for condition in reversed([one for one in conditions if one not in chosen]):
+    for condition in reversed([condition for condition in conditions if condition not in chosen]):
         _refuse_future(condition, call, measured)
         member = Formulas(place).both(condition, member)
     return Lone(WindowValue(measured, member, None, node, chosen=chosen), quantity)
@@ -228,7 +228,7 @@ def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
     """Whether it is a comparison that says something of one occurrence of the only event."""
     if not isinstance(formula, Compare) or len(events) != 1:
         return False
-    return {one.event for one in fields_in(formula.left, formula.right)} == events
+    return {value.event for value in fields_in(formula.left, formula.right)} == events
 
 
 def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:

@@ -93,7 +93,7 @@ class NumericOp(StrEnum):
     @classmethod
     def of(cls, sign: str) -> NumericOp:
         """The one that is written so."""
-        return next(one for one in cls if one.value == sign)
+        return next(op for op in cls if op.value == sign)
 
     ADD = "+", Operation(2, 2, UnitRule.SAME, operator.add, True, "the sum")
     SUB = "-", Operation(2, 2, UnitRule.SAME, operator.sub, True, "a difference")

@@ -54,7 +54,9 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
                 waiting += reversed(node.operands)
             case Compare(left=left, right=right):
                 windows = windows_in(left, right)
-                waiting += (part for one in reversed(windows) for part in reversed(one.operands))
+                waiting += (
+                    part for window in reversed(windows) for part in reversed(window.operands)
+                )
             case Passed(known=known):
                 waiting.append(known)
             case Binary(left=left, right=right):

@@ -76,11 +76,11 @@ _ADDED = (Argument.NUMBER, Argument.DURATION)
 _AMOUNTS = (
     *(
         Function(
-            *(one.value, one, _ADDED if one.of_numbers else _COUNTED, one.doc),
-            optional=int(one is not Measured.AGO),
+            *(measured.value, measured, _ADDED if measured.of_numbers else _COUNTED, measured.doc),
+            optional=int(measured is not Measured.AGO),
         )
-        for one in Measured
-        if one not in (Measured.DELTA, Measured.MIN, Measured.MAX)
+        for measured in Measured
+        if measured not in (Measured.DELTA, Measured.MIN, Measured.MAX)
     ),
     Function(
         *("share", Measured.DURATION, _COUNTED),

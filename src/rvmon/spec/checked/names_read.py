@@ -130,7 +130,7 @@ def labelled(
     left = list(spec.requirements) if only is None else list(only)
     wanted = [("severity", one) for one in severities] + [("tag", one) for one in tags]
     for kind, words in wanted:
-        of = {name: _labels(one, kind) for name, one in spec.requirements.items()}
+        of = {name: _labels(requirement, kind) for name, requirement in spec.requirements.items()}
         known = sorted(set().union(*of.values()))
         for word in words or [""]:
             if word not in known:

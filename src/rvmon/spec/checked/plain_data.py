@@ -75,7 +75,7 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
     own: Any = type(value)
     names = _attributes(own)
     if names is not None:
-        return [name, *[_to_plain(getattr(value, one), sources) for one in names]]
+        return [name, *[_to_plain(getattr(value, name), sources) for name in names]]
     if isinstance(value, Mapping):
         return ["dict", *(_to_plain(pair, sources) for pair in value.items())]
     if type(value) in (tuple, frozenset):
@@ -136,7 +136,7 @@ def _parts(without: Collection[str], value: Any) -> Any:
     if names is not None:
         wanted = [name for name in names if name not in without] if without else names
         parts = map(partial(getattr, value), wanted)
-        return {own.__name__: [None if type(one) in (Source, Span) else one for one in parts]}
+        return {own.__name__: [None if type(part) in (Source, Span) else part for part in parts]}
     if own is frozenset:
         return sorted(value)
     raise TypeError(f"a {own.__name__} is no part of a specification")
@@ -146,5 +146,5 @@ def _parts(without: Collection[str], value: Any) -> Any:
 def _attributes(class_: type) -> tuple[str, ...] | None:
     """The attributes of objects of a class of a specification; `None`: it is no such class."""
     if is_dataclass(class_) and _class_named(class_.__name__) is class_:
-        return tuple(one.name for one in fields(class_))
+        return tuple(field.name for field in fields(class_))
     return None

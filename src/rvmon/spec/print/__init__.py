@@ -158,16 +158,18 @@ def format_window(formula: WindowValue) -> str:
     word, what = str(formula.measured), ""
     conditions = _conditions(formula)
     since = since_trigger() in conditions
-    conditions = [one for one in conditions if one != since_trigger()]
+    conditions = [condition for condition in conditions if condition != since_trigger()]
     if formula.value is None and formula.counted is not None:
         what = _formula(formula.counted, 0)
     elif formula.value is None or isinstance(formula.value, Literal):  # so many times 1
         word = "duration" if formula.measured.of_time else word
-        what = " and ".join(_formula(one, 0 if len(conditions) == 1 else 4) for one in conditions)
+        what = " and ".join(
+            _formula(condition, 0 if len(conditions) == 1 else 4) for condition in conditions
+        )
     else:
         what = format_numeric(formula.value)
         if conditions and formula.most is None:
-            condition = " and ".join(_formula(one, 4) for one in conditions)
+            condition = " and ".join(_formula(condition, 4) for condition in conditions)
             what = f"if {condition} then {what} else 0"
     if formula.most is not None:
         what = f"last({formula.most}, {what})"
@@ -181,10 +183,10 @@ def _conditions(formula: WindowValue) -> list[Formula]:
     """Where there is a member, but for that its number is there, and that a signal is updated."""
     conditions = [without_spans(one) for one in chain(formula.operand)]
     if formula.value is not None and not isinstance(formula.value, Literal):
-        conditions = [one for one in conditions if one != itself(formula.value)]
+        conditions = [condition for condition in conditions if condition != itself(formula.value)]
         if isinstance(formula.value, SignalValue):
             updated = ProbeAtom(Probe.UPDATED, formula.value.name)
-            conditions = [one for one in conditions if one != updated]
+            conditions = [condition for condition in conditions if condition != updated]
     if formula.value is None and len(conditions) > 1 and since_trigger() not in conditions:
         return [formula.operand]
     return [*conditions, *formula.chosen]

@@ -108,7 +108,9 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
     def among(self, meta: Meta, children: Children) -> expressions.Expression:
         left, *values = (child for child in children if not isinstance(child, Token))
         span = self.span(meta)
-        equal = [expressions.Comparison(CompareOp.EQ, left, one, one.span, span) for one in values]
+        equal = [
+            expressions.Comparison(CompareOp.EQ, left, value, value.span, span) for value in values
+        ]
         either: expressions.Expression = equal[0]
         for further in equal[1:]:
             either = expressions.Infix(BinaryOp.OR, either, further, None, span, span)
@@ -221,7 +223,9 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
 
 def _are_alike(operands: Sequence[Any]) -> bool:
     """Whether all begin with the same operator of time, which nobody takes for one in the other."""
-    firsts = {one.op if isinstance(one, expressions.Prefix) else None for one in operands}
+    firsts = {
+        operand.op if isinstance(operand, expressions.Prefix) else None for operand in operands
+    }
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 

@@ -131,8 +131,8 @@ def grammar_text() -> str:
     }
     for terminal, spellings in OPERATOR_TERMINALS.items():
         fillings[terminal] = "|".join(
-            re.escape(one).replace(r"\ ", r"\s+") + (end if one[-1].isalpha() else "")
-            for one in sorted(spellings, key=len, reverse=True)
+            re.escape(spelling).replace(r"\ ", r"\s+") + (end if spelling[-1].isalpha() else "")
+            for spelling in sorted(spellings, key=len, reverse=True)
         )
     for key, pattern in fillings.items():
         text = text.replace(f"@{key}@", pattern)

@@ -129,7 +129,7 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
     if profile.wide:
         profile = replace(profile, wide=100 if chance(rng, profile.wide) else 0)
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
-    while profile.form and not any(_has_window(one) for one in found):
+    while profile.form and not any(_has_window(requirement) for requirement in found):
         found[-1] = _requirement(rng, profile, time, f"R{number}")
     return CheckedSpec(
         name="random",
@@ -175,7 +175,10 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         mixed=profile.mixed,
         numbers=profile.numbers,
         events=profile.events,
-        captured=(*instance, *(one.name for one in captures if one.name not in instants)),
+        captured=(
+            *instance,
+            *(capture.name for capture in captures if capture.name not in instants),
+        ),
         wide=profile.wide > 0,
         constants=profile.constants,
         amounts=profile.amounts,

@@ -147,7 +147,7 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(rng, 20))
     # Some sensors fail often: what was known before they did then matters, above all to instances
     # that begin later.
-    often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
+    often = 40 if any(requirement.for_each for requirement in spec.requirements.values()) else 25
     unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
     longer = 3 if profile.long and chance(rng, profile.long) else 1
     sparse = bool(profile.sparse) and chance(rng, profile.sparse)
@@ -236,7 +236,7 @@ def _numbers(spec: CheckedSpec) -> list[int | float]:
 def _several(spec: CheckedSpec) -> frozenset[str]:
     """The events that may occur more than once at an instant: every requirement is `for each`."""
     found = [requirement.for_each for requirement in spec.requirements.values()]
-    return frozenset() if None in found else frozenset(one.value.event for one in found if one)
+    return frozenset() if None in found else frozenset(each.value.event for each in found if each)
 
 
 @dataclass(frozen=True, slots=True)

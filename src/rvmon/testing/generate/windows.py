@@ -54,7 +54,7 @@ def late(rng: Rng, shape: Shape) -> Formula:
     return passed(since, after, chance(rng, 50))
 
 
-ALONE = tuple(one for one in Measured if not one.recalls)
+ALONE = tuple(measured for measured in Measured if not measured.recalls)
 """What stands beside a limit by itself."""
 EXPRESSION = "expression"
 """The form of windows that are numbers among others."""

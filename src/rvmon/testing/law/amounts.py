@@ -99,10 +99,10 @@ class Past:
     def compared(self, formula: Compare, i: int) -> Truth:
         """A comparison of windows as numbers."""
         parts = [part for side in (formula.left, formula.right) for part in parts_of(side)]
-        plain = [itself(one) for one in parts if not isinstance(one, WindowValue | Arithmetic)]
-        windows = [one for one in parts if isinstance(one, WindowValue)]
-        born = all(is_born(one, self.letters[i]) for one in plain)
-        if not born or not all(self.is_born(one, i) for one in windows):
+        plain = [itself(part) for part in parts if not isinstance(part, WindowValue | Arithmetic)]
+        windows = [part for part in parts if isinstance(part, WindowValue)]
+        born = all(is_born(comparison, self.letters[i]) for comparison in plain)
+        if not born or not all(self.is_born(window, i) for window in windows):
             return Truth.UNBORN
         found = self.settled(formula.left, i), self.settled(formula.right, i)
         return compare(Compare(formula.op, *found), self.letters[i], self.captured)
@@ -148,7 +148,7 @@ class Past:
             return None
         seconds = window.measured is Measured.DURATION
         exact = ends[0] / TICKS_PER_SECOND if seconds else ends[0]
-        if window.measured in _WHOLE and all(isinstance(one.value, int) for one in members):
+        if window.measured in _WHOLE and all(isinstance(member.value, int) for member in members):
             return finite(at_edge(int(exact), Kind.INT))
         try:
             return finite(float(exact))
@@ -239,7 +239,10 @@ class Past:
         (event,) = events
         for occurrence in letter.events[event].occurrences:
             payloads = {event: occurrence.payload}
-            chosen = [compare_at(one, letter, payloads, self.captured) for one in formula.chosen]
+            chosen = [
+                compare_at(comparison, letter, payloads, self.captured)
+                for comparison in formula.chosen
+            ]
             truth = conjunction([there, occurrence.truth, *chosen])
             if truth in (Truth.TRUE, Truth.UNKNOWN):
                 found = number(value, letter, payloads, self.captured)
@@ -261,13 +264,17 @@ def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
     """What members come to; `None`: nobody can say anything of it."""
     measured = window.measured
     if measured is Measured.DISTINCT:
-        known = Fraction(len({one.value for one in members if one.sure and one.value is not None}))
-        return known, None if any(not one.sure or one.value is None for one in members) else known
+        known = Fraction(
+            len({member.value for member in members if member.sure and member.value is not None})
+        )
+        return known, None if any(
+            not member.sure or member.value is None for member in members
+        ) else known
     if measured is Measured.DELTA:
         members = [*members[:1], *members[-1:]]
-    if any(one.value is None for one in members):
+    if any(member.value is None for member in members):
         return None
-    numbers = [(Fraction(one.value or 0), one.sure, one.size) for one in members]
+    numbers = [(Fraction(member.value or 0), member.sure, member.size) for member in members]
     if measured in _OF_SOME:
         found = _of_sure(measured, numbers) if all(sure for _, sure, _ in numbers) else None
         return None if found is None else (found, found)

@@ -183,14 +183,14 @@ class View:
         """Of the trigger, at each position; what is not born is FALSE for it."""
         if is_upon_end(self.requirement):
             return [Truth.FALSE for _ in self.word.letters]
-        return [Truth.FALSE if one is Truth.UNBORN else one for one in self._trigger]
+        return [Truth.FALSE if truth is Truth.UNBORN else truth for truth in self._trigger]
 
     @property
     def is_determined(self) -> bool:
         """Whether the trigger was ever TRUE or FALSE."""
         if is_upon_end(self.requirement):
             return bool(self.word.letters)
-        return any(one in (Truth.TRUE, Truth.FALSE) for one in self._trigger)
+        return any(truth in (Truth.TRUE, Truth.FALSE) for truth in self._trigger)
 
     @cached_property
     def _trigger(self) -> Sequence[Truth]:
@@ -367,7 +367,9 @@ def views(requirement: Requirement, word: Word) -> list[View]:
     return [
         View(
             requirement,
-            replace(word, letters=tuple(_only(one, each.value, value) for one in word.letters)),
+            replace(
+                word, letters=tuple(_only(letter, each.value, value) for letter in word.letters)
+            ),
             {each.name: value},
             first_at.get(value, len(word.letters)),
             doubted=value is None,

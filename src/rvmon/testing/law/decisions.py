@@ -65,14 +65,17 @@ def follow(requirement: Requirement, word: Word) -> Followings:
         raise RvmonError(f"requirement {requirement.id}: its trigger's class is not its syntax's")
     seen = views(requirement, word)
     found = sorted(
-        (one for view in seen for one in _followed(view)), key=lambda one: one.start.position
+        (followed for view in seen for followed in _followed(view)),
+        key=lambda followed: followed.start.position,
     )
-    sure = [one for one in found if one.start.sure is not None]
-    for number, one in enumerate(sorted(sure, key=lambda one: one.start.sure or 0), start=1):
-        one.number = number
-    doubtful = (one for one in found if one.start.sure != one.start.position)
-    for number, one in enumerate(doubtful, start=1):
-        one.doubtful_number = number
+    sure = [followed for followed in found if followed.start.sure is not None]
+    for number, followed in enumerate(
+        sorted(sure, key=lambda followed: followed.start.sure or 0), start=1
+    ):
+        followed.number = number
+    doubtful = (followed for followed in found if followed.start.sure != followed.start.position)
+    for number, followed in enumerate(doubtful, start=1):
+        followed.doubtful_number = number
     return Followings(found, any(view.is_determined for view in seen))
 
 
@@ -94,11 +97,11 @@ def _followed(view: View) -> list[Followed]:
 
 def _decide(attempts: Iterable[Followed], view: View, reached: int) -> None:
     """See what the prefix known at an instant decides."""
-    for one in attempts:
-        if one.decided is None and one.start.triggered <= reached:
-            truth = obligation(one.start, view.readings())
+    for attempt in attempts:
+        if attempt.decided is None and attempt.start.triggered <= reached:
+            truth = obligation(attempt.start, view.readings())
             if truth is not Truth.UNKNOWN:
-                one.decided = (reached, truth)
+                attempt.decided = (reached, truth)
 
 
 def _episodes(view: View) -> list[Followed]:
@@ -129,8 +132,8 @@ def _episodes(view: View) -> list[Followed]:
     return found
 
 
-def _has_failed(one: Followed) -> bool:
-    return one.decided is not None and one.decided[1] is Truth.FALSE
+def _has_failed(followed: Followed) -> bool:
+    return followed.decided is not None and followed.decided[1] is Truth.FALSE
 
 
 _RELEASES = {UnaryOp.ALWAYS, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL}

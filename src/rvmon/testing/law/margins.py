@@ -44,12 +44,12 @@ def margins(
     held = time is TimeModel.HELD
     found = {}
     for name, own in followings.items():
-        for one in own.attempts:
-            in_doubt = one.start.sure is None
-            key = (name, in_doubt, one.doubtful_number if in_doubt else one.number)
+        for attempt in own.attempts:
+            in_doubt = attempt.start.sure is None
+            key = (name, in_doubt, attempt.doubtful_number if in_doubt else attempt.number)
             if key in recorded:
-                low, high = _required(one.start, kept=False, held=held)
-                kept, _ = _required(one.start, kept=True, held=held)
+                low, high = _required(attempt.start, kept=False, held=held)
+                kept, _ = _required(attempt.start, kept=True, held=held)
                 found[key] = (low, TOP[1] if in_doubt else high, kept)
     return found
 

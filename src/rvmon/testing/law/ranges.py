@@ -232,30 +232,30 @@ def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
     return most([value, OF_TRUTH[unborn]]) if is_unborn else value
 
 
-def _settled(one: Operand) -> Operand:
+def _settled(operand: Operand) -> Operand:
     """False where it is not born, as what lies before the trace."""
-    state = Truth.FALSE if one.state is Truth.UNBORN else one.state
-    return Operand(state, lambda _: one.read(Truth.FALSE))
+    state = Truth.FALSE if operand.state is Truth.UNBORN else operand.state
+    return Operand(state, lambda _: operand.read(Truth.FALSE))
 
 
-def _not(one: Operand) -> Operand:
-    return Operand(negation(one.state), lambda unborn: negated(one.read(negation(unborn))))
+def _not(operand: Operand) -> Operand:
+    return Operand(negation(operand.state), lambda unborn: negated(operand.read(negation(unborn))))
 
 
 def _any(parts: Sequence[Operand]) -> Operand:
-    return _not(_all([_not(one) for one in parts]))
+    return _not(_all([_not(part) for part in parts]))
 
 
 def _all(parts: Sequence[Operand]) -> Operand:
     """What was lost is not excused by what is not there: with it, the whole may be anything."""
-    states = {one.state for one in parts}
+    states = {part.state for part in parts}
 
     def read(unborn: Truth) -> Range:
         if unborn is not Truth.FALSE:
-            return least(one.read(unborn) for one in parts)
+            return least(part.read(unborn) for part in parts)
         if Truth.UNBORN in states and Truth.UNKNOWN not in states:
             return BOTTOM
-        return least(one.read(Truth.UNKNOWN) for one in parts)
+        return least(part.read(Truth.UNKNOWN) for part in parts)
 
     return Operand(conjunction(states), read)
 

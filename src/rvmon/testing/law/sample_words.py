@@ -81,7 +81,7 @@ def word_of(
     for index, instant in enumerate(instants):
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
-            history = {name: one.by(before, instant) for name, one in said.items()}
+            history = {name: history.by(before, instant) for name, history in said.items()}
             begins = letters[0] if letters else None
             since = instant if begins is None else begins.since
             letters.append(replace(_letter(spec, instant, history), since=since))
@@ -249,8 +249,8 @@ def _said_of(
 def _letter(spec: CheckedSpec, instant: int, history: Mapping[str, _History]) -> Letter:
     return Letter(
         instant,
-        {name: _signal(history[name], one) for name, one in spec.signals.items()},
-        {name: _event(history[name], one) for name, one in spec.events.items()},
+        {name: _signal(history[name], signal) for name, signal in spec.signals.items()},
+        {name: _event(history[name], event) for name, event in spec.events.items()},
     )
 
 
@@ -258,8 +258,10 @@ def _event(history: _History, event: Event) -> EventState:
     if not history.has_source or history.is_within:
         return _UNKNOWN_EVENT
     new = [entry for entry in history.entries if history.is_new(entry)]
-    told_of = (one for entry in new for one in _occurrences(entry.value))
-    found = (replace(one, payload=_at_edge(one.payload, event)) for one in told_of)
+    told_of = (occurrence for entry in new for occurrence in _occurrences(entry.value))
+    found = (
+        replace(occurrence, payload=_at_edge(occurrence.payload, event)) for occurrence in told_of
+    )
     lost = sum(entry.lost for entry in new)
     return EventState(_updated(history), tuple(found), lost)
 
@@ -277,7 +279,7 @@ def _signal(history: _History, signal: Signal) -> SignalState:
     if not history.entries:
         return SignalState()
     said = (_update(entry.t, entry.value) for entry in history.entries)
-    updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in said]
+    updates = [replace(update, value=at_edge(update.value, signal.type.kind)) for update in said]
     last, within = updates[-1], history.is_within
     stale = signal.stale_after is not None and history.instant > last.t + signal.stale_after
     # What was lost may have been the first value, and the update behind it.

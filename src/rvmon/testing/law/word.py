@@ -95,14 +95,14 @@ def disjunction(values: Iterable[Truth]) -> Truth:
     return min(values, key=_TRUE_FIRST.__getitem__, default=Truth.FALSE)
 
 
-def both(one: Truth, other: Truth) -> Truth:
+def both(truth: Truth, other: Truth) -> Truth:
     """The conjunction of two, as quickly as it goes."""
-    return one if _FALSE_FIRST[one] <= _FALSE_FIRST[other] else other
+    return truth if _FALSE_FIRST[truth] <= _FALSE_FIRST[other] else other
 
 
-def either(one: Truth, other: Truth) -> Truth:
+def either(truth: Truth, other: Truth) -> Truth:
     """The disjunction of two, as quickly as it goes."""
-    return one if _TRUE_FIRST[one] <= _TRUE_FIRST[other] else other
+    return truth if _TRUE_FIRST[truth] <= _TRUE_FIRST[other] else other
 
 
 def truth_of(value: bool) -> Truth:

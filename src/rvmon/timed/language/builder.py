@@ -95,8 +95,8 @@ class NetworkBuilder:
     def text(self) -> str:
         """What was added so far, as a `.ta` text."""
         lines = [*self.declarations]
-        for one in self.automata:
-            lines += [*one.lines, f" {_clause('start', one.initial)}", "}"]
+        for builder in self.automata:
+            lines += [*builder.lines, f" {_clause('start', builder.initial)}", "}"]
         return "\n".join([*lines, *self.queries])
 
     def build(self) -> Network:

@@ -123,13 +123,15 @@ class Findings:
 def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Findings that say the same of several places as one, with their number and the first few."""
     alike: dict[tuple[str, str, str], list[Diagnostic]] = {}
-    for one in findings:
-        alike.setdefault((one.code, one.message, one.help), []).append(one)
+    for diagnostic in findings:
+        alike.setdefault((diagnostic.code, diagnostic.message, diagnostic.help), []).append(
+            diagnostic
+        )
     for first, *others in alike.values():
         if not others:
             yield first
             continue
-        further = [Label(label.span) for one in others[:MOST_SHOWN] for label in one.spans[:1]]
+        further = [Label(label.span) for other in others[:MOST_SHOWN] for label in other.spans[:1]]
         message = f"{first.message} ({1 + len(others)} places)"
         yield replace(first, message=message, spans=(*first.spans, *further))
 

@@ -297,7 +297,7 @@ def clock_number(value: Expression, calls: Calls) -> Expression:
 
 
 def _fractional(name: str, operands: Sequence[Expression], span: Span, calls: Calls) -> Expression:
-    made = Fractional(name, tuple(as_real(one, calls, span) for one in operands), span)
+    made = Fractional(name, tuple(as_real(operand, calls, span) for operand in operands), span)
     if not all(map(_is_literal, made.operands)):
         return made
     value = evaluator(made)((), ())

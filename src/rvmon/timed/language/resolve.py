@@ -95,7 +95,7 @@ class Resolver:
                 return self.functions.call(function, written, scope, self)
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
                 self.fraction = self.fraction or span
-                numbers = [self.expression(one, scope) for one in given]
+                numbers = [self.expression(expression, scope) for expression in given]
                 return operations.fractional_call(name, numbers, span, self.functions)
             case syntax.Call(name, (body,), span) if (
                 name in operations.LINEAR_WORDS and self.automata

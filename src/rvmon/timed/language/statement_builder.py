@@ -72,7 +72,7 @@ class StatementBuilder(Transformer[Token, Any]):
 
     def counting(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
         span = self._span(meta)
-        place = next(i for i, one in enumerate(items) if not isinstance(one, tuple))
+        place = next(i for i, item in enumerate(items) if not isinstance(item, tuple))
         body = _statements([items[-1], *items[place + 1 : -1]])
         loop = syntax.Loop(items[place], body, span)
         return syntax.Block((*_statements(items[:place]), loop), span)

@@ -310,7 +310,7 @@ def leaves(symbol: Symbol) -> list[Symbol]:
         case PlacedSymbol(_, slot) | ChosenSymbol(_, slot) if len(slot.indices) < len(slot.extents):
             extent = slot.extents[len(slot.indices)]
             deeper = (settle(replace(slot, indices=(*slot.indices, Constant(i)))) for i in extent)
-            return [leaf for one in deeper for leaf in leaves(replace(symbol, slot=one))]
+            return [leaf for slot in deeper for leaf in leaves(replace(symbol, slot=slot))]
         case _:
             return [symbol]
 

@@ -95,7 +95,7 @@ def operation(name: str, span: Span | None) -> Callable[..., int]:
                 raise OverflowError
             return wrap(number)
         except (ArithmeticError, ValueError):
-            given = ", ".join(f"{number_of(one):g}" for one in operands)
+            given = ", ".join(f"{number_of(operand):g}" for operand in operands)
             message = f"`{name}` has no value for {given}"
             raise model_error("TA007", message, span, "guard it with a test") from None
 

@@ -318,7 +318,7 @@ def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
         *(place.invariant for a in network.automata for place in a.locations),
         *(edge.guard for a in network.automata for edge in a.edges),
     ]
-    compared = {one.clock for guard in guards for one in guard.clocks} | set(asked)
+    compared = {clock.clock for guard in guards for clock in guard.clocks} | set(asked)
     found = [(p, r) for p, r in network.rates if r.clock in compared or network.has_split_edges]
     if found:
         place, rate = found[0]

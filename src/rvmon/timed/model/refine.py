@@ -60,7 +60,10 @@ def _update(update: Statement, factor: int) -> Statement:
 def _guard(guard: Guard, factor: int) -> Guard:
     return Guard(
         guard.data,
-        tuple(ClockCompare(one.clock, one.op, _times(one.bound, factor)) for one in guard.clocks),
+        tuple(
+            ClockCompare(clock.clock, clock.op, _times(clock.bound, factor))
+            for clock in guard.clocks
+        ),
     )
 
 

@@ -126,7 +126,9 @@ class Observed:
         self._automaton = automaton
         self._pulse = pulse
         alphabet = automaton.alphabet
-        required = [name for one in alphabet.propositions for name in events_of(one)]
+        required = [
+            name for proposition in alphabet.propositions for name in events_of(proposition)
+        ]
         self.reads_events = bool(required)
         trigger = obligation.trigger
         bound = None if trigger is None or not isinstance(trigger.leaf, BoundAtom) else trigger.leaf
@@ -143,7 +145,7 @@ class Observed:
         between = Labelling(signals, lambda _name: FALSE)
         self._triggers = FALSE if trigger is None or bound else now.expression(trigger)
         self._lasting = FALSE if trigger is None or bound else between.expression(trigger)
-        propositions = [now.expression(one) for one in alphabet.propositions]
+        propositions = [now.expression(proposition) for proposition in alphabet.propositions]
         self._tables = Tables(automaton, propositions, network.unit or 1)
         self._sites: dict[_Site, int] = {}
         self._waiting: list[_Site] = []
@@ -154,7 +156,7 @@ class Observed:
         self._is_ready = bool(evaluator(self._lasting)(*at_start))
         self._begun: _Site | None = None
         if self._is_ready or (bound is not None and bound.bound is Bound.START):
-            letter = self._tables.class_of(lambda one: evaluator(one)(*at_start))
+            letter = self._tables.class_of(lambda expression: evaluator(expression)(*at_start))
             edge = self._tables.edge(automaton.initial, (), letter)
             assert edge is not None, "every letter may begin a run"
             self._begun, _ = self._fresh(edge, ())

@@ -181,7 +181,7 @@ def _together(
     bounds = np.full((len(chosen), len(chosen)), inf)
     np.fill_diagonal(bounds, 0.0)
     for part in parts:
-        own = np.ix_(*[[place[one] for one in part.instants]] * 2)
+        own = np.ix_(*[[place[instant] for instant in part.instants]] * 2)
         bounds[own] = np.minimum(bounds[own], part.bounds)
     for first, second, bound in constraints:
         at = place[first], place[second]
@@ -239,7 +239,7 @@ class Timing:
         import numpy as np
 
         *_, last = self._forward(instants)
-        places = [last.instants.index(one) for one in instants]
+        places = [last.instants.index(instant) for instant in instants]
         return last.bounds[np.ix_(places, places)]
 
     def _forward(self, keep: Iterable[int]) -> Iterator[Bag]:

@@ -120,7 +120,7 @@ def _draw(
     draws: list[tuple[int, float, Move]] = []
     while begun and not draws:
         for automaton, possible in begun.items():
-            weights = [prod(edge.edge.weight for edge in one.move.edges) for one in possible]
+            weights = [prod(edge.edge.weight for edge in choice.move.edges) for choice in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)
                 draws.append((one.delay(random, mean_waits[automaton]), random.random(), one.move))
@@ -198,12 +198,12 @@ def _possible(
                 choice.take_out(taken)
         found.append(choice)
     if space.network.priorities is not None:
-        whole = [(one.move.rank, one.windows) for one in found]
+        whole = [(choice.move.rank, choice.windows) for choice in found]
         for one in found:
             one.windows = [*one.windows]
             for window in (w for rank, windows in whole if rank > one.move.rank for w in windows):
                 one.take_out(window)
-    return [one for one in found if one.windows]
+    return [choice for choice in found if choice.windows]
 
 
 @dataclass(slots=True)

@@ -243,17 +243,17 @@ class Space:
             for other in tried.receivers(sender):
                 groups.setdefault(other.automaton, []).append(other)
             for group in groups.values():
-                if all(one is not None and one.edge.guard.clocks for one in group):
+                if all(edge is not None and edge.edge.guard.clocks for edge in group):
                     group.append(None)
             for chosen in product(*groups.values()):
-                edges = (sender, *(one for one in chosen if one is not None))
+                edges = (sender, *(edge for edge in chosen if edge is not None))
                 if goes(edges):
                     yield (
                         edges,
                         tuple(
                             other.atoms(state.locations, state.values)
-                            for group, one in zip(groups.values(), chosen, strict=True)
-                            if one is None
+                            for group, edge in zip(groups.values(), chosen, strict=True)
+                            if edge is None
                             for other in group
                             if other is not None
                         ),
@@ -350,7 +350,8 @@ PiecesMaker = Callable[[Locations, Values], list[tuple[Atom, ...]]]
 def pieces_of(formula: Expression, grid: int = 1) -> PiecesMaker:
     """Make a function that gives the pieces of a normalised formula that is plain."""
     pieces = [
-        (evaluator(one.data), atoms_of(one.clocks, None, grid)) for one in alternatives_of(formula)
+        (evaluator(guard.data), atoms_of(guard.clocks, None, grid))
+        for guard in alternatives_of(formula)
     ]
     return lambda locations, values: [
         atoms(locations, values) for holds, atoms in pieces if holds(locations, values)

@@ -50,8 +50,8 @@ class ClockBounds:
 def joined(several: Iterable[ClockBounds]) -> ClockBounds:
     """The largest numbers of some, clock by clock."""
     made = ClockBounds()
-    for one in several:
-        for table, own in ((made.lower, one.lower), (made.upper, one.upper)):
+    for bounds in several:
+        for table, own in ((made.lower, bounds.lower), (made.upper, bounds.upper)):
             for clock, number in own.items():
                 table[clock] = max(table.get(clock, 0), number)
     return made

@@ -82,7 +82,9 @@ def extremes(
         raise model_error("TA020", "this asks for no extreme value", query.span)
     check_start(network)
     terms = (term.clock for term in query.formula.terms if term.clock is not None)
-    check_clocks(network, (*terms, *(one.clock for one in compares_of(query.formula.where))))
+    check_clocks(
+        network, (*terms, *(comparison.clock for comparison in compares_of(query.formula.where)))
+    )
     for term in query.formula.terms:
         for largest in query.formula.ends:
             yield _Climb(network, query, term, largest, Meter(budget, watch)).run()

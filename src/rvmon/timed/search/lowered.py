@@ -82,7 +82,9 @@ class Plan:
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
-        self.inside += [one for state in states for one in alternatives_of(together(state.label))]
+        self.inside += [
+            guard for state in states for guard in alternatives_of(together(state.label))
+        ]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
@@ -175,9 +177,9 @@ class Plan:
         return first, len(self._atoms) // 4 - first
 
     def _alternatives(self, alternatives: Sequence[Guard]) -> list[int]:
-        for one in alternatives:
-            places = list(_places_of(one.data))
-            for compare in one.clocks:
+        for alternative in alternatives:
+            places = list(_places_of(alternative.data))
+            for compare in alternative.clocks:
                 if compare.clock == len(self._network.clocks):
                     continue  # the timer
                 # Best the place of an automaton that sets the clock: its edges forget the number.
@@ -186,8 +188,8 @@ class Plan:
                 self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
         return [
             number
-            for one in alternatives
-            for number in (self._data(one.data), *self._compares(one.clocks))
+            for alternative in alternatives
+            for number in (self._data(alternative.data), *self._compares(alternative.clocks))
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:

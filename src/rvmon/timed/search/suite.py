@@ -157,7 +157,9 @@ def item_text(network: Network, item: Item, criterion: Criterion) -> str:
 def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Item]:
     """All items that a run goes through."""
     positions = (run.start, *(step.position for step in run.steps))
-    places = {Item(a, (place,)) for one in positions for a, place in enumerate(one.locations)}
+    places = {
+        Item(a, (place,)) for position in positions for a, place in enumerate(position.locations)
+    }
     edges, pairs, last = set[Item](), set[Item](), dict[int, int]()
     numbers = {
         id(edge): k for automaton in network.automata for k, edge in enumerate(automaton.edges)

@@ -77,7 +77,7 @@ def verify(
     """
     network, asked = asked_on(network, query) if isinstance(query, str) else (network, query)
     check_start(network)
-    check_clocks(network, (one.clock for one in compares_in(asked.formula)))
+    check_clocks(network, (comparison.clock for comparison in compares_in(asked.formula)))
     question = _Question(network, Meter(budget, watch), policy)
     found = _search(question, asked)
     meter, run = question.meter, found.run
