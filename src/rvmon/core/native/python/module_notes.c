@@ -137,11 +137,11 @@ PyObject *letters_of(const rv_note *note)
     if (note->first == NULL) {
         pieces = Py_NewRef(Py_None);
         last = Py_NewRef(Py_None);
-        count = PyLong_FromLong(0);
+        count = PyLong_FromLongLong(0);
     } else {
         pieces = pieces_of(note);
         last = bytes_from(note->last, note->last_count);
-        count = PyLong_FromLong((long)note->last_count);
+        count = PyLong_FromLongLong(note->last_count);
     }
     if ((pieces != NULL) && (last != NULL) && (count != NULL)) {
         made = PyTuple_Pack(3, pieces, last, count);
