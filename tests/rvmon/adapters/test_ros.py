@@ -189,8 +189,11 @@ def test_what_finds_no_room_in_dds_is_lost(monkeypatch):
     kind = dds._idl_type("std_msgs/msg/Float64", ())
     robot = DomainParticipant(domain)
     writer = DataWriter(robot, DdsTopic(robot, f"rt/{topic}", kind))
-    with dds.DdsSource(Slow(driver, spec.schema), domain=domain):
+    with dds.DdsSource(Slow(driver, spec.schema), domain=domain) as source:
         until(writer.get_matched_subscriptions)
+        # What is sent before the reader knows its writer, too, goes unheard.
+        readers = source._readers
+        until(lambda: any(reader.get_matched_publications() for reader, _ in [*readers.values()]))
         writer.write(kind(data=0.5))
         until(lambda: taken)
         writer.write(kind(data=0.5))
